@@ -1,0 +1,23 @@
+"""What every test shares: the Hypothesis profiles.
+
+- `ci` (the default of `make test` and of continuous integration): the same examples each time, so that a
+  failure is the change's own.
+- `dev` (the default of a bare `pytest`): fresh examples, and the failing ones are remembered.
+- `fuzz` (`make fuzz`): fresh examples, and many.
+
+None has a deadline: how long something takes is a benchmark's question. Choose with `HYPOTHESIS_PROFILE`.
+"""
+
+import os
+
+from hypothesis import HealthCheck, settings
+
+_shared = {
+    "deadline": None,
+    "print_blob": True,
+    "suppress_health_check": [HealthCheck.too_slow],
+}
+settings.register_profile("dev", max_examples=100, **_shared)
+settings.register_profile("ci", max_examples=200, derandomize=True, database=None, **_shared)
+settings.register_profile("fuzz", max_examples=5_000, **_shared)
+settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE") or ("ci" if "CI" in os.environ else "dev"))

@@ -1,0 +1,83 @@
+"""Manners of every file that is kept: no addresses of registries, no folders of one machine, a docstring."""
+
+import ast
+import re
+import subprocess
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+SOURCE = ROOT / "src" / "ravestate"
+
+
+def kept_files() -> list[Path]:
+    """What git keeps, or would keep: tracked files and new ones that are not ignored."""
+    run = subprocess.run(
+        ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"],
+        cwd=ROOT, capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    if run.returncode != 0:
+        pytest.skip("not a git checkout")
+    return [file for name in sorted(set(run.stdout.split("\0")) - {""}) if (file := ROOT / name).is_file()]
+
+
+def lines_matching(pattern: re.Pattern[str], files: list[Path]) -> list[str]:
+    found: list[str] = []
+    for file in files:
+        try:
+            text = file.read_text(encoding="utf-8")
+        except UnicodeDecodeError:
+            continue  # a picture, a sound, a model
+        found += [
+            f"{file.relative_to(ROOT)}:{number}: {hit[0]}"
+            for number, line in enumerate(text.splitlines(), start=1)
+            if (hit := pattern.search(line))
+        ]
+    return found
+
+
+# Written in pieces, or this file would be its own first finding.
+REGISTRIES = [
+    "pypi" r"\.org",
+    "python" r"hosted\.org",
+    "npm" r"js\.(org|com)",
+    "yarn" r"pkg\.com",
+    "deb\\.deb" r"ian\.org",
+]
+
+
+def test_no_registry_is_named() -> None:
+    """Pins name packages and versions; where they come from is the installing machine's affair."""
+    found = lines_matching(re.compile("|".join(REGISTRIES), re.IGNORECASE), kept_files())
+    assert not found, "\n".join(found)
+
+
+def test_no_folder_of_one_machine_is_named() -> None:
+    """Neither this checkout's own path nor somebody's home."""
+    folders = [re.escape(str(place)) for place in (ROOT, Path.home()) if len(place.parts) > 2]
+    folders += [r"/(?:home|Users)/(?!user\b|me\b|you\b|runner\b)\w+", r"(?<![\w.])/(?:ro" r"ot|wo" r"rk)/\w"]
+    found = lines_matching(re.compile("|".join(folders)), kept_files())
+    assert not found, "\n".join(found)
+
+
+def test_constraints_name_versions_and_nothing_else() -> None:
+    pin = re.compile(r"#.*|[A-Za-z0-9][A-Za-z0-9._-]*==[A-Za-z0-9.!+]+|")
+    lines = (ROOT / "constraints.txt").read_text(encoding="utf-8").splitlines()
+    assert [line for line in lines if not pin.fullmatch(line)] == []
+
+
+def test_every_source_file_says_what_it_is() -> None:
+    silent: list[str] = []
+    for file in sorted(SOURCE.rglob("*.py")):
+        said = ast.get_docstring(ast.parse(file.read_text(encoding="utf-8"))) or ""
+        if len(said.strip(" .\n")) < 10:
+            silent.append(str(file.relative_to(ROOT)))
+    assert not silent, "\n".join(silent)
+
+
+def test_no_test_sleeps() -> None:
+    """Tests run in virtual time; a real sleep is a slow test today and a flaky one tomorrow."""
+    tests = [file for file in kept_files() if file.is_relative_to(ROOT / "tests") and file.suffix == ".py"]
+    found = lines_matching(re.compile(r"\b(?:time|asyncio)\.sleep\((?!0\))"), tests)
+    assert not found, "\n".join(found)

@@ -1,0 +1,115 @@
+"""The rooms of the house: which code may know which.
+
+`pyproject.toml` has the order of the rooms as an import-linter contract. What that tool can't see is proved
+here from the source itself: imports of the standard library, and modules that are named lazily.
+"""
+
+import ast
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+SOURCE = ROOT / "src" / "ravestate"
+KINDS = ("platform", "modality", "meta", "skill")
+
+PURE_ROOMS = ("declare", "policy", "engine", "errors.py")
+PURE_LIBRARY = {
+    "__future__", "abc", "array", "ast", "bisect", "collections", "contextlib", "copy", "dataclasses", "difflib",
+    "enum", "fractions", "functools", "graphlib", "hashlib", "heapq", "html", "inspect", "itertools", "json",
+    "keyword", "linecache", "math", "numbers", "operator", "re", "reprlib", "string", "struct", "sys", "textwrap",
+    "traceback", "types", "typing", "unicodedata", "weakref",
+}  # fmt: skip
+"""Values and algorithms. Not here, and never: clocks, loops, threads, chance, files, logs, other people's code."""
+
+
+def files_of(*rooms: str) -> list[Path]:
+    found: list[Path] = []
+    for room in rooms:
+        place = SOURCE / room
+        found += [place] if place.is_file() else sorted(place.rglob("*.py"))
+    return found
+
+
+def imports_in(file: Path) -> Iterator[tuple[int, str, tuple[str, ...]]]:
+    """Each import as (line, absolute module, names taken from it); those for type checkers alone are left out."""
+    package = ("ravestate", *file.relative_to(SOURCE).parent.parts)
+
+    def visit(node: ast.AST) -> Iterator[tuple[int, str, tuple[str, ...]]]:
+        if isinstance(node, ast.If) and "TYPE_CHECKING" in ast.unparse(node.test):
+            children: list[ast.stmt] = node.orelse
+        elif isinstance(node, ast.Import):
+            yield from ((node.lineno, alias.name, ()) for alias in node.names)
+            return
+        elif isinstance(node, ast.ImportFrom):
+            origin = package[: len(package) - node.level + 1] if node.level else ()
+            module = ".".join((*origin, *([node.module] if node.module else [])))
+            yield node.lineno, module, tuple(alias.name for alias in node.names)
+            return
+        else:
+            children = list(ast.iter_child_nodes(node))  # type: ignore[arg-type]
+        for child in children:
+            yield from visit(child)
+
+    yield from visit(ast.parse(file.read_text(encoding="utf-8"), str(file)))
+
+
+def name_of(file: Path) -> str:
+    return file.relative_to(SOURCE).as_posix()
+
+
+def test_rooms_import_only_rooms_below_them() -> None:
+    run = subprocess.run(
+        [Path(sys.executable).with_name("lint-imports"), "--no-cache"],
+        cwd=ROOT, capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert run.returncode == 0, run.stdout + run.stderr
+
+
+@pytest.mark.parametrize("file", files_of(*PURE_ROOMS), ids=name_of)
+def test_pure_rooms_import_nothing_impure(file: Path) -> None:
+    impure = [
+        f"{name_of(file)}:{line}: {module}"
+        for line, module, _ in imports_in(file)
+        if (top := module.partition(".")[0]) != "ravestate" and top not in PURE_LIBRARY
+    ]
+    assert not impure, "\n".join(impure)
+
+
+def test_nothing_imports_the_command_line() -> None:
+    guilty = [
+        f"{name_of(file)}:{line}: {module}"
+        for file in files_of(".")
+        if not (name_of(file).startswith("cli/") or name_of(file) == "__main__.py")
+        for line, module, names in imports_in(file)
+        if f"{module}.".startswith("ravestate.cli.") or (module == "ravestate" and "cli" in names)
+    ]
+    assert not guilty, "\n".join(guilty)
+
+
+def test_skills_know_no_platform() -> None:
+    platforms = {place.stem for place in (SOURCE / "modules" / "platform").glob("[!_]*")}
+    guilty = [
+        f"{name_of(file)}:{line}: {module} {', '.join(names)}"
+        for file in files_of("modules/skill")
+        for line, module, names in imports_in(file)
+        if (lazy := module == "ravestate.modules" and platforms.intersection({*names, "platform"}))
+        or lazy
+        or f"{module}.".startswith("ravestate.modules.platform.")
+        or module.removeprefix("ravestate.modules.") in platforms
+    ]
+    assert not guilty, "\n".join(guilty)
+
+
+def test_modules_are_folders_all_built_alike() -> None:
+    missing = [
+        f"modules/{kind}/{place.name}: no {wanted}"
+        for kind in KINDS
+        for place in sorted((SOURCE / "modules" / kind).glob("[!_]*"))
+        for wanted in ("__init__.py", "README.md")
+        if not (place / wanted).is_file()
+    ]
+    assert not missing, "\n".join(missing)

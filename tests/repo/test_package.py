@@ -1,0 +1,122 @@
+"""What is shipped: the built wheel, its version, its licence, its requirements."""
+
+import email
+import importlib.metadata
+import re
+import shutil
+import subprocess
+import sys
+import tomllib
+import zipfile
+from pathlib import Path
+
+import pytest
+
+import ravestate
+
+ROOT = Path(__file__).parents[2]
+PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+NOT_SHIPPED = {".pyc", ".pyo"}
+
+
+@pytest.fixture(scope="module")
+def wheel(tmp_path_factory: pytest.TempPathFactory) -> zipfile.ZipFile:
+    """The wheel, built without network from a copy that knows nothing of git or of this checkout."""
+    place = tmp_path_factory.mktemp("wheel")
+    copy = place / "ravestate"
+    copy.mkdir()
+    for name in ("pyproject.toml", "README.md", "LICENSE", ".gitignore"):
+        shutil.copy(ROOT / name, copy)
+    shutil.copytree(ROOT / "src", copy / "src", ignore=shutil.ignore_patterns("__pycache__"))
+    run = subprocess.run(
+        [sys.executable, "-m", "pip", "wheel", "--quiet", "--no-index", "--no-deps", "--no-build-isolation",
+         "--disable-pip-version-check", "--wheel-dir", str(place), str(copy)],
+        capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert run.returncode == 0, run.stdout + run.stderr
+    (built,) = place.glob("*.whl")
+    return zipfile.ZipFile(built)
+
+
+def test_wheel_has_every_file_of_the_package(wheel: zipfile.ZipFile) -> None:
+    """Code and data alike: phrases, model lists, the built user interface, READMEs."""
+    source = ROOT / "src"
+    wanted = {
+        file.relative_to(source).as_posix()
+        for file in (source / "ravestate").rglob("*")
+        if file.is_file() and file.suffix not in NOT_SHIPPED and "__pycache__" not in file.parts
+    }
+    shipped = {name for name in wheel.namelist() if ".dist-info/" not in name}
+    assert shipped == wanted
+    assert "ravestate/py.typed" in shipped
+
+
+def test_wheel_has_licence_and_command(wheel: zipfile.ZipFile) -> None:
+    names = {name.partition(".dist-info/")[2]: name for name in wheel.namelist() if ".dist-info/" in name}
+    metadata = email.message_from_bytes(wheel.read(names["METADATA"]))
+    assert metadata["License-Expression"] == "Apache-2.0"
+    assert wheel.read(names["licenses/LICENSE"]) == (ROOT / "LICENSE").read_bytes()
+    assert "ravestate = ravestate.cli:main" in wheel.read(names["entry_points.txt"]).decode()
+
+
+def test_wheel_works_alone(wheel: zipfile.ZipFile, tmp_path: Path) -> None:
+    """What was built is what is imported, with nothing of the checkout on the path."""
+    wheel.extractall(tmp_path)
+    probe = f"import sys; sys.path.insert(0, {str(tmp_path)!r}); import ravestate; print(ravestate.__file__)"
+    run = subprocess.run([sys.executable, "-S", "-c", probe], capture_output=True, text=True, check=False)
+    assert run.returncode == 0, run.stderr
+    assert Path(run.stdout.strip()).is_relative_to(tmp_path)
+
+
+def test_versions_agree() -> None:
+    assert ravestate.__version__ == importlib.metadata.version("ravestate") == PROJECT["version"]
+
+
+def test_base_requirements_stay_small() -> None:
+    names = {
+        re.split(r"[^\w.-]", requirement, maxsplit=1)[0].lower() for requirement in PROJECT["dependencies"]
+    }
+    assert names == {"pydantic", "pyyaml"}
+
+
+def requirements_of(name: str, extra: str | None = None) -> set[str]:
+    """The installed packages that `name` (with `extra`) brings, itself left out."""
+    found: set[str] = set()
+    open_ends = [(name, extra)]
+    while open_ends:
+        package, wanted = open_ends.pop()
+        for line in importlib.metadata.requires(package) or []:
+            requirement, _, marker = line.partition(";")
+            conditions = re.findall(r"""extra\s*==\s*["']([^"']+)["']""", marker)
+            if conditions and wanted not in conditions:
+                continue
+            parts = re.match(r"\s*([\w.-]+)\s*(?:\[([^\]]*)\])?", requirement)
+            assert parts is not None
+            needed = parts[1].lower().replace("_", "-")
+            try:
+                importlib.metadata.version(needed)
+            except importlib.metadata.PackageNotFoundError:
+                continue  # for another platform or another Python
+            if needed not in found or parts[2]:
+                found.add(needed)
+                open_ends += [(needed, e.strip()) for e in (parts[2] or "").split(",") if parts[2]] or [
+                    (needed, None)
+                ]
+    return found - {name}
+
+
+@pytest.mark.parametrize("extra", [None, "console", "wildtalk", "chat"])
+def test_no_requirement_is_under_the_gpl(extra: str | None) -> None:
+    """Neither the base nor what `make chat` installs binds its user to a strong copyleft."""
+    packages = requirements_of("ravestate", extra)
+    assert "pydantic" in packages
+    guilty = {}
+    for package in sorted(packages):
+        about = importlib.metadata.metadata(package)
+        licences = " ".join(
+            [about.get("License-Expression") or (about.get("License") or "")[:80],
+             *(c for c in about.get_all("Classifier") or [] if c.startswith("License"))]
+        )  # fmt: skip
+        if re.search(r"\bA?GPL|Affero|GNU General Public", licences):
+            guilty[package] = licences
+    assert not guilty

@@ -1,0 +1,107 @@
+"""Every Python block of README.md and docs/ is run; see `snippets.py` for the rules."""
+
+import sys
+from pathlib import Path
+
+import pytest
+
+from repo.snippets import Block, Page, blocks_in
+
+ROOT = Path(__file__).parents[2]
+FILES = [
+    ROOT / "README.md",
+    *sorted((ROOT / "docs").rglob("*.md")),
+    *sorted((ROOT / "src").rglob("README.md")),
+]
+BLOCKS = [block for file in FILES if file.exists() for block in blocks_in(file) if block.runs]
+
+
+def name_of(block: Block) -> str:
+    return f"{block.file.relative_to(ROOT)}:{block.line}"
+
+
+@pytest.fixture(scope="module")
+def pages(tmp_path_factory: pytest.TempPathFactory) -> dict[Path, Page]:
+    return {file: Page(file, tmp_path_factory.mktemp(file.stem)) for file in {b.file for b in BLOCKS}}
+
+
+@pytest.mark.parametrize("block", BLOCKS, ids=name_of)
+def test_snippet(block: Block, pages: dict[Path, Page]) -> None:
+    if block.not_run is not None:
+        pytest.skip(f"not run: {block.not_run}")
+    pages[block.file].run(block)
+
+
+# ------------------------------------------------------------------------------- the runner itself
+
+
+def page_of(tmp_path: Path, text: str) -> Page:
+    file = tmp_path / "page.md"
+    file.write_text(text, encoding="utf-8")
+    (tmp_path / "folder").mkdir()
+    return Page(file, tmp_path / "folder")
+
+
+def test_names_carry_over_from_block_to_block(tmp_path: Path) -> None:
+    page = page_of(tmp_path, "```python\na = 1\n```\nwords\n```py\nassert a == 1\nb = 2\n```\n")
+    page.run(page.blocks[-1])
+    assert page.module.b == 2
+
+
+def test_await_may_stand_at_the_top(tmp_path: Path) -> None:
+    page = page_of(tmp_path, "```python\nimport asyncio\nawait asyncio.sleep(0)\nc = 3\n```\n")
+    page.run(page.blocks[0])
+    assert page.module.c == 3
+
+
+def test_titled_blocks_become_files(tmp_path: Path) -> None:
+    text = '```python title="hello_there.py"\nx = 5\n```\n```yaml title="a/b.yaml"\ny: 6\n```\n'
+    page = page_of(
+        tmp_path,
+        text
+        + "```python\nfrom pathlib import Path\nimport hello_there\nz = hello_there.x, Path('a/b.yaml').read_text()\n```\n",
+    )
+    page.run(page.blocks[-1])
+    assert page.module.z == (5, "y: 6\n")
+    assert "hello_there" not in sys.modules
+
+
+def test_not_run_blocks_are_skipped_with_a_reason(tmp_path: Path) -> None:
+    page = page_of(
+        tmp_path, "<!-- not run: needs a robot -->\n\n```python\n1 / 0\n```\n```python\nd = 4\n```\n"
+    )
+    assert [block.not_run for block in page.blocks] == ["needs a robot", None]
+    page.run(page.blocks[-1])
+    assert page.module.d == 4
+
+
+def test_other_languages_are_not_run(tmp_path: Path) -> None:
+    page = page_of(
+        tmp_path, "```bash\nrm nothing\n```\n````text\n```python\n1/0\n```\n````\n```\nplain\n```\n"
+    )
+    assert [block.runs for block in page.blocks] == [False, False, False]
+
+
+def test_an_error_points_at_the_line_in_the_file(tmp_path: Path) -> None:
+    page = page_of(tmp_path, "# Title\n\n```python\ndef f():\n    raise KeyError('k')\n\nf()\n```\n")
+    with pytest.raises(KeyError) as caught:
+        page.run(page.blocks[0])
+    assert (Path(caught.traceback[-1].path).name, caught.traceback[-1].lineno + 1) == ("page.md", 5)
+
+
+def test_indented_blocks_are_found(tmp_path: Path) -> None:
+    page = page_of(tmp_path, "- item\n\n    ```python\n    if True:\n        e = 1\n    ```\n")
+    page.run(page.blocks[0])
+    assert page.module.e == 1
+
+
+def test_shown_output_must_come_out(tmp_path: Path) -> None:
+    page = page_of(tmp_path, "```pycon\n>>> g = 7\n>>> g\n7\n```\n```pycon\n>>> g + 1\n9\n```\n")
+    page.run(page.blocks[0])
+    with pytest.raises(AssertionError, match="Expected"):
+        page.run(page.blocks[1])
+
+
+def test_an_open_fence_is_an_error(tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match=r"page\.md:1: .* never closed"):
+        page_of(tmp_path, "```python\nx = 1\n")
