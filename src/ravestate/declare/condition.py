@@ -1,0 +1,138 @@
+"""Conditions: boolean combinations of constraints on signals and of predicates on slots (L3, L4).
+
+A condition is a value. ``&`` and ``|`` build trees; ``policy/clauses.py`` brings them into
+disjunctive normal form.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, NoReturn
+
+from ravestate.declare.settings import Number, SettingRef, type_of_number
+from ravestate.errors import DeclarationError
+
+if TYPE_CHECKING:
+    from ravestate.declare.signal import Signal
+    from ravestate.declare.slot import Slot
+
+__all__ = ["DEFAULT_MAX_AGE", "AllOf", "AnyOf", "Condition", "Constraint", "Holds"]
+
+DEFAULT_MAX_AGE = 5.0
+"""Seconds after which a spike no longer fulfils a constraint that does not say otherwise (L4)."""
+
+Predicate = Callable[[Any], object]
+
+
+class Condition:
+    """What a rule waits for. Combine with ``&`` (and) and ``|`` (or)."""
+
+    __slots__ = ()
+
+    def __and__(self, other: Condition) -> Condition:
+        return AllOf((*_parts(self, AllOf), *_parts(_checked(other, "&"), AllOf)))
+
+    def __or__(self, other: Condition) -> Condition:
+        return AnyOf((*_parts(self, AnyOf), *_parts(_checked(other, "|"), AnyOf)))
+
+    def __bool__(self) -> NoReturn:
+        raise DeclarationError(
+            f"a condition has no truth value: write {self} & other instead of 'and', | instead of 'or', "
+            "and .where(predicate) instead of a comparison"
+        )
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class Constraint(Condition):
+    """A signal, the ages (seconds) at which a spike of it counts, and predicates over its payload."""
+
+    signal: Signal[Any]
+    min_age_: Number = 0.0
+    max_age_: Number | None = DEFAULT_MAX_AGE
+    is_detached: bool = False
+    predicates: tuple[Predicate, ...] = ()
+
+    def min_age(self, seconds: Number) -> Constraint:
+        """Count a spike only once it is `seconds` old (a number, or a setting's name)."""
+        return replace(self, min_age_=_age(seconds, "min_age"))
+
+    def max_age(self, seconds: Number | None) -> Constraint:
+        """Give a spike up when it is older than `seconds`; ``None``: never. Default 5 s."""
+        return replace(self, max_age_=None if seconds is None else _age(seconds, "max_age"))
+
+    def detached(self) -> Constraint:
+        """Look at the spike without consuming it, without its consent, and without becoming its effect (L19)."""
+        return replace(self, is_detached=True)
+
+    def where(self, predicate: Predicate) -> Constraint:
+        """Accept only spikes for whose payload ``predicate(payload)`` is true. Adds ln 2 to the utility (L9)."""
+        if not callable(predicate):
+            raise DeclarationError(f"{self}.where({predicate!r}): expected a function of the payload")
+        return replace(self, predicates=(*self.predicates, predicate))
+
+    def __repr__(self) -> str:
+        text = self.signal.name
+        if self.min_age_ != 0.0:
+            text += f".min_age({self.min_age_})"
+        if self.max_age_ != DEFAULT_MAX_AGE:
+            text += f".max_age({self.max_age_})"
+        if self.is_detached:
+            text += ".detached()"
+        return text + "".join(f".where({_title(p)})" for p in self.predicates)
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class Holds(Condition):
+    """A predicate on a slot's present value: it gates a rule without being a spike (L4)."""
+
+    slot: Slot[Any]
+    predicate: Predicate
+
+    def __repr__(self) -> str:
+        return f"{self.slot.name}.holds({_title(self.predicate)})"
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class AllOf(Condition):
+    """A conjunction."""
+
+    parts: tuple[Condition, ...]
+
+    def __repr__(self) -> str:
+        return " & ".join(f"({p})" if isinstance(p, AnyOf) else str(p) for p in self.parts)
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class AnyOf(Condition):
+    """A disjunction."""
+
+    parts: tuple[Condition, ...]
+
+    def __repr__(self) -> str:
+        return " | ".join(str(p) for p in self.parts)
+
+
+def _parts(condition: Condition, kind: type[AllOf] | type[AnyOf]) -> tuple[Condition, ...]:
+    return condition.parts if isinstance(condition, kind) else (condition,)
+
+
+def _checked(other: object, operator: str) -> Condition:
+    if not isinstance(other, Condition):
+        hint = ""
+        if hasattr(other, "changed"):
+            hint = f"; a slot is no signal: write {operator} {getattr(other, 'name', 'slot').split(':')[-1]}.changed"
+        raise DeclarationError(f"cannot combine a condition with {other!r} by {operator}{hint}")
+    return other
+
+
+def _age(seconds: object, what: str) -> Number:
+    if isinstance(seconds, bool) or not isinstance(seconds, type_of_number):
+        raise DeclarationError(
+            f"{what}({seconds!r}): expected seconds as a number, or a setting: {what}(rs.setting('name'))"
+        )
+    return seconds if isinstance(seconds, SettingRef) else float(seconds)
+
+
+def _title(predicate: Predicate) -> str:
+    return getattr(predicate, "__name__", type(predicate).__name__)

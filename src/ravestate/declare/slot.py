@@ -1,0 +1,115 @@
+"""Slots: named, typed, long-lived variables, each with signals of its own (L2)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import Any, Generic, NamedTuple, NoReturn, TypeVar
+
+from ravestate.declare.condition import Holds, Predicate
+from ravestate.declare.signal import Keep, Signal
+from ravestate.errors import DeclarationError, nearest
+
+__all__ = ["Collection", "Entry", "Flag", "Slot"]
+
+T = TypeVar("T")
+V = TypeVar("V")
+
+NOTHING: Mapping[str, Any] = MappingProxyType({})
+
+
+class Entry(NamedTuple):
+    """Payload of a collection's signals: the key, and the item that was added, set or removed."""
+
+    key: str
+    item: Any
+
+
+class Slot(Generic[T]):
+    """A value slot. Made by ``module.slot(...)``; its signal is ``.changed`` (payload: the new value).
+
+    Attributes:
+        name: The qualified name, ``module:name``.
+        default: The value before the first write; each context gets a copy of its own.
+        always: Whether writing an equal value signals too.
+        signals: All signals of the slot, `changed` first.
+        origin: Where it was declared, ``file:line``.
+    """
+
+    __slots__ = ("always", "changed", "default", "name", "origin", "signals")
+    kind = "value"
+
+    def __init__(
+        self, name: str, default: T, *, always: bool, input: bool, keep: Keep, limit: int, origin: str
+    ) -> None:
+        self.name = name
+        self.default = default
+        self.always = always
+        self.origin = origin
+        self.changed: Signal[Any] = self._signal("changed", input, keep, limit)
+        self.signals: tuple[Signal[Any], ...] = (self.changed,)
+
+    def _signal(self, what: str, input: bool, keep: Keep, limit: int) -> Signal[Any]:
+        return Signal(f"{self.name}:{what}", None, input=input, keep=keep, limit=limit, origin=self.origin)
+
+    def holds(self, predicate: Predicate) -> Holds:
+        """Gate a rule by ``predicate(value)`` of the slot's present value. Adds ln 2 to the utility (L9)."""
+        if not callable(predicate):
+            raise DeclarationError(f"{self.name}.holds({predicate!r}): expected a function of the value")
+        return Holds(self, predicate)
+
+    def __getattr__(self, attribute: str) -> NoReturn:
+        if attribute.startswith("__"):
+            raise AttributeError(attribute)
+        names = [signal.name.rsplit(":", 1)[-1] for signal in self.signals]
+        raise AttributeError(
+            f"{self.kind} slot {self.name} has no {attribute!r}: its signals are {', '.join(names)}"
+            f"{nearest(attribute, [*names, 'holds', 'default'])}",
+            name=attribute,
+        )
+
+    def __and__(self, other: object) -> NoReturn:
+        raise DeclarationError(
+            f"slot {self.name} is no condition: write .changed (its signal) or .holds(predicate)"
+        )
+
+    __or__ = __rand__ = __ror__ = __and__
+
+    def __repr__(self) -> str:
+        return self.name
+
+
+class Flag(Slot[bool]):
+    """A boolean slot with the signals ``.changed``, ``.true`` and ``.false`` (payload: the new value)."""
+
+    __slots__ = ("false", "true")
+    kind = "flag"
+
+    def __init__(
+        self, name: str, default: bool, *, always: bool, input: bool, keep: Keep, limit: int, origin: str
+    ) -> None:
+        super().__init__(
+            name, default, always=always, input=input, keep=keep, limit=limit, origin=origin
+        )
+        self.true: Signal[bool] = self._signal("true", input, keep, limit)
+        self.false: Signal[bool] = self._signal("false", input, keep, limit)
+        self.signals = (self.changed, self.true, self.false)
+
+
+class Collection(Slot[Mapping[str, V]]):
+    """Items by key, with the signals ``.added``, ``.removed`` and ``.changed`` (payload: an `Entry`).
+
+    ``changed`` is raised by every change, as for any slot; ``added`` and ``removed`` say that a key came
+    or went.
+    """
+
+    __slots__ = ("added", "removed")
+    kind = "collection"
+
+    def __init__(self, name: str, *, input: bool, keep: Keep, limit: int, origin: str) -> None:
+        super().__init__(
+            name, NOTHING, always=False, input=input, keep=keep, limit=limit, origin=origin
+        )
+        self.added: Signal[Entry] = self._signal("added", input, keep, limit)
+        self.removed: Signal[Entry] = self._signal("removed", input, keep, limit)
+        self.signals = (self.changed, self.added, self.removed)

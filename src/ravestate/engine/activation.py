@@ -1,0 +1,168 @@
+"""The life of an activation (L12, L14, L17, L18).
+
+An activation is a clause plus the spikes that it has acquired; once it has consent, it is the run of the
+rule. For every clause there is always one more, in stand-by, that holds nothing; as it has no state, it
+is not an object: an activation comes to be with the first spike that it takes.
+
+=============  =================  ==========================================================================
+State          holds              what may happen
+=============  =================  ==========================================================================
+`GATHERING`    some spikes        it takes more; it gives some up; it holds all, old enough: it is complete
+`READY`        all, old enough    it asks for consent: granted, or it is kept waiting; it loses a spike
+`WAITING`      all, old enough    as READY; what it waits for changes, and it is asked again
+`RUNNING`      all                the function runs; it ends, or is told to end
+`CANCELLING`   all                the function was told to end and cleans up
+`ENDED`        nothing            nothing
+=============  =================  ==========================================================================
+
+What is not in the table of transitions is an error of the engine's.
+"""
+
+from __future__ import annotations
+
+import enum
+from typing import TYPE_CHECKING
+
+from ravestate.errors import EngineError
+
+if TYPE_CHECKING:
+    from ravestate.engine.group import Group
+    from ravestate.engine.spike import Spike
+    from ravestate.policy.plan import Clause
+
+__all__ = ["TRANSITIONS", "Activation", "State", "Step"]
+
+
+class State(enum.IntEnum):
+    """Where an activation stands in its life."""
+
+    GATHERING = 0
+    READY = 1
+    WAITING = 2
+    RUNNING = 3
+    CANCELLING = 4
+    ENDED = 5
+
+
+class Step(enum.IntEnum):
+    """What happens to an activation."""
+
+    COMPLETE = 0  # holds all its spikes, they are old enough, and its guards hold (L14)
+    LOSE = 1  # gave a spike up, or a guard no longer holds
+    REFUSE = 2  # a group refused consent (L15)
+    GRANT = 3  # every group consented (L17)
+    CANCEL = 4  # interrupted, timed out, or wiped (L18, L20, L21)
+    END = 5  # finished, or gave up its last spike
+
+
+_G, _R, _W, _X, _C, _E = State
+TRANSITIONS: dict[tuple[State, Step], State] = {
+    (_G, Step.COMPLETE): _R,
+    (_G, Step.LOSE): _G,
+    (_G, Step.END): _E,
+    (_R, Step.LOSE): _G,
+    (_R, Step.REFUSE): _W,
+    (_R, Step.GRANT): _X,
+    (_R, Step.END): _E,
+    (_W, Step.LOSE): _G,
+    (_W, Step.REFUSE): _W,
+    (_W, Step.GRANT): _X,
+    (_W, Step.END): _E,
+    (_X, Step.CANCEL): _C,
+    (_X, Step.END): _E,
+    (_C, Step.END): _E,
+}
+
+
+class Activation:
+    """A clause plus the spikes that it has acquired.
+
+    Attributes:
+        id: A number that grows with age; also the number of its run.
+        spikes: One place for each need of the clause.
+        missing: Bits of the needs that hold nothing.
+        expires: When it gives a spike up for age next (seconds); infinite when none may.
+        ripens: When its youngest spike is old enough, while that is in the future.
+        pressed: Until when it has patience, while others wait for it (L16).
+        blockers: While it waits: the live activations on whose progress that depends.
+    """
+
+    __slots__ = (
+        "blockers",
+        "clause",
+        "deadline",
+        "expires",
+        "groups",
+        "id",
+        "missing",
+        "pressed",
+        "recheck",
+        "ripens",
+        "since",
+        "speculative",
+        "spikes",
+        "state",
+        "waits_for",
+        "wrote",
+    )
+
+    def __init__(self, id: int, clause: Clause) -> None:
+        self.id = id
+        self.clause = clause
+        self.state = State.GATHERING
+        self.spikes: list[Spike | None] = [None] * len(clause.needs)
+        self.missing = clause.all_bits
+        self.expires = NEVER
+        self.ripens = NEVER
+        self.pressed = NEVER
+        self.recheck = NEVER  # when recovering utilities change the order (L9)
+        self.deadline = NEVER  # of the run (timeout)
+        self.since = 0.0  # when the run began
+        self.wrote = False  # whether the run has written a slot
+        self.groups: tuple[Group, ...] = ()  # of the run, as they were when it began
+        self.waits_for: tuple[str, ...] = ()  # names, for explanations
+        self.blockers: tuple[Activation, ...] = ()
+        self.speculative = False  # it waits for a rival that only patience bounds
+
+    def step(self, step: Step) -> None:
+        """Make a transition.
+
+        Raises:
+            EngineError: The table has none.
+        """
+        state = TRANSITIONS.get((self.state, step))
+        if state is None:
+            raise EngineError(f"activation {self.id} of {self.clause}: {step.name} in state {self.state.name}")
+        self.state = state
+
+    def held(self, bits: int) -> Spike | None:
+        """A spike that it holds for one of the needs in `bits`, if any."""
+        for need in self.clause.needs:
+            if need.bit & bits and not need.bit & self.missing:
+                return self.spikes[need.index]
+        return None
+
+    def firm_groups(self) -> list[Group]:
+        """The causal groups of its non-detached spikes, as they are now, each once."""
+        found: list[Group] = []
+        for need in self.clause.needs:
+            spike = self.spikes[need.index]
+            if spike is not None and not need.detached:
+                group = spike.group if spike.group.into is None else spike.group.root()
+                if group not in found:
+                    found.append(group)
+        return found
+
+    def firm_spikes(self) -> tuple[Spike, ...]:
+        """Its non-detached spikes: the parents of what its run causes."""
+        return tuple(
+            spike
+            for spike, need in zip(self.spikes, self.clause.needs, strict=True)
+            if spike is not None and not need.detached
+        )
+
+    def __repr__(self) -> str:
+        return f"{self.clause}@{self.id}"
+
+
+NEVER = float("inf")

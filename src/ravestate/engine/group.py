@@ -1,0 +1,57 @@
+"""A causal group: spikes with a common cause, and what has been decided about them (L11, L15)."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from ravestate.engine.activation import Activation
+    from ravestate.policy.plan import Clause
+
+__all__ = ["Group"]
+
+
+class Group:
+    """Which slots are taken in it, and which activations have a stake in it.
+
+    Attributes:
+        taken: For each slot taken here: the activation that runs, or None once it has finished.
+        members: The activations that hold non-detached spikes of it, oldest first; with how many.
+        pressed: Stand-by rivals under pressure: until when they have patience (seconds).
+        eliminated: Stand-by rivals whose patience has run out.
+    """
+
+    __slots__ = ("eliminated", "id", "into", "members", "pressed", "taken")
+
+    def __init__(self, id: int) -> None:
+        self.id = id
+        self.into: Group | None = None  # the group that this one has merged into
+        self.taken: dict[int, Activation | None] = {}
+        self.members: dict[Activation, int] = {}
+        self.pressed: dict[Clause, float] | None = None
+        self.eliminated: set[int] | None = None
+
+    def root(self) -> Group:
+        """The group that this one belongs to now."""
+        group = self
+        while group.into is not None:
+            group = group.into
+        return group
+
+    def absorb(self, other: Group) -> None:
+        """Make `other` part of this group. What is finished in either is finished in both."""
+        other.into = self
+        for slot, holder in other.taken.items():
+            if slot not in self.taken or holder is None:
+                self.taken[slot] = holder
+        for activation, count in other.members.items():
+            self.members[activation] = self.members.get(activation, 0) + count
+        if other.pressed:
+            self.pressed = {**other.pressed, **(self.pressed or {})}
+        if other.eliminated:
+            self.eliminated = other.eliminated | (self.eliminated or set())
+        other.members = {}
+        other.taken = {}
+
+    def __repr__(self) -> str:
+        return f"group {self.id}"

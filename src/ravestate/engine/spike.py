@@ -1,0 +1,80 @@
+"""A spike: an occurrence of a signal (L11)."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from ravestate.policy.plan import SignalPlan
+
+if TYPE_CHECKING:
+    from ravestate.engine.activation import Activation
+    from ravestate.engine.group import Group
+
+__all__ = ["Spike"]
+
+
+class Spike:
+    """Payload, time of birth (seconds), parents, causal group; and who holds it.
+
+    Attributes:
+        source: The number of the run that raised it, 0 if it came from outside.
+        holders: The activations that hold it, in the order in which they took it.
+        claims: For rules without slots: the activation that runs on it, or None once one has (L10).
+        refused: Rules that gave it up for good.
+    """
+
+    __slots__ = ("born", "claims", "group", "holders", "id", "parents", "payload", "refused", "rule", "signal", "source")
+
+    def __init__(
+        self,
+        id: int,
+        signal: SignalPlan,
+        payload: Any,
+        born: float,
+        group: Group,
+        parents: tuple[Spike, ...],
+        source: int,
+        rule: int,
+    ) -> None:
+        self.id = id
+        self.signal = signal
+        self.payload = payload
+        self.born = born
+        self.group = group
+        self.parents = parents
+        self.source = source
+        self.rule = rule  # index of the rule that raised it, -1 from outside
+        self.holders: dict[Activation, None] = {}
+        self.refused: set[int] | None = None
+        self.claims: dict[int, Activation | None] | None = None
+
+    def descends_from(self, rule: int) -> bool:
+        """Whether a run of the rule is among its causes: cycles are cut there, so that loops end (L19)."""
+        stack = [self]
+        seen: set[int] = set()
+        while stack:
+            spike = stack.pop()
+            if spike.rule == rule:
+                return True
+            for parent in spike.parents:
+                if parent.id not in seen:
+                    seen.add(parent.id)
+                    stack.append(parent)
+        return False
+
+    def has_ancestor(self, ancestors: set[int]) -> bool:
+        """Whether it is, or descends from, a spike whose id is among `ancestors`."""
+        stack = [self]
+        seen: set[int] = set()
+        while stack:
+            spike = stack.pop()
+            if spike.id in ancestors:
+                return True
+            for parent in spike.parents:
+                if parent.id not in seen:
+                    seen.add(parent.id)
+                    stack.append(parent)
+        return False
+
+    def __repr__(self) -> str:
+        return f"{self.signal.name}#{self.id}"

@@ -1,0 +1,1 @@
+"""What can be known before running: compile, pathways, utility, conflicts, findings, diagram. Pure."""

@@ -1,0 +1,115 @@
+"""Who may cause what (L7): the static graph of effects, and its closures.
+
+Edges run from a signal, over a rule that hears it, to the signals that the rule raises. Effects of a
+detached rule have no causes: they appear in the wide closures only.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+from ravestate.policy.plan import Clause, Need, RulePlan, SignalPlan
+
+__all__ = ["Causes"]
+
+
+class Causes:
+    """Closures over the rules of one policy; each is computed when first asked for."""
+
+    __slots__ = ("_ancestors", "_downstream", "_wide", "all_causes", "causes", "rules", "signals")
+
+    def __init__(self, signals: Sequence[SignalPlan], rules: Sequence[RulePlan]) -> None:
+        self.signals = signals
+        self.rules = rules
+        causes: list[list[RulePlan]] = [[] for _ in signals]
+        all_causes: list[list[RulePlan]] = [[] for _ in signals]
+        for rule in rules:
+            for signal in rule.raises:
+                all_causes[signal].append(rule)
+                if not rule.detached:
+                    causes[signal].append(rule)
+        self.causes = causes
+        """For each signal the non-detached rules that may raise it."""
+        self.all_causes = all_causes
+        """For each signal all rules that may raise it."""
+        self._ancestors: dict[int, frozenset[int]] = {}
+        self._wide: dict[int, frozenset[int]] = {}
+        self._downstream: dict[int, tuple[Clause, ...]] = {}
+
+    def ancestors(self, signal: int) -> frozenset[int]:
+        """The rules from which a chain of non-detached effects leads to the signal: it is in their reach."""
+        found = self._ancestors.get(signal)
+        if found is None:
+            found = self._ancestors[signal] = self._climb(signal, self.causes, wide=False)
+        return found
+
+    def wide_ancestors(self, signal: int) -> frozenset[int]:
+        """The same over detached effects too, but not through an input: an input may come at any time anyway."""
+        found = self._wide.get(signal)
+        if found is None:
+            found = self._wide[signal] = self._climb(signal, self.all_causes, wide=True)
+        return found
+
+    def _climb(self, signal: int, causes: Sequence[Sequence[RulePlan]], *, wide: bool) -> frozenset[int]:
+        rules: set[int] = set()
+        seen = {signal}
+        stack = [signal]
+        while stack:
+            for rule in causes[stack.pop()]:
+                if rule.index in rules:
+                    continue
+                rules.add(rule.index)
+                for need in _needs(rule):
+                    cause = need.signal
+                    if (wide and cause.input) or (need.detached and not wide) or cause.index in seen:
+                        continue
+                    seen.add(cause.index)
+                    stack.append(cause.index)
+        return frozenset(rules)
+
+    def downstream(self, rule: RulePlan) -> tuple[Clause, ...]:
+        """The clauses that write a slot and lie in the non-detached reach of the rule, best first (static)."""
+        found = self._downstream.get(rule.index)
+        if found is None:
+            clauses: dict[Clause, None] = {}
+            seen: set[int] = set()
+            stack = [] if rule.detached else list(rule.raises)
+            while stack:
+                signal = stack.pop()
+                if signal in seen:
+                    continue
+                seen.add(signal)
+                for need in self.signals[signal].listeners:
+                    if need.detached:
+                        continue
+                    if need.clause.rule.slots:
+                        clauses[need.clause] = None
+                    if not need.clause.rule.detached:
+                        stack.extend(need.clause.rule.raises)
+            found = self._downstream[rule.index] = tuple(sorted(clauses, key=lambda c: (-c.base, c.index)))
+        return found
+
+    def grounded(self, given: Iterable[int]) -> frozenset[int]:
+        """The signals that may ever occur if those in `given` do: a least fixed point over all rules."""
+        reached = set(given)
+        lacking = {clause: {n.signal.index for n in clause.needs} - reached for r in self.rules for clause in r.clauses}
+        waiting: dict[int, list[Clause]] = {}
+        ready: list[Clause] = []
+        for clause, signals in lacking.items():
+            if not signals:
+                ready.append(clause)
+            for signal in signals:
+                waiting.setdefault(signal, []).append(clause)
+        while ready:
+            for signal in ready.pop().rule.raises:
+                if signal not in reached:
+                    reached.add(signal)
+                    for clause in waiting.get(signal, ()):
+                        lacking[clause].discard(signal)
+                        if not lacking[clause]:
+                            ready.append(clause)
+        return frozenset(reached)
+
+
+def _needs(rule: RulePlan) -> list[Need]:
+    return [need for clause in rule.clauses for need in clause.needs]

@@ -1,0 +1,159 @@
+"""The policy: compiled modules, immutable, shared by any number of contexts (L6)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, Literal
+
+from ravestate.declare.module import Module
+from ravestate.declare.rule import Rule
+from ravestate.declare.signal import Signal
+from ravestate.declare.slot import Slot
+from ravestate.errors import DeclarationError, nearest
+from ravestate.policy.causes import Causes
+from ravestate.policy.plan import Clause, RulePlan, SignalPlan, SlotPlan
+
+if TYPE_CHECKING:
+    from ravestate.policy.conflicts import Conflict
+    from ravestate.policy.findings import Finding
+
+__all__ = ["Policy"]
+
+
+class Policy:
+    """What is known of a set of modules before anything runs. Made by ``rs.compile``.
+
+    Attributes:
+        modules: The modules, each behind those that it requires.
+        rules: The rules by qualified name, in declaration order.
+        signals: The signals by qualified name, those of slots included.
+        slots: The slots by qualified name.
+    """
+
+    __slots__ = (
+        "causes",
+        "declared",
+        "modules",
+        "refers",
+        "rule_plans",
+        "rules",
+        "settings",
+        "signal_of",
+        "signal_plans",
+        "signals",
+        "slot_of",
+        "slot_plans",
+        "slots",
+    )
+
+    def __init__(
+        self,
+        *,
+        modules: tuple[Module, ...],
+        declared: tuple[Rule[Any, Any], ...],
+        signal_plans: tuple[SignalPlan, ...],
+        slot_plans: tuple[SlotPlan, ...],
+        rule_plans: tuple[RulePlan, ...],
+        causes: Causes,
+        refers: bool,
+        settings: Mapping[str, Any],
+    ) -> None:
+        self.modules = modules
+        self.declared = declared
+        self.signal_plans = signal_plans
+        self.slot_plans = slot_plans
+        self.rule_plans = rule_plans
+        self.causes = causes
+        self.refers = refers
+        self.settings = settings
+        self.signal_of = {plan.name: plan for plan in signal_plans}
+        self.slot_of = {plan.name: plan for plan in slot_plans}
+        self.rules: Mapping[str, Rule[Any, Any]] = MappingProxyType({rule.name: rule for rule in declared})
+        self.signals: Mapping[str, Signal[Any]] = MappingProxyType({p.name: p.signal for p in signal_plans})
+        self.slots: Mapping[str, Slot[Any]] = MappingProxyType({p.name: p.slot for p in slot_plans})
+
+    def rule_plan(self, rule: str | Rule[Any, Any]) -> RulePlan:
+        """The numbered form of a rule.
+
+        Raises:
+            DeclarationError: The policy has no such rule.
+        """
+        name = rule if isinstance(rule, str) else rule.name
+        found = next((plan for plan in self.rule_plans if plan.name == name), None)
+        if found is None:
+            raise DeclarationError(f"the policy has no rule {name!r}{nearest(name, self.rules)}")
+        return found
+
+    def utility(self, rule: str | Rule[Any, Any]) -> float:
+        """The utility of a rule in nats: the greatest over its clauses (L9). Weight and cooldown apart.
+
+        Args:
+            rule: The rule, or its qualified name.
+
+        Raises:
+            DeclarationError: The policy has no such rule.
+        """
+        return max((clause.utility for clause in self.rule_plan(rule).clauses), default=0.0)
+
+    def clauses(self, rule: str | Rule[Any, Any]) -> tuple[Clause, ...]:
+        """The clauses of a rule: each with ``.signals`` (declared), ``.pathways`` (completed), ``.utility`` (nats)."""
+        return self.rule_plan(rule).clauses
+
+    def conflicts(self) -> tuple[Conflict, ...]:
+        """The pairs of rules that exclude each other for a common cause (L10): who wins, by how many nats."""
+        from ravestate.policy.conflicts import find_conflicts
+
+        return find_conflicts(self)
+
+    def findings(self) -> tuple[Finding, ...]:
+        """What is allowed but probably not meant: rules that cannot run or win, ties, signals nobody hears."""
+        from ravestate.policy.findings import find_all
+
+        return find_all(self)
+
+    def diagram(self, format: Literal["svg", "dot", "mermaid"] = "svg") -> str:
+        """The Signal-Rule-Slot diagram in the paper's notation, as text of the format.
+
+        Raises:
+            ValueError: The format is unknown.
+        """
+        from ravestate.policy.diagram import draw
+
+        return draw(self, format)
+
+    def with_settings(self, settings: Mapping[str, Any]) -> Policy:
+        """This policy with the numbers that settings name replaced; itself if it names none.
+
+        Args:
+            settings: For each module its settings value (an instance of its ``rs.Settings`` subclass).
+
+        Raises:
+            DeclarationErrors: The settings make a declaration impossible.
+        """
+        if not self.refers:
+            return self
+        from ravestate.policy.compile import build
+
+        policy = build(self.modules, self.declared, settings)
+        assert policy is not None  # build raises when it is given no list for the faults
+        return policy
+
+    def with_rule(self, rule: Rule[Any, Any]) -> Policy:
+        """This policy and one more rule, over the signals and slots that it has.
+
+        Raises:
+            DeclarationErrors: The rule does not fit.
+        """
+        from ravestate.policy.compile import build
+
+        if rule.name in self.rules:
+            raise DeclarationError(
+                f"rule {rule.name} ({rule.origin}) is in the policy already; give the new one another name=..."
+            )
+        policy = build(self.modules, (*self.declared, rule), self.settings)
+        assert policy is not None  # as above
+        return policy
+
+    def __repr__(self) -> str:
+        return f"<policy of {len(self.rules)} rules in {len(self.modules)} modules>"
