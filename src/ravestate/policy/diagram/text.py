@@ -1,0 +1,68 @@
+"""How wide a text will be, without any font at hand.
+
+A viewer picks whichever sans serif it has, so the widths here are those of a broad one: a text may
+leave some room in its box, but does not leave the box.
+"""
+
+from __future__ import annotations
+
+import unicodedata
+
+__all__ = ["clean", "shorten", "width"]
+
+_CLASSES: tuple[tuple[float, str], ...] = (
+    (0.32, "\"',.Iijl| "),
+    (0.40, "!()-/:;[\\]frt"),
+    (0.50, "*J`s"),
+    (0.56, "?L_ckvxyz{}"),
+    (0.64, "$0123456789FTabdeghnopqu"),
+    (0.70, "ABEKPSVXYZ^"),
+    (0.80, "#&+<=>CDGHNOQRUw~"),
+    (0.90, "M"),
+    (1.00, "%Wm"),
+    (1.10, "@"),
+)
+_EMS: dict[str, float] = {character: ems for ems, characters in _CLASSES for character in characters}
+_OTHER = 0.85
+_WIDE = 1.05
+
+
+def width(text: str, size: float) -> float:
+    """Estimate the width of a text in pixels at a font size in pixels."""
+    return size * sum(_ems(character) for character in text)
+
+
+def shorten(text: str, size: float, limit: float) -> str:
+    """Leave out the middle of a text that would be wider than `limit` pixels: both ends tell names apart."""
+    if width(text, size) <= limit:
+        return text
+    room = limit - width("…", size)
+    head = tail = 0
+    used = 0.0
+    while head + tail < len(text):
+        front = head <= tail
+        ems = _ems(text[head] if front else text[-1 - tail]) * size
+        if used + ems > room:
+            break
+        used += ems
+        head, tail = (head + 1, tail) if front else (head, tail + 1)
+    return f"{text[:head]}…{text[len(text) - tail :]}"
+
+
+def clean(text: str) -> str:
+    """Replace what no text format can carry (control characters, lone surrogates) by U+FFFD."""
+    return "".join("\ufffd" if _unprintable(character) else character for character in text)
+
+
+def _unprintable(character: str) -> bool:
+    code = ord(character)
+    return unicodedata.category(character) in ("Cc", "Cs") or code & 0xFFFE == 0xFFFE or 0xFDD0 <= code <= 0xFDEF
+
+
+def _ems(character: str) -> float:
+    known = _EMS.get(character)
+    if known is not None:
+        return known
+    if unicodedata.combining(character) or unicodedata.category(character) == "Cf":
+        return 0.0
+    return _WIDE if unicodedata.east_asian_width(character) in "WF" else _OTHER
