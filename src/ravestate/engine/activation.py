@@ -94,6 +94,7 @@ class Activation:
         "expires",
         "groups",
         "id",
+        "interests",
         "missing",
         "pressed",
         "recheck",
@@ -102,6 +103,7 @@ class Activation:
         "speculative",
         "spikes",
         "state",
+        "told",
         "waits_for",
         "wrote",
     )
@@ -122,6 +124,8 @@ class Activation:
         self.groups: tuple[Group, ...] = ()  # of the run, as they were when it began
         self.waits_for: tuple[str, ...] = ()  # names, for explanations
         self.blockers: tuple[Activation, ...] = ()
+        self.interests: tuple[Group, ...] = ()  # while it waits: the groups whose changes concern it
+        self.told = ""  # why its run was told to end
         self.speculative = False  # it waits for a rival that only patience bounds
 
     def step(self, step: Step) -> None:

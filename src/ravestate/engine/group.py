@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from ravestate.engine.activation import Activation
-    from ravestate.policy.plan import Clause
 
 __all__ = ["Group"]
 
@@ -17,18 +16,20 @@ class Group:
     Attributes:
         taken: For each slot taken here: the activation that runs, or None once it has finished.
         members: The activations that hold non-detached spikes of it, oldest first; with how many.
-        pressed: Stand-by rivals under pressure: until when they have patience (seconds).
+        interested: The waiting activations to be asked again when something ends in it.
+        pressed: Stand-by rivals (numbers of clauses) under pressure: until when they have patience (seconds).
         eliminated: Stand-by rivals whose patience has run out.
     """
 
-    __slots__ = ("eliminated", "id", "into", "members", "pressed", "taken")
+    __slots__ = ("eliminated", "id", "interested", "into", "members", "pressed", "taken")
 
     def __init__(self, id: int) -> None:
         self.id = id
         self.into: Group | None = None  # the group that this one has merged into
         self.taken: dict[int, Activation | None] = {}
         self.members: dict[Activation, int] = {}
-        self.pressed: dict[Clause, float] | None = None
+        self.interested: dict[Activation, None] = {}
+        self.pressed: dict[int, float] | None = None
         self.eliminated: set[int] | None = None
 
     def root(self) -> Group:
@@ -46,11 +47,13 @@ class Group:
                 self.taken[slot] = holder
         for activation, count in other.members.items():
             self.members[activation] = self.members.get(activation, 0) + count
+        self.interested.update(other.interested)
         if other.pressed:
             self.pressed = {**other.pressed, **(self.pressed or {})}
         if other.eliminated:
             self.eliminated = other.eliminated | (self.eliminated or set())
         other.members = {}
+        other.interested = {}
         other.taken = {}
 
     def __repr__(self) -> str:

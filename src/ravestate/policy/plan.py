@@ -16,6 +16,8 @@ from ravestate.declare.slot import Slot
 
 __all__ = ["NO_INFORMATION", "Clause", "Need", "RulePlan", "SignalPlan", "SlotPlan"]
 
+COROUTINE = 0x80  # inspect.CO_COROUTINE, without importing inspect
+
 NO_INFORMATION = 1e-9
 """Nats at which a clause without information (U = 0) competes, so that its weight and cooldown still count."""
 
@@ -134,6 +136,7 @@ class RulePlan:
         "detached",
         "emits",
         "index",
+        "interruptible",
         "name",
         "patience",
         "raises",
@@ -152,6 +155,8 @@ class RulePlan:
         self.name = rule.name
         self.detached = rule.detached
         self.background = rule.background
+        code = getattr(rule.function, "__code__", None)
+        self.interruptible = code is None or bool(code.co_flags & COROUTINE)  # a thread cannot be stopped
         self.weight = 1.0
         self.cooldown = 0.0
         self.patience: float | None = None

@@ -33,7 +33,9 @@ class Policy:
 
     __slots__ = (
         "causes",
+        "clause_plans",
         "declared",
+        "guarded",
         "modules",
         "refers",
         "rule_plans",
@@ -67,6 +69,9 @@ class Policy:
         self.causes = causes
         self.refers = refers
         self.settings = settings
+        clauses = [clause for rule in rule_plans for clause in (*rule.clauses, *rule.until)]
+        self.clause_plans = {clause.index: clause for clause in clauses}
+        self.guarded = any(clause.guards for clause in clauses)
         self.signal_of = {plan.name: plan for plan in signal_plans}
         self.slot_of = {plan.name: plan for plan in slot_plans}
         self.rules: Mapping[str, Rule[Any, Any]] = MappingProxyType({rule.name: rule for rule in declared})

@@ -1,0 +1,151 @@
+"""Consent (L15): whether a ready activation may run now, and if not, for whom it waits.
+
+A group refuses while one of the activation's slots is taken in it, or while a rival stands: another
+clause that writes one of these slots, with greater effective utility, that has a stake in the group and is
+still viable there. Rivals are either members of the group (they hold one of its spikes), or clauses in
+stand-by that lie downstream of a live rule of the group.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from ravestate.engine.activation import NEVER, Activation, State
+from ravestate.engine.horizon import FIRM, NO, Horizon
+from ravestate.policy.plan import Clause, RulePlan
+
+if TYPE_CHECKING:
+    from ravestate.engine.engine import Engine
+    from ravestate.engine.group import Group
+
+__all__ = ["Refusal", "ask", "stalemate"]
+
+
+class Refusal:
+    """Why an activation has to wait.
+
+    Attributes:
+        names: For whom: names of rules.
+        blockers: The live activations on whose progress it depends.
+        pressed: The rivals that only patience bounds, each with the group.
+        interests: The groups whose changes may lift the refusal.
+        recheck: When recovering utilities change the order, at the earliest (seconds).
+    """
+
+    __slots__ = ("blockers", "interests", "names", "pressed", "recheck")
+
+    def __init__(self) -> None:
+        self.interests: dict[Group, None] = {}
+        self.names: dict[str, None] = {}
+        self.blockers: dict[Activation, None] = {}
+        self.pressed: list[tuple[Group, Clause, Activation | None]] = []
+        self.recheck = NEVER
+
+    @classmethod
+    def by(cls, holder: Activation, activation: Activation) -> Refusal:
+        """A refusal because of a run that `activation` must not run beside."""
+        refusal = cls()
+        refusal.names[holder.clause.rule.name] = None
+        refusal.blockers[holder] = None
+        refusal.interests = dict.fromkeys(activation.firm_groups())
+        return refusal
+
+    def __bool__(self) -> bool:
+        return bool(self.names)
+
+
+def ask(engine: Engine, activation: Activation) -> Refusal:
+    """Ask every causal group of a ready activation; an empty refusal is consent."""
+    refusal = Refusal()
+    clause = activation.clause
+    rule = clause.rule
+    horizon: Horizon | None = None
+    for group in activation.firm_groups():
+        refusal.interests[group] = None
+        taken = False
+        for slot in rule.slots:
+            holder = group.taken.get(slot)
+            if holder is not None:
+                taken = True
+                refusal.names[holder.clause.rule.name] = None
+                refusal.blockers[holder] = None
+        if taken:
+            continue
+        for rival, member in _rivals(engine, activation, group):
+            if horizon is None:
+                horizon = Horizon(engine)
+            horizon.roots.clear()
+            strength = horizon.viable(rival, member, group, rival.rule.slotset)
+            if strength == NO:
+                continue
+            refusal.names[rival.rule.name] = None
+            if strength == FIRM:
+                refusal.blockers.update(dict.fromkeys(horizon.roots))
+            else:
+                refusal.pressed.append((group, rival, member))
+            if clause.rule.cooldown or rival.rule.cooldown:
+                refusal.recheck = min(refusal.recheck, _crossing(engine, clause, rival))
+    if horizon is not None:
+        refusal.interests.update(horizon.visited)
+    return refusal
+
+
+def _rivals(engine: Engine, activation: Activation, group: Group) -> Iterator[tuple[Clause, Activation | None]]:
+    """The clauses of greater effective utility with a stake in the group that write one of the same slots."""
+    clause = activation.clause
+    slots = clause.rule.slotset
+    worth = engine.effective(clause)
+    seen: set[Clause] = {clause}
+    rules: dict[RulePlan, None] = {}
+    for member in group.members:
+        theirs = member.clause
+        rules[theirs.rule] = None
+        if theirs is clause or theirs.rule.slotset.isdisjoint(slots) or member.state >= State.RUNNING:
+            continue
+        if _beats(engine, theirs, clause, worth):
+            yield theirs, member
+    for rule in rules:
+        for theirs in engine.policy.causes.downstream(rule):
+            if theirs.base < worth:
+                break  # they come best first, and recovery only lowers
+            if theirs in seen or theirs.rule.slotset.isdisjoint(slots):
+                continue
+            seen.add(theirs)
+            if group.eliminated is not None and theirs.index in group.eliminated:
+                continue
+            if _beats(engine, theirs, clause, worth):
+                yield theirs, None
+
+
+def _beats(engine: Engine, theirs: Clause, mine: Clause, worth: float) -> bool:
+    other = engine.effective(theirs)
+    return other > worth or (other == worth and theirs.index < mine.index)
+
+
+def _crossing(engine: Engine, mine: Clause, theirs: Clause) -> float:
+    """When `mine` overtakes `theirs`, at the earliest: both climb linearly until they have recovered."""
+    now = engine.now
+    my_worth, my_slope, my_end = engine.recovery(mine)
+    their_worth, their_slope, their_end = engine.recovery(theirs)
+    turn = min(end for end in (my_end, their_end, NEVER) if end > now)
+    closing = my_slope - their_slope
+    if closing > 0:
+        turn = min(turn, now + max(their_worth - my_worth, 0.0) / closing)
+    return turn if turn > now else NEVER
+
+
+def stalemate(engine: Engine) -> Activation | None:
+    """The best of those that wait only for each other, if there are such.
+
+    Two ready rules may each wait for a rival that the other might bring about. Nothing would ever move them;
+    the one of greater effective utility, or else the first declared, goes first.
+    """
+    stuck = {a: None for a in engine.waiting if not a.speculative}
+    while stuck:
+        freed = [a for a in stuck if any(blocker not in stuck for blocker in a.blockers)]
+        if not freed:
+            break
+        for activation in freed:
+            del stuck[activation]
+    return min(stuck, key=engine.order, default=None)

@@ -1,0 +1,194 @@
+"""What may still come (L16): whether a rival's missing constraints may yet be met.
+
+The theory. A signal is in the horizon of a group if some rule of the group may yet cause it: a rule that
+runs, or one whose own constraints are met or may still be met. That is a least fixed point over an and-or
+graph, and it is asked for few signals at a time; so it is derived backwards, from the missing signal over
+its causes to live activations, and a static closure (`Causes.ancestors`) cuts off what no live rule of the
+group can reach.
+
+A derivation has one of three strengths:
+
+``FIRM``         it rests on what is in progress: runs, ripening spikes, ready activations
+``SPECULATIVE``  some step of it needs an input, or a live rule of another group: it may never come, and
+                 only patience bounds it
+``NO``           nothing leads there
+
+A rule that would take a slot of the rival's own cannot help it: in one group a slot is written once (L19).
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from ravestate.engine.activation import Activation, State
+from ravestate.policy.plan import Clause, Need
+
+if TYPE_CHECKING:
+    from ravestate.engine.engine import Engine
+    from ravestate.engine.group import Group
+
+__all__ = ["FIRM", "NO", "SPECULATIVE", "Horizon"]
+
+NO, SPECULATIVE, FIRM = 0, 1, 2
+
+Path = frozenset[int]
+Slots = frozenset[int]
+
+
+class Horizon:
+    """The horizons of the engine's groups at one moment; made for one question of consent, then thrown away.
+
+    Attributes:
+        roots: The live activations on which the latest firm derivation rests.
+        visited: The groups that were looked at.
+    """
+
+    __slots__ = ("_by_rule", "engine", "roots", "visited")
+
+    def __init__(self, engine: Engine) -> None:
+        self.engine = engine
+        self.roots: list[Activation] = []
+        self.visited: dict[Group, None] = {}
+        self._by_rule: dict[Group, dict[int, list[Activation]]] = {}
+
+    def viable(
+        self, clause: Clause, activation: Activation | None, group: Group, slots: Slots, path: Path = frozenset()
+    ) -> int:
+        """How firmly a clause, by an activation of it or (None) in stand-by, may still become ready in a group.
+
+        A clause in stand-by has a stake in the group only if a signal of the group's horizon is among its needs.
+        """
+        rule = clause.rule
+        if rule.index in self.engine.retired:
+            return NO
+        mark = len(self.roots)
+        strength = FIRM
+        stake = activation is not None
+        if activation is None:
+            missing = clause.all_bits
+            for slot in rule.slots:
+                if slot in group.taken and group.taken[slot] is None:
+                    return NO  # finished there
+        else:
+            missing = activation.missing
+            if not missing:
+                self.roots.append(activation)  # it is ready, or will ripen
+        answered = 0
+        for need in clause.needs:
+            if not need.bit & missing or need.bit & answered:
+                continue
+            if need.detached:
+                met, here = self._detached(need, group, slots, path)
+            elif need.kin == need.bit:
+                met, here = self._single(need, group, slots, path)
+            else:
+                answered |= need.kin
+                met, here = self._kin(need, activation, missing, group, slots, path)
+            stake = stake or here
+            if met == NO:
+                del self.roots[mark:]
+                return NO
+            strength = min(strength, met)
+        if not stake or not self._guards(clause, group, slots, path):
+            del self.roots[mark:]
+            return NO
+        return strength
+
+    def _single(self, need: Need, group: Group, slots: Slots, path: Path) -> tuple[int, bool]:
+        """A need that any causal group may meet."""
+        met = self.comes(need.signal.index, group, slots, path)
+        if met == FIRM:
+            return FIRM, True
+        if self._live(need):
+            return FIRM, met != NO
+        if met != NO:
+            return met, True
+        return (SPECULATIVE if self._elsewhere(need, group) else NO), False
+
+    def _detached(self, need: Need, group: Group, slots: Slots, path: Path) -> tuple[int, bool]:
+        """A need that looks only: no stake."""
+        if self._live(need):
+            return FIRM, False
+        met = self.comes(need.signal.index, group, slots, path)
+        return (met or (SPECULATIVE if self._elsewhere(need, group) else NO)), False
+
+    def _kin(
+        self, need: Need, activation: Activation | None, missing: int, group: Group, slots: Slots, path: Path
+    ) -> tuple[int, bool]:
+        """Needs that one causal group must meet together (coherence, L12)."""
+        kin = [n for n in need.clause.needs if n.bit & need.kin & missing]
+        held = activation.held(need.kin) if activation is not None else None
+        if held is not None:
+            home = held.group.root()
+            return min(self.comes(n.signal.index, home, slots, path) for n in kin), True
+        here = min(self.comes(n.signal.index, group, slots, path) for n in kin)
+        if here != NO:
+            return here, True
+        return (SPECULATIVE if all(self._elsewhere(n, group) for n in kin) else NO), False
+
+    def _guards(self, clause: Clause, group: Group, slots: Slots, path: Path) -> bool:
+        """Whether its predicates on slots hold, or a slot may yet change in this group."""
+        engine = self.engine
+        for slot, guard in clause.guards:
+            if engine.holds(slot, guard, clause.rule):
+                continue
+            if self.comes(slot.signals[0].index, group, slots, path) != FIRM:
+                return False
+        return True
+
+    def _live(self, need: Need) -> bool:
+        """Whether a live spike could meet a need (L16 i)."""
+        spike = self.engine.live_spike(need)
+        if spike is not None:
+            self.visited[spike.group.root()] = None
+        return spike is not None
+
+    def comes(self, signal: int, group: Group, slots: Slots, path: Path) -> int:
+        """How firmly a signal lies in the horizon of a group."""
+        if signal in path:
+            return NO
+        causes = self.engine.policy.causes
+        by_rule = self._rules(group)
+        if causes.ancestors(signal).isdisjoint(by_rule):
+            return NO
+        best = NO
+        path = path | {signal}
+        for rule in causes.causes[signal]:
+            if not rule.slotset.isdisjoint(slots) or rule.index in self.engine.retired:
+                continue
+            inner = slots | rule.slotset
+            for activation in by_rule.get(rule.index, ()):
+                if activation.state >= State.RUNNING:
+                    self.roots.append(activation)
+                    return FIRM
+                best = max(best, self.viable(activation.clause, activation, group, inner, path))
+                if best == FIRM:
+                    return FIRM
+            for clause in rule.clauses:
+                best = max(best, self.viable(clause, None, group, inner, path))
+                if best == FIRM:
+                    return FIRM
+        return best
+
+    def _rules(self, group: Group) -> dict[int, list[Activation]]:
+        found = self._by_rule.get(group)
+        if found is None:
+            self.visited[group] = None
+            found = self._by_rule[group] = {}
+            for activation in group.members:
+                found.setdefault(activation.clause.rule.index, []).append(activation)
+        return found
+
+    def _elsewhere(self, need: Need, group: Group) -> bool:
+        """Whether an input, or a live rule of another group, might bring the signal (L16 iii)."""
+        signal = need.signal
+        if signal.input:
+            return True
+        causes = self.engine.policy.causes
+        wide = causes.wide_ancestors(signal.index)
+        if wide:
+            narrow = causes.ancestors(signal.index)
+            for rule, activations in self.engine.active.items():
+                if rule in wide and (rule not in narrow or any(a not in group.members for a in activations)):
+                    return True
+        return False

@@ -1,0 +1,154 @@
+"""What can be observed (L25): a closed union of records. The debugger, the recorder and the tests live from them.
+
+The engine makes a record only when somebody listens.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+__all__ = [
+    "Born",
+    "Dropped",
+    "GaveUp",
+    "Held",
+    "Merged",
+    "Pressed",
+    "Record",
+    "Set",
+    "Settled",
+    "Started",
+    "Told",
+    "Tracer",
+    "Waits",
+]
+
+
+@dataclass(frozen=True, slots=True)
+class Born:
+    """A spike was born; ``source`` is the run that raised it, 0 from outside."""
+
+    time: float
+    spike: int
+    signal: str
+    group: int
+    parents: tuple[int, ...]
+    source: int
+    payload: Any
+
+
+@dataclass(frozen=True, slots=True)
+class Dropped:
+    """A spike was withdrawn: by overflow, a wipe, or a later one (L20, L23)."""
+
+    time: float
+    spike: int
+    signal: str
+    reason: str
+
+
+@dataclass(frozen=True, slots=True)
+class Merged:
+    """One causal group became part of another (L11)."""
+
+    time: float
+    group: int
+    into: int
+
+
+@dataclass(frozen=True, slots=True)
+class Set:
+    """A slot got a value."""
+
+    time: float
+    slot: str
+    value: Any
+    run: int
+
+
+@dataclass(frozen=True, slots=True)
+class Held:
+    """An activation acquired a spike (L12)."""
+
+    time: float
+    activation: int
+    rule: str
+    clause: int
+    spike: int
+    signal: str
+    lacks: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class GaveUp:
+    """An activation gave a spike up: ``age``, ``consumed``, ``resigned``, ``eliminated``, ``withdrawn``, ``retired``."""
+
+    time: float
+    activation: int
+    rule: str
+    spike: int
+    signal: str
+    reason: str
+
+
+@dataclass(frozen=True, slots=True)
+class Waits:
+    """A ready activation is kept waiting, for rivals or for holders of a slot (L15)."""
+
+    time: float
+    activation: int
+    rule: str
+    for_: tuple[str, ...]
+    until: float | None
+
+
+@dataclass(frozen=True, slots=True)
+class Pressed:
+    """A rival is under pressure until its patience runs out (L16)."""
+
+    time: float
+    rule: str
+    by: str
+    lacks: tuple[str, ...]
+    until: float
+
+
+@dataclass(frozen=True, slots=True)
+class Started:
+    """A rule function runs (L17)."""
+
+    time: float
+    run: int
+    rule: str
+    clause: int
+    spikes: tuple[int, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Told:
+    """A run was told to end: ``interrupted``, ``timeout``, ``wiped``."""
+
+    time: float
+    run: int
+    rule: str
+    reason: str
+
+
+@dataclass(frozen=True, slots=True)
+class Settled:
+    """A run has ended (L18): ``done``, ``resigned``, ``failed``, ``retired``, ``interrupted``, ``wiped``."""
+
+    time: float
+    run: int
+    rule: str
+    outcome: str
+    reason: str
+    fired: bool
+
+
+Record = (
+    Born | Dropped | Merged | Set | Held | GaveUp | Waits | Pressed | Started | Told | Settled
+)
+Tracer = Callable[[Record], None]

@@ -1,0 +1,30 @@
+"""What watches for the end of a run: its `until` condition (L21)."""
+
+from __future__ import annotations
+
+from ravestate.engine.activation import NEVER, Activation
+from ravestate.engine.spike import Spike
+from ravestate.policy.plan import Clause
+
+__all__ = ["Watch"]
+
+
+class Watch:
+    """One clause of an `until`, and the spikes born since the run began that meet it. It consumes nothing."""
+
+    __slots__ = ("clause", "due", "run", "spikes")
+
+    def __init__(self, run: Activation, clause: Clause) -> None:
+        self.run = run
+        self.clause = clause
+        self.due = NEVER
+        self.spikes: list[Spike | None] = [None] * len(clause.needs)
+
+    def met_at(self, now: float) -> float | None:
+        """When the clause is met by what it has, or None as long as something is missing or too old."""
+        due = now
+        for need, spike in zip(self.clause.needs, self.spikes, strict=True):
+            if spike is None or spike.born + need.max_age < now:
+                return None
+            due = max(due, spike.born + need.min_age)
+        return due
