@@ -3,8 +3,8 @@
 1. Cycles are cut by turning some edges round (`acyclic`); detached ones and reads before others.
 2. Nodes get layers, so that edges are short (`simplex`).
 3. Long edges are cut at every layer (`layered`), and the layers are ordered for few crossings (`crossings`).
-4. Vertices get their heights (`ports`, `coordinates`, `straighten`), layers their distances, and lines
-   their turns (`tracks`, `routing`).
+4. Vertices get their places in them (`ports`, `heights`), layers their distances, and lines their turns
+   (`tracks`, `routing`).
 
 Parts that do not hang together are laid out one by one and packed in rows. Nothing here depends on
 anything but the diagram and the order in which it is given.
@@ -16,14 +16,13 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from ravestate.policy.diagram.acyclic import STRONG, backward
-from ravestate.policy.diagram.coordinates import middles
 from ravestate.policy.diagram.crossings import arrange
 from ravestate.policy.diagram.graph import Diagram, Edge, EdgeKind, NodeKind
+from ravestate.policy.diagram.heights import heights
 from ravestate.policy.diagram.layered import Link, layered
 from ravestate.policy.diagram.ports import place_ports
 from ravestate.policy.diagram.routing import Point, route
 from ravestate.policy.diagram.simplex import layers
-from ravestate.policy.diagram.straighten import straighten
 
 __all__ = ["Box", "Layout", "Size", "lay_out"]
 
@@ -150,12 +149,12 @@ def _lay_out_part(
     index = {name: i for i, name in enumerate(ids)}
     edges = [diagram.edges[number] for number in numbers]
     ends = [(index[edge.source], index[edge.target]) for edge in edges]
-    turned = backward(len(ids), [(u, v, _STRENGTH[e.kind]) for (u, v), e in zip(ends, edges, strict=True)])
+    kinds = {node.id: node.kind for node in diagram.nodes}
+    turned = backward(len(ids), [(u, v, _strength(e, kinds)) for (u, v), e in zip(ends, edges, strict=True)])
     links = [
         Link(v if turn else u, u if turn else v, edge.kind, turn, labels[number])
         for (u, v), edge, turn, number in zip(ends, edges, turned, numbers, strict=True)
     ]
-    kinds = {node.id: node.kind for node in diagram.nodes}
     arcs = [
         (link.low, link.high, _tightness(edge, kinds), 1 if link.label is None else 2)
         for link, edge in zip(links, edges, strict=True)
@@ -163,9 +162,7 @@ def _lay_out_part(
     graph = layered(layers(len(ids), arcs), [nodes[name] for name in ids], links)
     arrange(graph)
     place_ports(graph)
-    middle = middles(graph)
-    straighten(graph, middle)
-    routed = route(graph, middle)
+    routed = route(graph, heights(graph))
     boxes = [
         Box(x - width / 2, y - height / 2, width, height)
         for (x, y), width, height in zip(routed.middles, graph.width, graph.height, strict=True)
@@ -181,6 +178,12 @@ def _lay_out_part(
         max(box.x + box.width for box in boxes),
         max(box.y + box.height for box in boxes),
     )
+
+
+def _strength(edge: Edge, kinds: Mapping[str, NodeKind]) -> int:
+    """How much it takes to turn an edge round; a slot that gates a rule is read by it, so to speak."""
+    gates = edge.kind == "condition" and kinds[edge.source] == "slot"
+    return _STRENGTH["reads" if gates else edge.kind]
 
 
 def _tightness(edge: Edge, kinds: Mapping[str, NodeKind]) -> int:

@@ -8,6 +8,7 @@ __all__ = ["place_ports"]
 
 _PITCH = 10.0  # pixels between ports of one side, where there is room
 _MARGIN = 10.0  # pixels from the first and last port to the corner, which may be round
+_LEAST = 3.0  # pixels between ports, below which there is no room for several
 
 
 def place_ports(graph: Layered) -> None:
@@ -27,6 +28,8 @@ def place_ports(graph: Layered) -> None:
         if len(numbers) == 1 or graph.kind[vertex] != "node":
             continue
         numbers.sort(key=lambda number: (sum(leads[number]) / len(leads[number]), number))
-        pitch = max(0.0, min(_PITCH, (graph.height[vertex] - 2 * _MARGIN) / (len(numbers) - 1)))
+        pitch = min(_PITCH, (graph.height[vertex] - 2 * _MARGIN) / (len(numbers) - 1))
+        if pitch < _LEAST:
+            continue  # all meet in the middle
         for i, number in enumerate(numbers):
             graph.ports[number].offset = round(pitch * (i - (len(numbers) - 1) / 2), 2)

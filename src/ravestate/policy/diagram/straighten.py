@@ -11,7 +11,7 @@ from ravestate.policy.diagram.layered import Layered
 
 __all__ = ["straighten"]
 
-_BEND = 30.0  # pixels of length that one step less is worth
+_BEND = 60.0  # pixels of length that one step less is worth
 _ROUNDS = 4
 _LEVEL = 0.01
 

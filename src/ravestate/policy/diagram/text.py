@@ -50,13 +50,19 @@ def shorten(text: str, size: float, limit: float) -> str:
 
 
 def clean(text: str) -> str:
-    """Replace what no text format can carry (control characters, lone surrogates) by U+FFFD."""
+    """Replace by U+FFFD what no text format can carry, what breaks lines, and what turns the direction of reading."""
     return "".join("\ufffd" if _unprintable(character) else character for character in text)
 
 
 def _unprintable(character: str) -> bool:
     code = ord(character)
-    return unicodedata.category(character) in ("Cc", "Cs") or code & 0xFFFE == 0xFFFE or 0xFDD0 <= code <= 0xFDEF
+    return (
+        unicodedata.category(character) in ("Cc", "Cs", "Zl", "Zp")
+        or code & 0xFFFE == 0xFFFE  # no characters, by definition of Unicode
+        or 0xFDD0 <= code <= 0xFDEF
+        or 0x202A <= code <= 0x202E
+        or 0x2066 <= code <= 0x2069
+    )
 
 
 def _ems(character: str) -> float:
