@@ -868,7 +868,7 @@ class Engine:
         for group in activation.interests:
             group.interested[activation] = None
         if changed and self.tracer is not None:
-            until = None if activation.blockers else self._latest_patience(activation, names)
+            until = None if activation.blockers else self.patience_of_rivals(activation, names)
             self.tracer(trace.Waits(self.now, activation.id, activation.clause.rule.name, names, until))
 
     def _lose_interest(self, activation: Activation) -> None:
@@ -878,7 +878,7 @@ class Engine:
             group.root().interested.pop(activation, None)
         activation.interests = ()
 
-    def _latest_patience(self, activation: Activation, names: tuple[str, ...]) -> float | None:
+    def patience_of_rivals(self, activation: Activation, names: tuple[str, ...]) -> float | None:
         """Until when, at the latest, its rivals have patience."""
         times: list[float] = []
         for group in activation.firm_groups():

@@ -1,0 +1,80 @@
+"""The state of an engine as plain data, for debuggers and logs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+from ravestate.engine.explain import explain
+
+if TYPE_CHECKING:
+    from ravestate.engine.engine import Engine
+
+__all__ = ["snapshot"]
+
+
+def snapshot(engine: Engine) -> dict[str, Any]:
+    """Everything that is alive, as dictionaries, lists, texts and numbers; payloads and values that are something else
+    appear as their ``repr``.
+
+    Returns:
+        ``now`` (seconds), ``slots``, ``spikes``, ``activations``, ``groups``, ``dropped``, ``retired``,
+        ``next_deadline`` (seconds or None).
+    """
+    groups = {spike.group.root() for spikes in engine.live.values() for spike in spikes}
+    return {
+        "now": engine.now,
+        "slots": {plan.name: plain(engine.read(plan.index)) for plan in engine.policy.slot_plans},
+        "spikes": [
+            {
+                "id": spike.id,
+                "signal": spike.signal.name,
+                "age": engine.now - spike.born,
+                "group": spike.group.root().id,
+                "parents": [parent.id for parent in spike.parents],
+                "payload": plain(spike.payload),
+                "holders": [holder.id for holder in spike.holders],
+            }
+            for spikes in engine.live.values()
+            for spike in spikes
+        ],
+        "activations": [
+            {
+                "id": state.id,
+                "rule": rule.name,
+                "state": state.state,
+                "condition": state.condition,
+                "holds": [{"signal": signal, "age": age} for signal, age in state.holds],
+                "lacks": list(state.lacks),
+                "waits_for": [{"rule": name, "nats": nats} for name, nats in state.waits_for],
+                "until": state.until,
+            }
+            for rule in engine.policy.rule_plans
+            if rule.index in engine.active
+            for state in explain(engine, rule).activations
+        ],
+        "groups": [
+            {
+                "id": group.id,
+                "taken": {
+                    engine.policy.slot_plans[slot].name: None if holder is None else holder.clause.rule.name
+                    for slot, holder in group.taken.items()
+                },
+            }
+            for group in sorted(groups, key=lambda group: group.id)
+        ],
+        "dropped": dict(engine.dropped),
+        "retired": [rule.name for rule in engine.policy.rule_plans if rule.index in engine.retired],
+        "next_deadline": engine.next_deadline(),
+    }
+
+
+def plain(value: Any) -> Any:
+    """The value as data that JSON can carry."""
+    if value is None or isinstance(value, (bool, int, float, str)):
+        return value
+    if isinstance(value, Mapping):
+        return {str(key): plain(item) for key, item in value.items()}
+    if isinstance(value, (list, tuple, set, frozenset)):
+        return [plain(item) for item in (sorted(value, key=repr) if isinstance(value, (set, frozenset)) else value)]
+    return repr(value)

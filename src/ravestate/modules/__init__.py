@@ -1,0 +1,39 @@
+"""The built-in modules: platforms, modalities, meta modules and skills, each loaded when it is first used.
+
+``from ravestate.modules import rawio`` imports the package that holds the module's `Module` value
+(``rawio.module``) and, by name, its signals and slots (``rawio.input``). Wherever a `Module` is wanted, the
+package itself may be given.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+from ravestate.errors import nearest
+
+if TYPE_CHECKING:
+    from ravestate.modules.meta import idle, verbaliser
+    from ravestate.modules.modality import interloc, rawio
+    from ravestate.modules.platform import conio
+    from ravestate.modules.skill import fillers, hibye, wildtalk
+
+__all__ = ["BUILT_IN", "conio", "fillers", "hibye", "idle", "interloc", "rawio", "verbaliser", "wildtalk"]
+
+BUILT_IN = {
+    "conio": "platform",
+    "rawio": "modality",
+    "interloc": "modality",
+    "idle": "meta",
+    "verbaliser": "meta",
+    "hibye": "skill",
+    "fillers": "skill",
+    "wildtalk": "skill",
+}
+"""Every built-in module, and the folder in which it stands."""
+
+
+def __getattr__(name: str) -> Any:
+    if name not in BUILT_IN:
+        raise AttributeError(f"there is no built-in module {name!r}{nearest(name, BUILT_IN)}", name=name)
+    return import_module(f"ravestate.modules.{BUILT_IN[name]}.{name}")

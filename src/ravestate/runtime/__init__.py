@@ -1,0 +1,1 @@
+"""The asyncio shell around the engine: the only place with a loop, a thread or a clock."""

@@ -1,0 +1,244 @@
+"""A context: one running agent over a policy that it may share with others."""
+
+from __future__ import annotations
+
+import asyncio
+from collections import deque
+from collections.abc import Callable, Mapping
+from types import ModuleType
+from typing import Any, TypeVar
+
+from ravestate.declare.module import Module
+from ravestate.declare.rule import Rule
+from ravestate.declare.signal import Signal
+from ravestate.declare.slot import Slot
+from ravestate.engine.effects import Ended
+from ravestate.engine.engine import DEFAULT_PATIENCE, Engine
+from ravestate.engine.events import AddRule, Emit, Event, Start, Stop, Wipe, Write
+from ravestate.engine.explain import Explanation, explain
+from ravestate.engine.snapshot import snapshot
+from ravestate.engine.trace import Record
+from ravestate.errors import EngineError, UndeclaredError, nearest
+from ravestate.policy.compile import compile_policy
+from ravestate.policy.policy import Policy
+from ravestate.runtime.runner import Runner
+from ravestate.settings import load_settings
+
+__all__ = ["Context"]
+
+T = TypeVar("T")
+
+TRACE_LIMIT = 100_000
+"""Records of its trace that a context keeps."""
+
+
+class Context:
+    """An agent that runs: ``async with rs.Context(module, ...) as context``.
+
+    Args:
+        modules: Modules to compile, or one compiled `Policy` to share.
+        settings: For each module's name the values of its settings; they go before the environment's.
+        seed: Of all random choices that rules make through ``ctx.random``; different every time by default.
+        patience: Seconds that a rival under pressure has, unless its rule says otherwise (L16).
+        trace: Whether to keep what happens, for ``trace`` and ``explain``; or a function to be told.
+        journal: Told of every event with its time, e.g. a `Journal`.
+
+    Raises:
+        DeclarationErrors: The modules, or the settings, do not fit.
+
+    Example:
+        >>> import asyncio, ravestate as rs
+        >>> echo = rs.Module("echo")
+        >>> heard, said = echo.slot("heard", ""), echo.slot("said", "")
+        >>> @echo.rule(when=heard.changed, writes=said)
+        ... async def answer(ctx):
+        ...     ctx[said] = ctx.payload(heard.changed).upper()
+        >>> async def main():
+        ...     async with rs.Context(echo) as context:
+        ...         context.put(heard, "hello")
+        ...         return await context.next(said.changed, timeout=5)
+        >>> asyncio.run(main())
+        'HELLO'
+    """
+
+    def __init__(
+        self,
+        *modules: Module | ModuleType | Policy,
+        settings: Mapping[str, Any] | None = None,
+        seed: int | None = None,
+        patience: float = DEFAULT_PATIENCE,
+        trace: bool | Callable[[Record], None] = False,
+        journal: Callable[[Event, float], None] | None = None,
+    ) -> None:
+        policy = (
+            modules[0]
+            if len(modules) == 1 and isinstance(modules[0], Policy)
+            else compile_policy(*modules)  # type: ignore[arg-type]  # a policy among modules is refused there
+        )
+        self.settings = load_settings(policy.modules, settings)
+        self.trace: deque[Record] = deque(maxlen=TRACE_LIMIT)
+        """What has happened lately, if it is kept."""
+        self._policy = policy.with_settings(self.settings)
+        self._seed = seed
+        self._patience = patience
+        self._tracer = self.trace.append if trace is True else trace or None
+        self._journal = journal
+        self._runner: Runner | None = None
+        self._stopping: asyncio.Event | None = None
+        self._on_ended: Callable[[Ended], None] | None = None
+
+    # ------------------------------------------------------------------------------------ life
+
+    async def __aenter__(self) -> Context:
+        if self._runner is not None:
+            raise EngineError("a context runs once: make another one of the same policy")
+        engine = Engine(self._policy, patience=self._patience, report_ends=self._on_ended is not None)
+        engine.tracer = self._tracer
+        self._stopping = asyncio.Event()
+        loop = asyncio.get_running_loop()
+        self._runner = Runner(engine, loop, self.settings, self._seed, self.ask_to_stop)
+        self._runner.on_event = self._journal
+        self._runner.on_ended = self._on_ended
+        self._runner.receive(Start())
+        return self
+
+    async def __aexit__(self, *_: object) -> None:
+        await self.stop()
+
+    async def stop(self, grace: float = 5.0) -> None:
+        """End in order: ``rs.shutdown`` is raised, what it triggers may finish within `grace` seconds, the rest is
+        cancelled and may clean up."""
+        runner = self._running()
+        self.ask_to_stop()
+        last = max(runner.engine.running, default=0)
+        runner.receive(Stop())
+        await asyncio.sleep(0)  # the pump runs: whoever hears rs.shutdown starts
+        await runner.wait_for_runs(last, grace)
+        await runner.close()
+
+    def ask_to_stop(self) -> None:
+        """Let `until_stopped` return; the context goes on until it is left."""
+        if self._stopping is not None:
+            self._stopping.set()
+
+    async def until_stopped(self) -> None:
+        """Wait until a rule (``ctx.stop()``) or somebody outside has asked the context to end."""
+        self._running()
+        assert self._stopping is not None  # made together with the runner
+        await self._stopping.wait()
+
+    async def quiet(self) -> None:
+        """Wait until no rule, apart from those in the background, runs or is kept waiting."""
+        await self._running().quiet()
+
+    # ------------------------------------------------------------------------------------ acting from outside
+
+    def put(self, slot: Slot[T], value: T) -> None:
+        """Write a slot from outside; from any thread.
+
+        Raises:
+            UndeclaredError: The policy does not have the slot.
+        """
+        self._known(slot, self.policy.slots, "slot")
+        self._running().receive(Write(slot.name, value))
+
+    def emit(self, signal: Signal[T], payload: T | None = None) -> None:
+        """Raise a signal from outside; from any thread.
+
+        Raises:
+            UndeclaredError: The policy does not have the signal.
+        """
+        self._known(signal, self.policy.signals, "signal")
+        self._running().receive(Emit(signal.name, payload))
+
+    def wipe(self, signal: Signal[Any]) -> None:
+        """Withdraw the live spikes of a signal and all that they have caused (L20); from any thread."""
+        self._known(signal, self.policy.signals, "signal")
+        self._running().receive(Wipe(signal.name))
+
+    def add_rule(self, rule: Rule[Any, Any]) -> None:
+        """Add a rule to this context alone, over the signals and slots that it has; on the context's loop only.
+
+        Raises:
+            DeclarationErrors: The rule does not fit.
+        """
+        self._running().receive(AddRule(self.policy.with_rule(rule)))
+
+    async def next(self, signal: Signal[T], timeout: float | None = None) -> T:
+        """The payload of the next spike of a signal.
+
+        Args:
+            signal: The signal, e.g. ``rawio.output.changed``.
+            timeout: Seconds to wait; for ever by default.
+
+        Raises:
+            TimeoutError: There was none in time.
+            UndeclaredError: The policy does not have the signal.
+        """
+        self._known(signal, self.policy.signals, "signal")
+        runner = self._running()
+        future: asyncio.Future[Any] = runner.loop.create_future()
+        runner.futures.setdefault(signal.name, []).append(future)
+        runner.engine.watched[signal.name] = 1
+        try:
+            return await asyncio.wait_for(future, timeout)
+        except TimeoutError:
+            raise TimeoutError(f"no {signal.name} within {timeout:g} s") from None
+        finally:
+            waiting = runner.futures.get(signal.name, [])
+            if future in waiting:
+                waiting.remove(future)
+                if not waiting:
+                    del runner.futures[signal.name]
+                    if signal.name not in runner.listeners:
+                        runner.engine.watched.pop(signal.name, None)
+
+    # ------------------------------------------------------------------------------------ looking in
+
+    @property
+    def policy(self) -> Policy:
+        """The policy, with the rules that were added to this context."""
+        return self._policy if self._runner is None else self._runner.engine.policy
+
+    @property
+    def now(self) -> float:
+        """Seconds since the context began."""
+        return self._running().now()
+
+    def read(self, slot: Slot[T]) -> T:
+        """The present value of a slot.
+
+        Raises:
+            UndeclaredError: The policy does not have the slot.
+        """
+        self._known(slot, self.policy.slots, "slot")
+        return self._running().engine.read(self.policy.slot_of[slot.name].index)
+
+    def explain(self, rule: str | Rule[Any, Any]) -> Explanation:
+        """Why a rule runs, waits, or did not fire (L25); its history too if the context keeps its trace.
+
+        Raises:
+            DeclarationError: The policy has no such rule.
+        """
+        runner = self._running()
+        runner.engine.advance(max(runner.engine.now, runner.now()))
+        return explain(runner.engine, self.policy.rule_plan(rule), self.trace)
+
+    def snapshot(self) -> dict[str, Any]:
+        """Everything that is alive, as plain data that JSON can carry."""
+        return snapshot(self._running().engine)
+
+    def _running(self) -> Runner:
+        if self._runner is None:
+            raise EngineError("the context has not begun: write `async with rs.Context(...) as context:`")
+        return self._runner
+
+    def _known(self, thing: Slot[Any] | Signal[Any], names: Mapping[str, Any], what: str) -> None:
+        name = getattr(thing, "name", None)
+        if not isinstance(name, str) or names.get(name) is not thing:
+            hint = ""
+            if what == "signal" and isinstance(thing, Slot):
+                hint = f"; it is a slot: write {name}.changed"
+            elif isinstance(name, str):
+                hint = nearest(name, names) or f"; add module {name.split(':')[0]} to the context"
+            raise UndeclaredError(f"this context has no {what} {thing!r}{hint}")

@@ -1,0 +1,227 @@
+"""What a rule function is given: its view of the context, and the only way to act (L3, L13)."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import random
+from collections.abc import Iterator, Mapping
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, Generic, NoReturn, TypeVar, overload
+
+from ravestate.declare.rule import Rule
+from ravestate.declare.signal import Signal
+from ravestate.declare.slot import Collection, Slot
+from ravestate.engine.events import AddRule, Discard, Emit, Store, Wipe, Write
+from ravestate.errors import RunEnded, UndeclaredError, nearest
+
+if TYPE_CHECKING:
+    from ravestate.engine.effects import Run
+    from ravestate.runtime.runner import Runner
+
+__all__ = ["Items", "RuleContext"]
+
+T = TypeVar("T")
+V = TypeVar("V")
+
+
+class RuleContext:
+    """Handed to every rule function.
+
+    ``ctx[slot]`` reads a slot as it stood when the rule started, own writes included; ``ctx[slot] = value``
+    writes it, which takes effect, and signals, at once.
+    """
+
+    __slots__ = ("_payloads", "_run", "_runner", "_values", "ended", "rule", "told")
+
+    def __init__(self, runner: Runner, effect: Run) -> None:
+        self._runner = runner
+        self._run = effect.run
+        self.rule = effect.rule
+        self._payloads = effect.payloads
+        self._values: dict[str, Any] = effect.values  # type: ignore[assignment]  # made for this run alone
+        self.told = ""
+        """Why the function was told to end; it may still write while it cleans up."""
+        self.ended = ""
+        """Why the run is over although the function is not (a thread cannot be stopped); empty while it is not."""
+
+    @overload
+    def __getitem__(self, slot: Collection[V]) -> Items[V]: ...
+    @overload
+    def __getitem__(self, slot: Slot[T]) -> T: ...
+    def __getitem__(self, slot: Slot[Any]) -> Any:
+        """Read a slot.
+
+        Raises:
+            UndeclaredError: The rule declares neither ``reads`` nor ``writes`` of it.
+        """
+        try:
+            value = self._values[slot.name]
+        except (KeyError, AttributeError):
+            self._refuse("read", "reads", slot, (*self.rule.reads, *self.rule.writes))
+        if slot.kind == "collection":
+            return Items(self, slot, value)  # type: ignore[arg-type]  # its kind says so
+        return value
+
+    def __setitem__(self, slot: Slot[T], value: T) -> None:
+        """Write a slot.
+
+        Raises:
+            UndeclaredError: The rule does not declare ``writes`` of it.
+            RunEnded: The run is over.
+        """
+        if slot not in self.rule.writes:
+            self._refuse("wrote", "writes", slot, self.rule.writes)
+        self._alive()
+        if slot.kind == "collection":
+            value = MappingProxyType(dict(value))  # type: ignore[call-overload]  # its kind says so
+        self._values[slot.name] = value
+        self._runner.receive(Write(slot.name, value, self._run))
+
+    @overload
+    def payload(self, signal: Signal[T]) -> T: ...
+    @overload
+    def payload(self, signal: Signal[Any]) -> Any: ...
+    def payload(self, signal: Signal[Any]) -> Any:
+        """The payload of the signal that the rule stands on; None if another clause of its condition fired.
+
+        Raises:
+            UndeclaredError: The signal is not part of the rule's condition.
+        """
+        try:
+            return self._payloads[signal.name]
+        except (KeyError, AttributeError):
+            plan = self._runner.engine.policy.rule_plan(self.rule)
+            names = {need.signal.name for clause in plan.clauses for need in clause.needs}
+            if getattr(signal, "name", None) in names:
+                return None
+            raise UndeclaredError(
+                f"rule {self.rule.name} ({self.rule.origin}) asked for the payload of {signal!r}, which its condition "
+                f"does not name: it has {', '.join(sorted(names))}"
+                f"{nearest(str(getattr(signal, 'name', signal)), names)}"
+            ) from None
+
+    def emit(self, signal: Signal[T], payload: T | None = None) -> None:
+        """Raise a signal.
+
+        Raises:
+            UndeclaredError: The rule does not declare ``emits`` of it.
+            RunEnded: The run is over.
+        """
+        if not any(signal is declared for declared in self.rule.emits):
+            self._refuse("emitted", "emits", signal, self.rule.emits)
+        self._alive()
+        self._runner.receive(Emit(signal.name, payload, self._run))
+
+    def wipe(self, signal: Signal[Any]) -> None:
+        """Withdraw the live spikes of a signal and all that they have caused (L20)."""
+        self._alive()
+        self._runner.receive(Wipe(signal.name, self._run))
+
+    def add_rule(self, rule: Rule[Any, Any]) -> None:
+        """Add a rule to this context alone, over the signals and slots that it has.
+
+        Raises:
+            DeclarationErrors: The rule does not fit.
+        """
+        self._alive()
+        self._runner.receive(AddRule(self._runner.engine.policy.with_rule(rule)))
+
+    async def sleep(self, seconds: float) -> None:
+        """Wait on the context's clock."""
+        await asyncio.sleep(seconds)
+
+    async def quiet(self) -> None:
+        """Wait until no rule, apart from those in the background, runs or is kept waiting."""
+        await self._runner.quiet()
+
+    def stop(self) -> None:
+        """Ask the context to end: ``rs.shutdown`` is raised, and what runs is cancelled after it."""
+        self._runner.ask_to_stop()
+
+    @property
+    def now(self) -> float:
+        """Seconds since the context began."""
+        return self._runner.now()
+
+    @property
+    def settings(self) -> Any:
+        """The settings of the rule's module."""
+        return self._runner.settings.get(self.rule.name.split(":", 1)[0])
+
+    @property
+    def log(self) -> logging.Logger:
+        """A logger named ``ravestate.<module>.<rule>``."""
+        return logging.getLogger("ravestate." + self.rule.name.replace(":", "."))
+
+    @property
+    def random(self) -> random.Random:
+        """Random numbers from the context's seed: the only ones that a rule should use."""
+        return self._runner.random
+
+    def _alive(self) -> None:
+        if self.ended:
+            raise RunEnded(f"rule {self.rule.name} acted after its run was over ({self.ended})")
+
+    def _refuse(self, did: str, what: str, value: Any, declared: tuple[Any, ...]) -> NoReturn:
+        name = str(getattr(value, "name", repr(value)))
+        short = name.replace(":", ".")
+        raise UndeclaredError(
+            f"rule {self.rule.name} ({self.rule.origin}) {did} {name} without declaring it: add {what}={short} to "
+            f"@{self.rule.name.split(':')[0]}.rule(...){nearest(name, [d.name for d in declared])}"
+        )
+
+
+class Items(Mapping[str, V], Generic[V]):
+    """A collection as a rule sees it: a mapping of keys to items, with `add` and `remove`."""
+
+    __slots__ = ("_ctx", "_items", "_slot")
+
+    def __init__(self, ctx: RuleContext, slot: Collection[V], items: Mapping[str, V]) -> None:
+        self._ctx = ctx
+        self._slot = slot
+        self._items = items
+
+    def add(self, key: str, item: V) -> None:
+        """Set an item; signals ``added`` if the key is new, and ``changed`` if anything is.
+
+        Raises:
+            UndeclaredError: The rule does not declare ``writes`` of the collection.
+        """
+        self._check()
+        self._items = MappingProxyType({**self._items, key: item})
+        self._keep()
+        self._ctx._runner.receive(Store(self._slot.name, key, item, self._ctx._run))  # pyright: ignore[reportPrivateUsage]
+
+    def remove(self, key: str) -> None:
+        """Remove an item if it is there; signals ``removed`` and ``changed``.
+
+        Raises:
+            UndeclaredError: The rule does not declare ``writes`` of the collection.
+        """
+        self._check()
+        self._items = MappingProxyType({k: v for k, v in self._items.items() if k != key})
+        self._keep()
+        self._ctx._runner.receive(Discard(self._slot.name, key, self._ctx._run))  # pyright: ignore[reportPrivateUsage]
+
+    def _check(self) -> None:
+        ctx = self._ctx
+        if self._slot not in ctx.rule.writes:  # pyright: ignore[reportPrivateUsage]
+            ctx._refuse("wrote", "writes", self._slot, ctx.rule.writes)  # pyright: ignore[reportPrivateUsage]
+        ctx._alive()  # pyright: ignore[reportPrivateUsage]
+        self._items = ctx._values[self._slot.name]  # pyright: ignore[reportPrivateUsage]
+
+    def _keep(self) -> None:
+        self._ctx._values[self._slot.name] = self._items  # pyright: ignore[reportPrivateUsage]
+
+    def __getitem__(self, key: str) -> V:
+        return self._items[key]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._items)
+
+    def __len__(self) -> int:
+        return len(self._items)
+
+    def __repr__(self) -> str:
+        return f"{self._slot.name}{dict(self._items)!r}"

@@ -1,0 +1,362 @@
+"""The runner drives one engine on an asyncio loop: events in, effects done, one timer."""
+
+from __future__ import annotations
+
+import asyncio
+import functools
+import logging
+import random
+import threading
+from collections.abc import Callable, Mapping
+from time import perf_counter
+from typing import Any
+
+from ravestate.declare.outcome import Resign, Retire
+from ravestate.declare.rule import Rule
+from ravestate.engine.effects import Cancel, Effect, Ended, Failed, Run, Spiked
+from ravestate.engine.engine import Engine
+from ravestate.engine.events import Event, Finish
+from ravestate.errors import RuleError
+from ravestate.runtime.nest import Nest
+from ravestate.runtime.rule_context import RuleContext
+from ravestate.runtime.workers import Workers
+
+__all__ = ["BLOCKING", "Runner"]
+
+BLOCKING = 0.1
+"""Seconds that one step of an async rule may take before a warning names it: nothing else runs meanwhile."""
+
+GRACE = 5.0
+"""Seconds that a cancelled rule has for its cleaning up before its run counts as ended."""
+
+BATCH = 512
+"""Rounds of effects after which the loop gets a turn, so that a busy agent still hears and sees."""
+
+log = logging.getLogger("ravestate")
+
+
+class Runner:
+    """Feeds an engine, and performs what it asks for.
+
+    Args:
+        engine: The engine.
+        loop: The loop on which everything happens.
+        settings: The settings of each module.
+        seed: Of the random numbers that rules use.
+        stop: Called when a rule asks the context to end.
+    """
+
+    def __init__(
+        self,
+        engine: Engine,
+        loop: asyncio.AbstractEventLoop,
+        settings: Mapping[str, Any],
+        seed: int | None,
+        stop: Callable[[], None],
+    ) -> None:
+        self.engine = engine
+        self.loop = loop
+        self.settings = settings
+        self.random = random.Random(seed)
+        self.ask_to_stop = stop
+        self.on_event: Callable[[Event, float], None] | None = None
+        """Told of every event before the engine is: the journal."""
+        self.on_ended: Callable[[Ended], None] | None = None
+        self.on_failed: Callable[[str, BaseException], None] | None = None
+        self.listeners: dict[str, Callable[[Any], None]] = {}
+        """Called with the payload of every spike of a signal, by name; see `listen`."""
+        self.futures: dict[str, list[asyncio.Future[Any]]] = {}
+        """Who waits for the next spike of a signal, by name."""
+        self.workers = Workers()
+        self.threads = 0
+        """Plain functions that are running now."""
+        self._thread = threading.get_ident()
+        self._origin = loop.time()
+        self._scheduled = False
+        self._pumping = False
+        self._timer: asyncio.TimerHandle | None = None
+        self._timer_due = 0.0
+        self._contexts: dict[int, RuleContext] = {}
+        self._tasks: dict[int, asyncio.Task[Any]] = {}
+        self._spare: Nest | None = None
+        self._is_async: dict[Rule[Any, Any], bool] = {}
+        self._quiet: list[asyncio.Future[None]] = []
+        self._closed = False
+
+    # ------------------------------------------------------------------------------------ events in
+
+    def now(self) -> float:
+        """Seconds since the runner was made."""
+        return self.loop.time() - self._origin
+
+    def receive(self, event: Event) -> None:
+        """Give the engine an event; from any thread."""
+        if threading.get_ident() != self._thread:
+            self.loop.call_soon_threadsafe(self._receive_late, event)
+            return
+        if self._closed:
+            return
+        now = self.now()
+        if self.on_event is not None:
+            self.on_event(event, now)
+        self.engine.receive(event, now)
+        if not self._scheduled and not self._pumping:
+            self._scheduled = True
+            self.loop.call_soon(self._pump)
+
+    def _receive_late(self, event: Event) -> None:
+        """What another thread gave; its run may have ended on the way."""
+        run = getattr(event, "run", None)
+        if run is None or run in self._contexts:
+            try:
+                self.receive(event)
+            except Exception:  # nobody stands above us: the designer must see it all the same
+                log.exception("an event from another thread was refused: %s", event)
+
+    # ------------------------------------------------------------------------------------ effects out
+
+    def _pump(self) -> None:
+        self._scheduled = False
+        if self._closed:
+            return
+        engine = self.engine
+        self._pumping = True
+        try:
+            for _ in range(BATCH):
+                effects = engine.effects()
+                if not effects:
+                    break
+                for effect in effects:
+                    self._perform(effect)
+            else:
+                self._scheduled = True
+                self.loop.call_soon(self._pump)
+        finally:
+            self._pumping = False
+        self._arm()
+        if self._quiet and self.is_quiet():
+            for future in self._quiet:
+                if not future.done():
+                    future.set_result(None)
+            self._quiet.clear()
+
+    def _arm(self) -> None:
+        """Set the one timer, unless it is early enough already: waking for nothing is harmless."""
+        due = self.engine.next_deadline()
+        if due is None or (self._timer is not None and self._timer_due <= due):
+            return
+        if self._timer is not None:
+            self._timer.cancel()
+        self._timer_due = due
+        self._timer = self.loop.call_at(self._origin + due, self._wake)
+
+    def _wake(self) -> None:
+        self._timer = None
+        if not self._closed:
+            self.engine.advance(max(self.now(), self._timer_due))
+            self._pump()
+
+    def _perform(self, effect: Effect) -> None:
+        kind = type(effect)
+        if kind is Run:
+            self._run(effect)  # type: ignore[arg-type]  # its type has been looked at
+        elif kind is Spiked:
+            self._tell(effect)  # type: ignore[arg-type]
+        elif isinstance(effect, Ended):
+            if self.on_ended is not None:
+                self.on_ended(effect)
+        elif isinstance(effect, Cancel):
+            self._cancel(effect)
+        elif isinstance(effect, Failed):
+            if self.on_failed is not None:
+                self.on_failed(effect.rule, effect.exception)
+            log.error("rule %s failed: %s", effect.rule, effect.exception, exc_info=effect.exception)
+
+    def listen(self, signal: str, listener: Callable[[Any], None]) -> None:
+        """Have a function called with the payload of every spike of a signal."""
+        self.listeners[signal] = listener
+        self.engine.watched[signal] = 1
+
+    def _tell(self, spiked: Spiked) -> None:
+        listener = self.listeners.get(spiked.signal)
+        if listener is not None:
+            listener(spiked.payload)
+        else:
+            self.engine.watched.pop(spiked.signal, None)
+        for future in self.futures.pop(spiked.signal, ()):
+            if not future.done():
+                future.set_result(spiked.payload)
+
+    # ------------------------------------------------------------------------------------ runs
+
+    def _run(self, effect: Run) -> None:
+        rule = effect.rule
+        ctx = RuleContext(self, effect)
+        self._contexts[effect.run] = ctx
+        is_async = self._is_async.get(rule)
+        if is_async is None:
+            is_async = self._is_async[rule] = _is_async(rule.function)
+        if not is_async:
+            self.threads += 1
+            self.workers.submit(functools.partial(self._work, effect.run, rule, ctx))
+            return
+        nest = self._spare
+        if nest is None:
+            nest = self._spare = Nest(self.loop, self._blocked)
+        began = perf_counter()
+        try:
+            nest.first_step(rule.function(ctx), rule)
+        except StopIteration as stop:
+            self._finish(effect.run, rule, stop.value, None)
+        except BaseException as exception:  # noqa: BLE001  # a rule may raise anything
+            self._finish(effect.run, rule, None, exception)
+            if isinstance(exception, (KeyboardInterrupt, SystemExit)):
+                raise
+        else:
+            self._spare = None
+            self._tasks[effect.run] = nest.task
+            nest.task.add_done_callback(functools.partial(self._task_done, effect.run, rule))
+        self._blocked(rule, perf_counter() - began)
+
+    def _task_done(self, run: int, rule: Rule[Any, Any], task: asyncio.Task[Any]) -> None:
+        self._tasks.pop(run, None)
+        if task.cancelled():
+            self._finish(run, rule, None, asyncio.CancelledError())
+        else:
+            exception = task.exception()
+            self._finish(run, rule, None if exception is not None else task.result(), exception)
+
+    def _work(self, run: int, rule: Rule[Any, Any], ctx: RuleContext) -> None:
+        """In a worker thread: call a plain function."""
+        result, exception = None, None
+        try:
+            result = rule.function(ctx)
+        except BaseException as raised:  # noqa: BLE001  # a rule may raise anything
+            exception = raised
+        try:
+            self.loop.call_soon_threadsafe(self._work_done, run, rule, result, exception)
+        except RuntimeError:
+            pass  # the loop is closed: the context ended while the function ran
+
+    def _work_done(self, run: int, rule: Rule[Any, Any], result: Any, exception: BaseException | None) -> None:
+        self.threads -= 1
+        self._finish(run, rule, result, exception)
+
+    def _finish(self, run: int, rule: Rule[Any, Any], result: Any, exception: BaseException | None) -> None:
+        """Report how a run has ended (L18)."""
+        ctx = self._contexts.pop(run, None)
+        if ctx is None or self._closed:
+            return  # given up before
+        cancelled = bool(ctx.told)
+        ctx.ended = ctx.ended or "the function has returned"
+        told = result if exception is None else exception
+        if told is None or (cancelled and isinstance(told, asyncio.CancelledError)):
+            event = Finish(run, "done")
+        elif isinstance(told, Resign):
+            event = Finish(run, "resigned", told.reason)
+        elif isinstance(told, Retire):
+            event = Finish(run, "retired", told.reason)
+        elif exception is None:
+            nonsense = RuleError(
+                f"rule {rule.name} ({rule.origin}) returned {_short(result)}; a rule returns nothing, rs.Resign(reason) or "
+                "rs.Retire(); write its result to a slot"
+            )
+            event = Finish(run, "failed", str(nonsense), nonsense)
+        else:
+            event = Finish(run, "failed", repr(exception), exception)
+        self.receive(event)
+
+    def _cancel(self, effect: Cancel) -> None:
+        ctx = self._contexts.get(effect.run)
+        if ctx is None:
+            return
+        task = self._tasks.get(effect.run)
+        if task is None:  # a thread cannot be stopped: its run ends now, and it may not act any more
+            ctx.ended = effect.reason
+            del self._contexts[effect.run]
+            self.receive(Finish(effect.run, "done", effect.reason))
+            return
+        ctx.told = effect.reason
+        task.cancel()
+        self.loop.call_later(GRACE, self._give_up, effect.run)
+
+    def _give_up(self, run: int) -> None:
+        """A cancelled rule did not end in time."""
+        ctx = self._contexts.pop(run, None)
+        if ctx is not None and not self._closed:
+            ctx.ended = "it did not end in time"
+            log.warning("rule %s did not end within %g s of being cancelled", ctx.rule.name, GRACE)
+            self.receive(Finish(run, "done", ctx.ended))
+
+    def _blocked(self, rule: Rule[Any, Any], seconds: float) -> None:
+        if seconds > BLOCKING:
+            log.warning(
+                "rule %s (%s) blocked the loop for %.0f ms: make it a plain function (it then runs in a thread), or await "
+                "what takes so long",
+                rule.name,
+                rule.origin,
+                1000 * seconds,
+            )
+
+    # ------------------------------------------------------------------------------------ quiet, and the end
+
+    def is_quiet(self) -> bool:
+        """Whether no rule of the foreground runs or is kept waiting."""
+        engine = self.engine
+        return not engine.waiting and all(run.clause.rule.background for run in engine.running.values())
+
+    async def quiet(self) -> None:
+        """Wait for `is_quiet`."""
+        if self._scheduled or self._pumping or not self.is_quiet():
+            future: asyncio.Future[None] = self.loop.create_future()
+            self._quiet.append(future)
+            self._scheduled = True
+            self.loop.call_soon(self._pump)
+            await future
+
+    async def wait_for_runs(self, since: int, timeout: float) -> None:
+        """Wait, for some seconds at most, for the runs with a number above `since`."""
+        end = self.loop.time() + timeout
+        while any(run > since for run in self._contexts) and self.loop.time() < end:
+            tasks = [task for run, task in self._tasks.items() if run > since]
+            if tasks:
+                await asyncio.wait(tasks, timeout=end - self.loop.time())
+            else:
+                await asyncio.sleep(0.005)
+
+    async def close(self) -> None:
+        """Cancel whatever runs, and let it clean up."""
+        for run, task in list(self._tasks.items()):
+            ctx = self._contexts.get(run)
+            if ctx is not None:
+                ctx.told = "the context has ended"
+            task.cancel()
+        if self._tasks:
+            await asyncio.wait(list(self._tasks.values()), timeout=GRACE)
+        self._closed = True
+        for ctx in self._contexts.values():
+            ctx.ended = "the context has ended"
+        self._contexts.clear()
+        if self._timer is not None:
+            self._timer.cancel()
+        if self._spare is not None:
+            self._spare.close()
+        for futures in self.futures.values():
+            for future in futures:
+                future.cancel()
+        self.workers.close()
+
+
+def _is_async(function: Any) -> bool:
+    import inspect
+
+    while isinstance(function, functools.partial):
+        function = function.func
+    return inspect.iscoroutinefunction(function) or inspect.iscoroutinefunction(
+        getattr(type(function), "__call__", None)
+    )
+
+
+def _short(value: Any) -> str:
+    text = repr(value)
+    return text if len(text) <= 60 else text[:57] + "..."

@@ -1,0 +1,120 @@
+"""Typed settings of modules: pydantic models whose fields may be named in declarations.
+
+This file stands outside of the pure rooms because it needs a third party; ``rs.Settings`` loads it.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+import pydantic
+from pydantic._internal._model_construction import ModelMetaclass
+
+from ravestate.declare.module import Module
+from ravestate.declare.settings import SettingRef
+from ravestate.errors import DeclarationError, DeclarationErrors, nearest
+
+__all__ = ["Settings", "load_settings"]
+
+
+class _SettingsMeta(ModelMetaclass):
+    """Makes ``MySettings.field`` a reference to the setting, for use as an age or a weight."""
+
+    def __getattr__(cls, item: str) -> Any:
+        # Only once the class is complete: pydantic itself looks for defaults while it builds one.
+        if cls.__dict__.get("__pydantic_complete__") and item in cls.__pydantic_fields__:  # type: ignore[attr-defined]  # pydantic's own
+            return SettingRef(item, cls)
+        return super().__getattr__(item)  # type: ignore[misc]  # hidden from type checkers by pydantic
+
+
+class Settings(pydantic.BaseModel, metaclass=_SettingsMeta):
+    """Base of a module's settings: a pydantic model; unknown names are refused.
+
+    Values come, the strongest first, from code (``rs.Context(settings={...})``, ``--set``), from the
+    environment (``RAVESTATE_<MODULE>_<FIELD>``, JSON for anything but text), from the agent's file, and from
+    the defaults.
+
+    Example:
+        >>> import ravestate as rs
+        >>> class Patience(rs.Settings):
+        ...     bored_after: float = 5.0
+        >>> Patience.bored_after
+        Patience.bored_after
+        >>> Patience().bored_after
+        5.0
+    """
+
+    model_config = pydantic.ConfigDict(extra="forbid", frozen=True, validate_default=True)
+
+
+def load_settings(
+    modules: Iterable[Module],
+    given: Mapping[str, Mapping[str, Any] | pydantic.BaseModel] | None = None,
+    environment: Mapping[str, str] | None = None,
+) -> dict[str, Any]:
+    """The settings of each module that has some: given values, then the environment's, then defaults.
+
+    Args:
+        modules: The modules of a policy.
+        given: For each module's name the values of fields, or a ready settings value.
+        environment: Variables; the process's own by default.
+
+    Raises:
+        DeclarationErrors: Every unknown module or field and every value of a wrong type.
+    """
+    given = given or {}
+    variables = os.environ if environment is None else environment
+    faults: list[DeclarationError] = []
+    known = {module.name: module.settings for module in modules if module.settings is not None}
+    names = {module.name for module in modules}
+    for name in given:
+        if name not in known:
+            why = "has no settings" if name in names else "is not part of this agent"
+            faults.append(DeclarationError(f"settings for {name!r}: module {name!r} {why}{nearest(name, known)}"))
+    found: dict[str, Any] = {}
+    for name, model in known.items():
+        values = given.get(name, {})
+        if isinstance(values, pydantic.BaseModel):
+            found[name] = values
+            continue
+        if not isinstance(values, Mapping):
+            faults.append(DeclarationError(f"settings for {name!r} must be fields and values, not {values!r}"))
+            continue
+        try:
+            found[name] = model(**{**_from_environment(name, model, variables), **values})
+        except pydantic.ValidationError as error:
+            faults.extend(_faults(name, model, error))
+    if faults:
+        raise DeclarationErrors(faults)
+    return found
+
+
+def _from_environment(name: str, model: type[pydantic.BaseModel], variables: Mapping[str, str]) -> dict[str, Any]:
+    found: dict[str, Any] = {}
+    for field in model.model_fields:
+        text = variables.get(f"RAVESTATE_{name}_{field}".upper().replace("-", "_"))
+        if text is not None:
+            try:
+                found[field] = json.loads(text)
+            except ValueError:
+                found[field] = text
+            if model.model_fields[field].annotation is str:
+                found[field] = text
+    return found
+
+
+def _faults(name: str, model: type[pydantic.BaseModel], error: pydantic.ValidationError) -> Iterable[DeclarationError]:
+    for detail in error.errors():
+        field = ".".join(str(part) for part in detail["loc"])
+        if detail["type"] == "extra_forbidden":
+            yield DeclarationError(
+                f"setting {name}.{field}: module {name!r} has no such setting{nearest(field, model.model_fields)}"
+            )
+        else:
+            # The value itself may be a secret: it is shown only when the field is not one.
+            annotation = str(model.model_fields[field].annotation) if field in model.model_fields else ""
+            value = "" if "Secret" in annotation else f" = {detail['input']!r}"
+            yield DeclarationError(f"setting {name}.{field}{value}: {detail['msg']}")

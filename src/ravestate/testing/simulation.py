@@ -1,0 +1,179 @@
+"""Simulated contexts: the real runtime, in virtual time."""
+
+from __future__ import annotations
+
+import asyncio
+from collections import deque
+from collections.abc import Mapping
+from types import ModuleType, TracebackType
+from typing import Any, TypeVar
+
+from ravestate.declare.module import Module
+from ravestate.declare.rule import Rule
+from ravestate.declare.signal import Signal
+from ravestate.declare.slot import Slot
+from ravestate.engine.effects import Ended
+from ravestate.engine.engine import DEFAULT_PATIENCE
+from ravestate.engine.explain import Explanation
+from ravestate.engine.trace import Record
+from ravestate.errors import EngineError
+from ravestate.policy.policy import Policy
+from ravestate.runtime.context import Context
+from ravestate.testing.virtual_loop import VirtualLoop
+
+__all__ = ["Simulation", "simulate"]
+
+T = TypeVar("T")
+
+OUTPUT = "rawio:output:changed"
+
+
+class Simulation:
+    """A context in virtual time. Made by `simulate`; use it as a context manager.
+
+    Attributes:
+        context: The context, for what has no short cut here.
+        said: What was written to ``rawio.output``, in order.
+        fired: The rules that ran and did not resign, in the order in which they finished.
+        failures: What rules failed with: (name of the rule, exception).
+    """
+
+    def __init__(self, context: Context) -> None:
+        self.context = context
+        self.said: list[str] = []
+        self.fired: list[str] = []
+        self.failures: list[tuple[str, BaseException]] = []
+        self._loop: VirtualLoop | None = None
+
+    def __enter__(self) -> Simulation:
+        try:
+            asyncio.get_running_loop()
+        except RuntimeError:
+            pass
+        else:
+            raise EngineError("simulate runs a loop of its own: use it in a plain function, not in an async one")
+        loop = self._loop = VirtualLoop()
+        self.context._on_ended = self._ended  # pyright: ignore[reportPrivateUsage]  # a friend of the context
+        loop.run_until_complete(self.context.__aenter__())
+        runner = self.context._runner  # pyright: ignore[reportPrivateUsage]
+        assert runner is not None  # entering makes it
+        runner.on_failed = lambda rule, exception: self.failures.append((rule, exception))
+        if OUTPUT in self.context.policy.signals:
+            runner.listen(OUTPUT, self.said.append)
+        loop.busy = lambda: runner.threads > 0
+        self.settle()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
+    ) -> None:
+        loop = self._running()
+        try:
+            loop.run_until_complete(self.context.stop())
+            loop.run_until_complete(loop.shutdown_asyncgens())
+        finally:
+            loop.close()
+
+    def say(self, text: str) -> None:
+        """The user says something: `put` of ``rawio.input``."""
+        from ravestate.modules import rawio
+
+        self.put(rawio.input, text)
+
+    def put(self, slot: Slot[T], value: T) -> None:
+        """Write a slot from outside, and settle."""
+        self.context.put(slot, value)
+        self.settle()
+
+    def emit(self, signal: Signal[T], payload: T | None = None) -> None:
+        """Raise a signal from outside, and settle."""
+        self.context.emit(signal, payload)
+        self.settle()
+
+    def wipe(self, signal: Signal[Any]) -> None:
+        """Withdraw a signal's spikes and all that they have caused, and settle."""
+        self.context.wipe(signal)
+        self.settle()
+
+    def add_rule(self, rule: Rule[Any, Any]) -> None:
+        """Add a rule to this context, and settle."""
+        self.context.add_rule(rule)
+        self.settle()
+
+    def advance(self, seconds: float) -> None:
+        """Let virtual time pass; settles before and after."""
+        if seconds < 0:
+            raise ValueError(f"advance({seconds!r}): time does not run backwards")
+        loop = self._running()
+        self.settle()
+        loop.run_to(loop.time() + seconds)
+
+    def settle(self) -> None:
+        """Do all that can be done at this moment."""
+        loop = self._running()
+        loop.run_to(loop.time())
+
+    @property
+    def now(self) -> float:
+        """Virtual seconds since the context began."""
+        return self.context.now
+
+    @property
+    def trace(self) -> deque[Record]:
+        """What has happened; empty with ``trace=False``."""
+        return self.context.trace
+
+    def read(self, slot: Slot[T]) -> T:
+        """The present value of a slot."""
+        return self.context.read(slot)
+
+    def explain(self, rule: str | Rule[Any, Any]) -> Explanation:
+        """Why a rule runs, waits, or did not fire."""
+        return self.context.explain(rule)
+
+    def snapshot(self) -> dict[str, Any]:
+        """Everything that is alive, as plain data."""
+        return self.context.snapshot()
+
+    def _ended(self, ended: Ended) -> None:
+        if ended.fired:
+            self.fired.append(ended.rule)
+
+    def _running(self) -> VirtualLoop:
+        if self._loop is None:
+            raise EngineError("the simulation has not begun: write `with simulate(...) as sim:`")
+        return self._loop
+
+
+def simulate(
+    *modules: Module | ModuleType | Policy,
+    settings: Mapping[str, Any] | None = None,
+    seed: int | None = 0,
+    patience: float = DEFAULT_PATIENCE,
+    trace: bool = True,
+) -> Simulation:
+    """Run modules in virtual time: no real waiting, the same result every time.
+
+    Args:
+        modules: As for `Context`.
+        settings: As for `Context`.
+        seed: Of random choices; fixed, so that tests repeat.
+        patience: As for `Context` (seconds).
+        trace: Whether to keep what happens.
+
+    Example:
+        >>> import ravestate as rs
+        >>> from ravestate.testing import simulate
+        >>> door = rs.Module("door")
+        >>> bell, opened = door.signal("bell"), door.flag("opened")
+        >>> @door.rule(when=bell, writes=opened)
+        ... async def open_up(ctx):
+        ...     await ctx.sleep(3.0)
+        ...     ctx[opened] = True
+        >>> with simulate(door) as sim:
+        ...     sim.emit(bell)
+        ...     sim.advance(3.0)
+        ...     sim.read(opened), sim.fired, sim.now
+        (True, ['door:open_up'], 3.0)
+    """
+    return Simulation(Context(*modules, settings=settings, seed=seed, patience=patience, trace=trace))
