@@ -868,7 +868,7 @@ class Engine:
         for group in activation.interests:
             group.interested[activation] = None
         if changed and self.tracer is not None:
-            until = None if activation.blockers else self.patience_of_rivals(activation, names)
+            until = None if activation.blockers else self.patience_of_rivals(activation)
             self.tracer(trace.Waits(self.now, activation.id, activation.clause.rule.name, names, until))
 
     def _lose_interest(self, activation: Activation) -> None:
@@ -878,8 +878,9 @@ class Engine:
             group.root().interested.pop(activation, None)
         activation.interests = ()
 
-    def patience_of_rivals(self, activation: Activation, names: tuple[str, ...]) -> float | None:
-        """Until when, at the latest, its rivals have patience."""
+    def patience_of_rivals(self, activation: Activation) -> float | None:
+        """Until when, at the latest, the rivals that a waiting activation waits for have patience (seconds)."""
+        names = activation.waits_for
         times: list[float] = []
         for group in activation.firm_groups():
             times += [m.pressed for m in group.members if m.clause.rule.name in names and m.pressed != NEVER]

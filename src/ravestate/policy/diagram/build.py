@@ -54,7 +54,9 @@ class _Builder:
                 self.edge(end, target, "condition")
             for term in clause:
                 detached = isinstance(term, Constraint) and term.is_detached
-                self.edge(self.term(term), end, "condition_detached" if detached else "condition", _label(term))
+                self.edge(
+                    self.term(term), end, "condition_detached" if detached else "condition", _label(term)
+                )
         for clause in normal_form(rule.until) if rule.until is not None else ():
             for term in (*clause.constraints, *clause.guards):
                 self.edge(self.term(term), name, "condition_detached", f"until {_label(term)}".rstrip())
@@ -66,7 +68,11 @@ class _Builder:
             self.edge(name, self.signal(signal.name), "emits_detached" if rule.detached else "emits")
 
     def term(self, term: Constraint | Holds) -> str:
-        return self.signal(term.signal.name) if isinstance(term, Constraint) else self.named("slot", term.slot.name)
+        return (
+            self.signal(term.signal.name)
+            if isinstance(term, Constraint)
+            else self.named("slot", term.slot.name)
+        )
 
     def signal(self, name: str) -> str:
         owner = name.rpartition(":")[0]
@@ -108,7 +114,10 @@ def _note(rule: Rule[Any, Any]) -> str:
 def _label(term: Constraint | Holds) -> str:
     if isinstance(term, Holds):
         return f"holds {_title(term.predicate)}"
-    words = [_ages(term.min_age_, term.max_age_), *(f"where {_title(predicate)}" for predicate in term.predicates)]
+    words = [
+        _ages(term.min_age_, term.max_age_),
+        *(f"where {_title(predicate)}" for predicate in term.predicates),
+    ]
     return ", ".join(word for word in words if word)
 
 

@@ -8,6 +8,7 @@ of its four places. Alignment is of ports, not of middles, so that a line betwee
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import pairwise
 
 from ravestate.policy.diagram.layered import Layered
 
@@ -26,10 +27,8 @@ def separation(graph: Layered, upper: int, lower: int) -> float:
 def middles(graph: Layered) -> list[float]:
     """The vertical middle of each vertex in pixels; the least upper border is 0."""
     crossed = _forbidden(graph)
-    found: list[list[float]] = []
-    for from_left in (True, False):
-        for downwards in (True, False):
-            found.append(_aligned(graph, crossed, from_left, downwards))
+    ways = ((True, True), (True, False), (False, True), (False, False))
+    found = [_aligned(graph, crossed, from_left, downwards) for from_left, downwards in ways]
     spans = [max(ys) - min(ys) for ys in found]
     narrow = found[spans.index(min(spans))]
     for i, ys in enumerate(found):
@@ -108,7 +107,7 @@ def _packed(
     lower: list[list[tuple[int, float]]] = [[] for _ in range(count)]
     upper: list[list[tuple[int, float]]] = [[] for _ in range(count)]
     for layer in order:
-        for u, v in zip(layer, layer[1:], strict=False):
+        for u, v in pairwise(layer):
             gap = separation(graph, u, v) + shift[u] - shift[v]
             lower[root[u]].append((root[v], gap))
             upper[root[v]].append((root[u], gap))

@@ -8,6 +8,7 @@ depth first in the order of declaration, which keeps what is declared together t
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import pairwise
 
 from ravestate.policy.diagram.layered import Layered
 
@@ -21,23 +22,21 @@ def arrange(graph: Layered) -> None:
     """Reorder the layers of `graph` in place."""
     before, after = graph.neighbours()
     sweeps = max(4, min(24, _WORK // (1 + len(graph.segments))))
-    best: list[list[int]] | None = None
-    least = -1
+    best = graph.order
+    least = crossings(best, after) + 1  # so that a start is preferred to the order of making
     for downwards in (True, False):
-        order = _start(graph, before, after, downwards)
-        order, crossed = _sweep(order, before, after, sweeps)
-        if best is None or crossed < least:
+        order, crossed = _sweep(_start(graph, before, after, downwards), before, after, sweeps)
+        if crossed < least:
             best, least = order, crossed
         if not least:
             break
-    if best is not None:
-        graph.order = best
+    graph.order = best
 
 
 def crossings(order: Sequence[Sequence[int]], after: Sequence[Sequence[int]]) -> int:
     """Count the pairs of segments that cross, given for each vertex its neighbours in the next layer."""
     total = 0
-    for layer, following in zip(order, order[1:], strict=False):
+    for layer, following in pairwise(order):
         place = {v: i for i, v in enumerate(following)}
         size = len(following) + 1
         tree = [0] * size  # Fenwick: how many segments seen so far end at or before a place
@@ -108,7 +107,9 @@ def _sweep(
     return best, least
 
 
-def _by_barycentre(layer: list[int], neighbours: Sequence[Sequence[int]], place: list[int], flip: bool) -> None:
+def _by_barycentre(
+    layer: list[int], neighbours: Sequence[Sequence[int]], place: list[int], flip: bool
+) -> None:
     """Sort by the mean place of the neighbours; who has none stays. Equals swap when `flip`."""
     moving = [(sum(place[w] for w in neighbours[v]) / len(neighbours[v]), v) for v in layer if neighbours[v]]
     if flip:

@@ -30,9 +30,7 @@ def dot(diagram: Diagram) -> str:
     """Write a diagram in the DOT language. Names may hold any characters."""
     ids = {node.id: f"n{i}" for i, node in enumerate(diagram.nodes)}
     lines = ['digraph "Signal-Rule-Slot diagram" {', *_legend()]
-    lines.append(
-        '  graph [rankdir=LR, charset="UTF-8", fontname="Helvetica", nodesep=0.25, ranksep=0.45];'
-    )
+    lines.append('  graph [rankdir=LR, charset="UTF-8", fontname="Helvetica", nodesep=0.25, ranksep=0.45];')
     lines.append(f'  node [fontname="Helvetica", fontsize=12, fontcolor="{TEXT.light}"];')
     lines.append(f'  edge [fontname="Helvetica", fontsize=9, fontcolor="{TEXT.light}", arrowsize=0.8];')
     for node in diagram.nodes:

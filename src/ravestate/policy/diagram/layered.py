@@ -35,10 +35,11 @@ class Link:
 
 @dataclass(slots=True)
 class Port:
-    """Where lines touch a vertex: `right` or left side, `offset` pixels below its middle."""
+    """Where lines touch a vertex: `right` or left side, entering or leaving, `offset` pixels below its middle."""
 
     vertex: int
     right: bool
+    enters: bool
     offset: float = 0.0
 
 
@@ -127,12 +128,12 @@ class _Builder:
         graph.height.append(height)
         return len(graph.layer) - 1
 
-    def port(self, vertex: int, right: bool, key: object = None) -> int:
+    def port(self, vertex: int, right: bool, key: tuple[EdgeKind, bool] | None = None) -> int:
         whole = (vertex, right, key)
         found = self.ports.get(whole)
         if found is None:
             found = self.ports[whole] = len(self.graph.ports)
-            self.graph.ports.append(Port(vertex, right))
+            self.graph.ports.append(Port(vertex, right, enters=key is not None and key[1] == right))
         return found
 
     def link(self, link: Link, first: int, last: int, share_low: bool) -> None:

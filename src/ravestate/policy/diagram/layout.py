@@ -33,7 +33,7 @@ _BETWEEN = 36.0  # pixels between parts
 _ASPECT = 1.6  # wished width : height of packed parts
 
 _STRENGTH: dict[EdgeKind, int] = {
-    "writes": 4 * STRONG,
+    "writes": 3 * STRONG,
     "emits": 4 * STRONG,
     "condition": 4 * STRONG,
     "emits_detached": 1,
@@ -149,8 +149,8 @@ def _lay_out_part(
     index = {name: i for i, name in enumerate(ids)}
     edges = [diagram.edges[number] for number in numbers]
     ends = [(index[edge.source], index[edge.target]) for edge in edges]
-    kinds = {node.id: node.kind for node in diagram.nodes}
-    turned = backward(len(ids), [(u, v, _strength(e, kinds)) for (u, v), e in zip(ends, edges, strict=True)])
+    kinds: dict[str, NodeKind] = {node.id: node.kind for node in diagram.nodes}
+    turned = backward(len(ids), [(u, v, _STRENGTH[e.kind]) for (u, v), e in zip(ends, edges, strict=True)])
     links = [
         Link(v if turn else u, u if turn else v, edge.kind, turn, labels[number])
         for (u, v), edge, turn, number in zip(ends, edges, turned, numbers, strict=True)
@@ -178,12 +178,6 @@ def _lay_out_part(
         max(box.x + box.width for box in boxes),
         max(box.y + box.height for box in boxes),
     )
-
-
-def _strength(edge: Edge, kinds: Mapping[str, NodeKind]) -> int:
-    """How much it takes to turn an edge round; a slot that gates a rule is read by it, so to speak."""
-    gates = edge.kind == "condition" and kinds[edge.source] == "slot"
-    return _STRENGTH["reads" if gates else edge.kind]
 
 
 def _tightness(edge: Edge, kinds: Mapping[str, NodeKind]) -> int:

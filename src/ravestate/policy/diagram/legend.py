@@ -45,7 +45,9 @@ def legend(x: float, y: float, room: float, prefix: str) -> Legend:
         if at > 0 and at + whole > room:
             at, row = 0.0, row + 1
         left, middle = x + at, y + row * _ROW + _ROW / 2
-        found.append(f'<g>{_sample(kind, left, middle, sample, prefix)}<text class="srs-small" x="{number(left + sample + 7.0)}" y="{number(middle + 3.6)}">{words}</text></g>')
+        found.append(
+            f'<g>{_sample(kind, left, middle, sample, prefix)}<text class="srs-small" x="{number(left + sample + 7.0)}" y="{number(middle + 3.6)}">{words}</text></g>'
+        )
         at += whole
         widest = max(widest, at)
         at += _GAP

@@ -87,5 +87,6 @@ def _words(edge: Edge) -> str:
 def _escaped(text: str) -> str:
     """Write all that might mean something to Mermaid, Markdown or HTML as Mermaid's numeric entities."""
     return "".join(
-        character if character.isalnum() or character in _PLAIN else f"#{ord(character)};" for character in clean(text)
+        character if character.isalnum() or character in _PLAIN else f"#{ord(character)};"
+        for character in clean(text)
     )

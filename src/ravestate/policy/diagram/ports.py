@@ -8,7 +8,7 @@ __all__ = ["place_ports"]
 
 _PITCH = 10.0  # pixels between ports of one side, where there is room
 _MARGIN = 10.0  # pixels from the first and last port to the corner, which may be round
-_LEAST = 3.0  # pixels between ports, below which there is no room for several
+_LEAST = 3.0  # pixels between ports: where there is less room, all meet, but for lines that run the other way
 
 
 def place_ports(graph: Layered) -> None:
@@ -29,7 +29,10 @@ def place_ports(graph: Layered) -> None:
             continue
         numbers.sort(key=lambda number: (sum(leads[number]) / len(leads[number]), number))
         pitch = min(_PITCH, (graph.height[vertex] - 2 * _MARGIN) / (len(numbers) - 1))
-        if pitch < _LEAST:
-            continue  # all meet in the middle
-        for i, number in enumerate(numbers):
-            graph.ports[number].offset = round(pitch * (i - (len(numbers) - 1) / 2), 2)
+        if pitch >= _LEAST:
+            for i, number in enumerate(numbers):
+                graph.ports[number].offset = round(pitch * (i - (len(numbers) - 1) / 2), 2)
+        elif len({graph.ports[number].enters for number in numbers}) > 1:
+            first = graph.ports[numbers[0]].enters
+            for number in numbers:
+                graph.ports[number].offset = -_LEAST if graph.ports[number].enters == first else _LEAST

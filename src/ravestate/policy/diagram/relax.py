@@ -8,6 +8,7 @@ this is far more compact than alignment, which pays for straight lines with empt
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import pairwise
 
 from ravestate.policy.diagram.coordinates import separation
 from ravestate.policy.diagram.layered import Layered
@@ -23,12 +24,14 @@ def relaxed(graph: Layered, airy: float) -> list[float]:
     gaps: list[list[float]] = []
     middle = [0.0] * len(graph.layer)
     for layer in graph.order:
-        gaps.append([airy * separation(graph, u, v) for u, v in zip(layer, layer[1:], strict=False)])
+        gaps.append([airy * separation(graph, u, v) for u, v in pairwise(layer)])
         y = -sum(gaps[-1]) / 2
         for v, gap in zip(layer, [*gaps[-1], 0.0], strict=True):
             middle[v] = y
             y += gap
-    before: list[list[tuple[int, float, float]]] = [[] for _ in middle]  # neighbour, its port against ours, weight
+    before: list[list[tuple[int, float, float]]] = [
+        [] for _ in middle
+    ]  # neighbour, its port against ours, weight
     after: list[list[tuple[int, float, float]]] = [[] for _ in middle]
     for low, high in graph.segments:
         p, q = graph.ports[low], graph.ports[high]
@@ -47,7 +50,9 @@ def relaxed(graph: Layered, airy: float) -> list[float]:
                 pulls += [(w, offset, weight * (ahead if forward else 1.0)) for w, offset, weight in after[v]]
                 total = sum(weight for _, _, weight in pulls)
                 wishes.append(
-                    sum((middle[w] + offset) * weight for w, offset, weight in pulls) / total if pulls else middle[v]
+                    sum((middle[w] + offset) * weight for w, offset, weight in pulls) / total
+                    if pulls
+                    else middle[v]
                 )
                 weights.append(total if pulls else 0.01)
             for v, y in zip(layer, _isotonic(wishes, weights, gaps[at]), strict=True):

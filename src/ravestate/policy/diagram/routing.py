@@ -59,7 +59,11 @@ def _segment(graph: Layered, middle: Sequence[float], number: int) -> Segment:
 
 
 def _line(
-    graph: Layered, chain: Chain, across: Sequence[float], middle: Sequence[float], turns: Sequence[float | None]
+    graph: Layered,
+    chain: Chain,
+    across: Sequence[float],
+    middle: Sequence[float],
+    turns: Sequence[float | None],
 ) -> list[Point]:
     points: list[Point] = []
     for number in chain:

@@ -28,9 +28,7 @@ def outline(kind: NodeKind, box: Box) -> str:
     x, y, w, h = (number(value) for value in (box.x, box.y, box.width, box.height))
     middle_x, middle_y = box.x + box.width / 2, box.y + box.height / 2
     if kind == "slot":
-        bars = "".join(
-            f"M{number(at)} {y}v{h}" for at in (box.x + 5.0, box.x + box.width - 5.0)
-        )
+        bars = "".join(f"M{number(at)} {y}v{h}" for at in (box.x + 5.0, box.x + box.width - 5.0))
         return f'<rect class="srs-slot" x="{x}" y="{y}" width="{w}" height="{h}"/><path class="srs-slot" d="{bars}"/>'
     if kind == "signal":
         corner = number(min(_CORNER, box.height / 2))

@@ -183,7 +183,8 @@ class _Simplex:
         top = child  # the lowest vertex above both ends of both arcs
         u, v, _, _ = self.arcs[entering]
         while not (
-            self.low[top] <= self.number[u] <= self.number[top] and self.low[top] <= self.number[v] <= self.number[top]
+            self.low[top] <= self.number[u] <= self.number[top]
+            and self.low[top] <= self.number[v] <= self.number[top]
         ):
             a, b, _, _ = self.arcs[self.parent[top]]
             top = b if a == top else a

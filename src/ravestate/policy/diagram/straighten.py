@@ -6,6 +6,8 @@ together, into free space only, where that straightens a line and makes no other
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 from ravestate.policy.diagram.coordinates import separation
 from ravestate.policy.diagram.layered import Layered
 
@@ -28,7 +30,7 @@ class _Straightener:
         self.above = [-1] * len(middle)
         self.below = [-1] * len(middle)
         for layer in graph.order:
-            for u, v in zip(layer, layer[1:], strict=False):
+            for u, v in pairwise(layer):
                 self.above[v], self.below[u] = u, v
         self.lines: list[list[tuple[int, float]]] = [[] for _ in middle]  # (neighbour, its port against ours)
         for low, high in graph.segments:
@@ -52,7 +54,11 @@ class _Straightener:
                 if abs(step) < _LEVEL:
                     continue
                 u, v = graph.ends(segment)
-                choices = [(gain, block, by) for block, by in ((u, step), (v, -step)) if (gain := self.gain(block, by)) > 0]
+                choices = [
+                    (gain, block, by)
+                    for block, by in ((u, step), (v, -step))
+                    if (gain := self.gain(block, by)) > 0
+                ]
                 if choices:
                     _, vertex, by = max(choices, key=lambda choice: choice[0])
                     for member in self.members[self.block[vertex]]:

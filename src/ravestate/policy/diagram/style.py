@@ -70,7 +70,12 @@ def stylesheet() -> str:
         (".srs .srs-small", "fill", _FAINT, "font-size:10.5px"),
         (".srs .srs-label", "fill", TEXT, "font-size:10.5px"),
         (".srs .srs-line", "stroke", Paint("#d5dae0", "#39424c"), "fill:none"),
-        (".srs .srs-sign", "stroke", TEXT, "fill:none;stroke-width:1.8;stroke-linecap:round;stroke-linejoin:round"),
+        (
+            ".srs .srs-sign",
+            "stroke",
+            TEXT,
+            "fill:none;stroke-width:1.8;stroke-linecap:round;stroke-linejoin:round",
+        ),
     ]
     for node, (fill, stroke) in NODE_COLOURS.items():
         rules.append((f".srs .srs-{node}", "fill", fill, ""))
@@ -85,7 +90,10 @@ def stylesheet() -> str:
         rules.append((f".srs .srs-{name}-head", "stroke", style.paint, extra))
         if fill:
             rules.append((f".srs .srs-{name}-head", "fill", fill, ""))
-    light = [f"{selector}{{{what}:{paint.light}{';' + more if more else ''}}}" for selector, what, paint, more in rules]
+    light = [
+        f"{selector}{{{what}:{paint.light}{';' + more if more else ''}}}"
+        for selector, what, paint, more in rules
+    ]
     dark = [f"{selector}{{{what}:{paint.dark}}}" for selector, what, paint, _ in rules]
     return "\n".join([*light, "@media (prefers-color-scheme:dark){", *dark, "}"])
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import zlib
-from xml.sax.saxutils import escape
+import hashlib
+import html
 
 from ravestate.policy.diagram.graph import Diagram, Edge, Node, NodeKind
 from ravestate.policy.diagram.layout import Box, lay_out
@@ -33,8 +33,10 @@ def svg(diagram: Diagram) -> str:
         An XML document (UTF-8 when encoded), with a title and a description for screen readers, and a
         title for every node and edge.
     """
-    layout = lay_out(diagram, {n.id: node_size(n) for n in diagram.nodes}, [label_size(e.label) for e in diagram.edges])
-    prefix = f"srs-{zlib.crc32(repr(diagram).encode('utf-8', 'backslashreplace')):08x}"
+    layout = lay_out(
+        diagram, {n.id: node_size(n) for n in diagram.nodes}, [label_size(e.label) for e in diagram.edges]
+    )
+    prefix = "srs-" + hashlib.sha256(repr(diagram).encode("utf-8", "backslashreplace")).hexdigest()[:8]
     nodes = {node.id: node for node in diagram.nodes}
     top = _MARGIN + layout.height + (28.0 if diagram.nodes else 0.0)
     key = legend(_MARGIN, top, max(layout.width, NARROWEST), prefix)
@@ -52,7 +54,9 @@ def svg(diagram: Diagram) -> str:
         f'<g class="srs-edges" transform="translate({number(_MARGIN)} {number(_MARGIN)})">',
     ]
     for edge, points in zip(diagram.edges, layout.lines, strict=True):
-        drawn.append(f"<g><title>{_text(_sentence(edge, nodes))}</title>{line(edge.kind, points, prefix)}</g>")
+        drawn.append(
+            f"<g><title>{_text(_sentence(edge, nodes))}</title>{line(edge.kind, points, prefix)}</g>"
+        )
     drawn.append("</g>")
     drawn.append(f'<g class="srs-nodes" transform="translate({number(_MARGIN)} {number(_MARGIN)})">')
     for edge, box in zip(diagram.edges, layout.labels, strict=True):
@@ -61,7 +65,9 @@ def svg(diagram: Diagram) -> str:
     drawn.extend(_node(node, layout.boxes[node.id]) for node in diagram.nodes)
     drawn.append("</g>")
     if diagram.nodes:
-        drawn.append(f'<path class="srs-line" d="M{number(_MARGIN)} {number(top - 10.0)}H{number(width - _MARGIN)}"/>')
+        drawn.append(
+            f'<path class="srs-line" d="M{number(_MARGIN)} {number(top - 10.0)}H{number(width - _MARGIN)}"/>'
+        )
     drawn.append(f'<g class="srs-legend" aria-label="legend">{key.elements}</g>')
     drawn.append("</svg>")
     return "\n".join(drawn) + "\n"
@@ -73,11 +79,17 @@ def _node(node: Node, box: Box) -> str:
     if node.kind not in JUNCTIONS:
         y = box.y + 18.5
         if node.module:
-            texts.append(f'<text class="srs-small" text-anchor="middle" x="{middle}" y="{number(y - 4.0)}">{_text(shown(node.module, SMALL))}</text>')
+            texts.append(
+                f'<text class="srs-small" text-anchor="middle" x="{middle}" y="{number(y - 4.0)}">{_text(shown(node.module, SMALL))}</text>'
+            )
             y += 11.0
-        texts.append(f'<text text-anchor="middle" x="{middle}" y="{number(y)}">{_text(shown(node.label, NAME))}</text>')
+        texts.append(
+            f'<text text-anchor="middle" x="{middle}" y="{number(y)}">{_text(shown(node.label, NAME))}</text>'
+        )
         if node.note:
-            texts.append(f'<text class="srs-small" text-anchor="middle" x="{middle}" y="{number(y + 13.0)}">{_text(shown(node.note, SMALL))}</text>')
+            texts.append(
+                f'<text class="srs-small" text-anchor="middle" x="{middle}" y="{number(y + 13.0)}">{_text(shown(node.note, SMALL))}</text>'
+            )
     return f"<g><title>{_text(describe(node))}</title>{outline(node.kind, box)}{''.join(texts)}</g>"
 
 
@@ -116,4 +128,4 @@ def _description(diagram: Diagram, nodes: dict[str, Node]) -> str:
 
 
 def _text(text: str) -> str:
-    return escape(clean(text))
+    return html.escape(clean(text), quote=False)
