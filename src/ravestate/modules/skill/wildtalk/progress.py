@@ -1,0 +1,79 @@
+"""A progress bar on standard error, for what takes long."""
+
+from __future__ import annotations
+
+import sys
+import time
+from types import TracebackType
+from typing import Any, TextIO
+
+__all__ = ["ProgressBar"]
+
+
+class ProgressBar:
+    """Shows how far something is, once it has taken `delay` seconds, and only to a person.
+
+    On a terminal it is a bar of tqdm. Where something else owns the terminal (a prompt that redirects standard
+    error and prints it line by line), it is a line for each quarter. Elsewhere it is nothing.
+
+    Example:
+        ::
+
+            with ProgressBar("Loading the language model") as bar:
+                await backend.load(bar)
+    """
+
+    def __init__(self, label: str, *, delay: float = 1.0, stream: TextIO | None = None) -> None:
+        """`stream`: where to show it, by default standard error as it is at the first call."""
+        self._label = label
+        self._delay = delay
+        self._stream = stream
+        self._began = time.monotonic()
+        self._quarter = 0
+        self._bar: Any = None
+
+    def __call__(self, fraction: float) -> None:
+        """Show that `fraction` (0.0 to 1.0) is done."""
+        stream = self._stream or sys.stderr
+        if stream is None or not stream.isatty():
+            return
+        if time.monotonic() - self._began < self._delay:
+            return
+        if self._stream is None and stream is not sys.__stderr__:
+            quarter = int(fraction * 4)
+            if quarter > self._quarter:
+                stream.write(f"{self._label}: {quarter * 25} %\n")
+                self._quarter = quarter
+            return
+        if self._bar is None:
+            if fraction >= 1.0:
+                return
+            try:
+                from tqdm import tqdm
+            except ImportError:
+                return
+            self._bar = tqdm(
+                total=100,
+                desc=self._label,
+                file=stream,
+                leave=False,
+                bar_format="{desc}: {bar} {percentage:3.0f} %",
+            )
+        self._bar.update(round(100 * fraction) - self._bar.n)
+
+    def close(self) -> None:
+        """Remove the bar."""
+        if self._bar is not None:
+            self._bar.close()
+            self._bar = None
+
+    def __enter__(self) -> ProgressBar:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.close()

@@ -1,0 +1,131 @@
+"""Makes what a model writes into what an agent says, while it is being written."""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+
+from ravestate.modules._text import without_controls
+
+__all__ = ["Utterance"]
+
+# Where a model goes on with the conversation by itself, or shows the marks of its template.
+_ROLES = ("User", "Human", "Assistant", "System", "Bot", "AI")
+_MARKS = r"<\|[^|<>\n]{1,16}\|>|</?s>|\[/?INST\]|<(?:start|end)_of_turn>|^\#{2,4}\s"
+# How the end of a text may go on: as a mark, or as the beginning of a sentence.
+_BEGUN = re.compile(r"(?:<[|/]?[^|<>\n]{0,16}\|?|\[/?[INST]{0,4}|^\#{1,4}|[\"“‘(\[]+)\Z", re.MULTILINE)
+# What is no word, such as an emoji, belongs to the sentence before it.
+_SENTENCE_END = re.compile(r"[.!?…。！？]+[\"”’)\]]*(?:\s+[^\w\s\"“‘(\[]+)*\s+(?=[\"“‘(\[]?\w)")
+_ABBREVIATION = re.compile(r"\b(?:Mr|Mrs|Ms|Dr|Prof|St|vs|e\.g|i\.e|etc|[A-Z])\.\s*\Z")
+_QUOTES = '"“”«»'
+
+
+class Utterance:
+    """Takes pieces of a model's output; gives the part of it that may be said.
+
+    It leaves out what the model thinks aloud, its own name in front, quotation marks around all of it and
+    control characters; white space becomes single spaces. It is `complete`, and takes no more, after
+    `sentences` sentences, and where the model begins to speak for somebody else.
+
+    However the output is cut into pieces, the same is said. To that end it holds back an end that may yet turn
+    out to be a mark.
+
+    Example:
+        >>> utterance = Utterance("Rosie")
+        >>> [utterance.feed(piece) for piece in ("Rosie: Hel", "lo, ", "who is there? Us", "er: I")]
+        ['Hel', 'lo,', ' who is there?', '']
+        >>> utterance.complete, utterance.text
+        (True, 'Hello, who is there?')
+    """
+
+    def __init__(self, name: str = "Ravestate", *, sentences: int = 2) -> None:
+        """`name`: the agent's own; `sentences`: at most so many, at least 1."""
+        if sentences < 1:
+            raise ValueError(f"sentences must be at least 1, not {sentences}")
+        self._names = tuple(f"{n}:" for n in (name, *_ROLES) if n)
+        names = "|".join(re.escape(n) for n in self._names)
+        own = "|".join(re.escape(n) for n in (name, "Assistant", "AI", "Bot") if n)
+        self._front = re.compile(rf"[\s{_QUOTES}]*(?:(?:{own}):[\s{_QUOTES}]*)?")
+        self._mark = re.compile(rf"(?:^|(?<=\s))(?:{names})|{_MARKS}", re.MULTILINE)
+        self._sentences = sentences
+        self._written = ""
+        self._said = ""
+        self.complete = False
+
+    @property
+    def text(self) -> str:
+        """What has been said so far."""
+        return self._said
+
+    def feed(self, piece: str) -> str:
+        """Take the next piece; return what may be said now."""
+        if self.complete:
+            return ""
+        self._written += without_controls(piece)
+        return self._say(last=False)
+
+    def finish(self) -> str:
+        """The model has ended: return what was held back."""
+        rest = "" if self.complete else self._say(last=True)
+        self.complete = True
+        return rest
+
+    def worth_saying(self) -> bool:
+        """Whether there is anything in it but punctuation."""
+        return any(unicodedata.category(character)[0] not in "PZC" for character in self._said)
+
+    # ------------------------------------------------------------------------------- internals
+
+    def _say(self, *, last: bool) -> str:
+        text = self._written
+        # Of whatever begins before `sure` it is known what it is.
+        sure = len(text) if last else self._sure(text)
+        start = self._past_thoughts(text)
+        if start > sure:
+            return ""
+        front = self._front.match(text, start)  # may yet grow, but then `sure` is before it
+        assert front is not None  # it matches the empty string
+        start, quoted = front.end(), any(mark in front[0] for mark in _QUOTES)
+        cut = self._cut(text, start)
+        if cut is not None and cut <= sure:
+            self.complete = last = True
+            sure = cut
+        said = " ".join(text[start : max(start, sure)].split())
+        if not last:
+            # White space and closing quotation marks are said with what follows them.
+            said = said.rstrip(_QUOTES + " ")
+        elif quoted:
+            said = said.rstrip(_QUOTES + " ")
+        more, self._said = said[len(self._said) :], said
+        return more
+
+    def _sure(self, text: str) -> int:
+        begun = _BEGUN.search(text)
+        sure = len(text) if begun is None else begun.start()
+        for name in self._names:
+            for length in range(1, len(name)):
+                start = len(text) - length
+                if text.endswith(name[:length]) and not text[:start][-1:].isalnum():
+                    sure = min(sure, start)
+        return sure
+
+    def _past_thoughts(self, text: str) -> int:
+        """Where the answer begins, after what a reasoning model thinks first."""
+        start = len(text) - len(text.lstrip())
+        if not text.startswith("<think>", start):
+            return start
+        end = text.find("</think>", start)
+        return len(text) + 1 if end < 0 else end + len("</think>")
+
+    def _cut(self, text: str, start: int) -> int | None:
+        mark = self._mark.search(text, start)
+        end = len(text) if mark is None else mark.start()
+        left = self._sentences
+        for sentence in _SENTENCE_END.finditer(text, start, end):
+            after = sentence.end()
+            if _ABBREVIATION.search(text[start:after]) or text[after].islower():
+                continue
+            left -= 1
+            if not left:
+                return after
+        return None if mark is None else end

@@ -1,0 +1,312 @@
+"""The client of OpenAI-compatible servers, against a server of ours that can do everything wrong."""
+
+import asyncio
+import json
+import sys
+from collections.abc import Awaitable, Callable
+from contextlib import aclosing
+from typing import Any
+
+import pytest
+from pydantic import SecretStr
+
+from ravestate.errors import PlatformError
+from ravestate.modules.skill.wildtalk.backend import Message
+from ravestate.modules.skill.wildtalk.openai import OpenAIBackend
+
+pytest.importorskip("httpx")
+
+HELLO = [Message("system", "Be kind."), Message("user", "Hello!")]
+Conversation = Callable[..., list[str]]
+
+
+@pytest.fixture
+def converse(chat_server: Any) -> Conversation:
+    """Ask a server that answers so; return the pieces."""
+
+    def run(
+        answer: Callable[[Any], Awaitable[None]], *, seen: list[Any] | None = None, **options: Any
+    ) -> list[str]:
+        async def main() -> list[str]:
+            ask = {k: options.pop(k) for k in ("max_tokens", "temperature", "seed", "stop") if k in options}
+            async with chat_server(answer).running() as server:
+                backend = OpenAIBackend(options.pop("base_url", server.url), "tiny", **options)
+                try:
+                    return [piece async for piece in backend.stream(HELLO, **ask)]
+                finally:
+                    await backend.close()
+                    if seen is not None:
+                        seen.extend(server.talks)
+
+        return asyncio.run(main())
+
+    return run
+
+
+async def hello(talk: Any) -> None:
+    await talk.head()
+    for piece in ("", "Hi", " there", "\u2028", " 😊"):
+        await talk.piece(piece)
+    await talk.piece(None, "stop")
+    await talk.event("[DONE]")
+
+
+def test_it_asks_and_yields_the_pieces(converse: Conversation) -> None:
+    seen: list[Any] = []
+    pieces = converse(
+        hello, seen=seen, api_key=SecretStr("k3y"), max_tokens=7, temperature=0.5, seed=3, stop=["\n"], extra={"a": 1}
+    )  # fmt: skip
+    assert pieces == ["Hi", " there", "\u2028", " 😊"]
+    [talk] = seen
+    assert talk.path == "/v1/chat/completions"
+    assert talk.headers["authorization"] == "Bearer k3y"
+    assert talk.body == {
+        "model": "tiny",
+        "messages": [{"role": "system", "content": "Be kind."}, {"role": "user", "content": "Hello!"}],
+        "stream": True,
+        "max_tokens": 7,
+        "temperature": 0.5,
+        "seed": 3,
+        "stop": ["\n"],
+        "a": 1,
+    }
+
+
+def test_without_a_key_none_is_sent(converse: Conversation) -> None:
+    seen: list[Any] = []
+    converse(hello, seen=seen)
+    assert "authorization" not in seen[0].headers
+    assert "seed" not in seen[0].body
+    assert "stop" not in seen[0].body
+
+
+def test_pieces_come_one_by_one(chat_server: Any) -> None:
+    async def main() -> None:
+        go_on = asyncio.Event()
+
+        async def answer(talk: Any) -> None:
+            await talk.head()
+            await talk.piece("first")
+            await go_on.wait()
+            await talk.piece("last", "stop")
+
+        async with chat_server(answer).running() as server:
+            backend = OpenAIBackend(server.url, "tiny")
+            pieces = backend.stream(HELLO)
+            assert await anext(pieces) == "first"
+            go_on.set()
+            assert [piece async for piece in pieces] == ["last"]
+            await backend.close()
+
+    asyncio.run(main())
+
+
+@pytest.mark.parametrize("how", ["close", "cancel", "cancel before the first word"])
+def test_leaving_hangs_up(chat_server: Any, how: str) -> None:
+    async def main() -> None:
+        asked, hung_up = asyncio.Event(), asyncio.Event()
+
+        async def answer(talk: Any) -> None:
+            asked.set()
+            await talk.head()
+            if how != "cancel before the first word":
+                await talk.piece("first")
+            await talk.gone()
+            hung_up.set()
+
+        async with chat_server(answer).running() as server:
+            backend = OpenAIBackend(server.url, "tiny")
+            got = asyncio.Event()
+
+            async def listen() -> None:
+                async with aclosing(backend.stream(HELLO)) as pieces:
+                    async for _ in pieces:
+                        got.set()
+                        if how == "close":
+                            return
+
+            task = asyncio.create_task(listen())
+            await (asked if how.endswith("word") else got).wait()
+            if how != "close":
+                task.cancel()
+            await asyncio.gather(task, return_exceptions=True)
+            await hung_up.wait()
+            await backend.close()
+
+    asyncio.run(main())
+
+
+def test_a_backend_is_used_again(chat_server: Any) -> None:
+    async def main() -> None:
+        async with chat_server(hello).running() as server:
+            backend = OpenAIBackend(server.url + "/", "tiny")
+            for _ in range(2):
+                assert "".join([p async for p in backend.stream(HELLO)]).startswith("Hi")
+            await backend.close()
+            await backend.close()
+            progress: list[float] = []
+            await backend.load(progress.append)
+            assert progress == [1.0]
+            await backend.close()
+
+    asyncio.run(main())
+
+
+def test_a_server_that_cannot_stream_is_understood(converse: Conversation) -> None:
+    async def answer(talk: Any) -> None:
+        await talk.head(kind="application/json; charset=utf-8")
+        await talk.raw(json.dumps({"choices": [{"message": {"content": "Hi there"}}]}))
+
+    assert converse(answer) == ["Hi there"]
+
+
+def test_events_in_any_shape_are_understood(converse: Conversation) -> None:
+    async def answer(talk: Any) -> None:
+        await talk.head()
+        event = b'data:{"choices":[{"delta":{"content":"\xc3\xa4","reasoning":"hm"}}]}\r\n\r\n'
+        await talk.raw(b": ping\r\n\r\n" + event[:40])
+        await talk.raw(event[40:] + b'event: x\ndata: {"choices": [], "usage": {}}\n')
+        await talk.raw(b'data: {"choices":[{"delta":{"content":null},"finish_reason":"length"}]}')
+
+    assert converse(answer) == ["ä"]
+
+
+@pytest.mark.parametrize(
+    ("parameter", "renamed"), [("max_tokens", "max_completion_tokens"), ("temperature", None)]
+)
+def test_a_parameter_that_is_not_supported_is_withdrawn(
+    converse: Conversation, parameter: str, renamed: str | None
+) -> None:
+    async def answer(talk: Any) -> None:
+        if parameter in talk.body:
+            await talk.head("400 Bad Request", "application/json")
+            error = {"message": "no", "param": parameter, "code": "unsupported_parameter"}
+            await talk.raw(json.dumps({"error": error}))
+        else:
+            await hello(talk)
+
+    seen: list[Any] = []
+    assert converse(answer, seen=seen, max_tokens=7)[0] == "Hi"
+    assert len(seen) == 2
+    assert parameter not in seen[1].body
+    if renamed:
+        assert seen[1].body[renamed] == 7
+
+
+# ---------------------------------------------------------------------------------- what goes wrong
+
+
+def refusing(status: str, body: str = "", kind: str = "application/json", **headers: str) -> Any:
+    async def answer(talk: Any) -> None:
+        await talk.head(status, kind, **headers)
+        await talk.raw(body)
+
+    return answer
+
+
+def sending(*lines: str) -> Any:
+    async def answer(talk: Any) -> None:
+        await talk.head()
+        for line in lines:
+            await talk.raw(line)
+
+    return answer
+
+
+PIECE = 'data: {"choices":[{"delta":{"content":"Hi"}}]}\n\n'
+
+
+@pytest.mark.parametrize(
+    ("answer", "message"),
+    [
+        (refusing("401 Unauthorized", '{"error": {"message": "bad key"}}'), r"answers 401 \(bad key\): it wants a key"),
+        (refusing("403 Forbidden", ""), r"answers 403 \(without a reason\): it wants a key"),
+        (refusing("404 Not Found", '{"error": "model not found"}'), r"404 \(model not found\): does it know the model 'tiny'.*/v1"),
+        (refusing("404 Not Found", "<h1>Nothing</h1>", "text/html"), r"404 \(<h1>Nothing</h1>\)"),
+        (refusing("307 Moved", "", Location="http://there/v1"), r"moved: set wildtalk.base_url to where 'http://there/v1'"),
+        (refusing("400 Bad Request", '{"detail": "too long"}'), r"400 \(too long\): check wildtalk.model"),
+        (refusing("400 Bad Request", '{"error": {"code": "unsupported_value", "param": "model"}}'), "400"),
+        (refusing("429 Too Many", "{}"), "quota"),
+        (refusing("500 Oops", '["odd"]'), "500.*look into its log"),
+        (refusing("503 Busy", "x" * (2 << 20)), "503 .*…"),
+        (refusing("200 OK", "<html>", "text/html"), "'text/html', not with a stream of events.*ends in /v1"),
+        (refusing("200 OK", "[1]"), r"no JSON object: \[1\]"),
+        (refusing("200 OK", '{"choices": [{"message": {"content": ["x"]}}]}'), "another form than OpenAI's"),
+        (sending(PIECE, "data: {oops\n\n"), "no JSON object: {oops"),
+        (sending(PIECE, 'data: {"error": {"message": "out of memory"}}\n\n'), "failed: out of memory"),
+        (sending('error: {"message": "out of memory"}\n\n'), "failed: out of memory"),
+        (sending('data: {"choices": "x"}\n\n'), "another form than OpenAI's"),
+        (sending('data: {"choices": [{"delta": "x"}]}\n\n'), "another form than OpenAI's"),
+        (sending(PIECE), "broke off before its end"),
+        (sending(), "broke off before its end"),
+        (sending("x" * (3 << 20)), "a line of more than"),
+    ],
+)  # fmt: skip
+def test_each_fault_says_what_to_check(converse: Conversation, answer: Any, message: str) -> None:
+    with pytest.raises(PlatformError, match=f"(?s)^wildtalk: .*{message}"):
+        converse(answer)
+
+
+def test_a_server_that_breaks_the_protocol(converse: Conversation) -> None:
+    async def answer(talk: Any) -> None:
+        await talk.raw("SSH-2.0-OpenSSH\r\n")
+
+    with pytest.raises(PlatformError, match=r"the connection to http://127.0.0.1:\d+/v1 broke off"):
+        converse(answer)
+
+
+def test_a_server_that_cuts_a_measured_body(converse: Conversation) -> None:
+    async def answer(talk: Any) -> None:
+        await talk.head(**{"Content-Length": "9999"})
+        await talk.piece("Hi")
+
+    with pytest.raises(PlatformError, match="broke off"):
+        converse(answer)
+
+
+@pytest.mark.parametrize("spoken", [True, False])
+def test_a_server_that_stalls(converse: Conversation, spoken: bool) -> None:
+    async def answer(talk: Any) -> None:
+        if spoken:
+            await talk.head()
+            await talk.piece("Hi")
+        await talk.stall()
+
+    with pytest.raises(PlatformError, match=r"stalled: nothing for 0.05 s.*wildtalk.read_timeout=0.1"):
+        converse(answer, read_timeout=0.05)
+
+
+def test_a_server_that_is_not_there(converse: Conversation) -> None:
+    with pytest.raises(PlatformError, match=r"no server at http://127.0.0.1:1/v1 .*ollama serve"):
+        converse(hello, base_url="http://127.0.0.1:1/v1")
+
+
+@pytest.mark.parametrize("url", ["", "localhost:11434/v1", "http://", "ftp://x/v1"])
+def test_an_address_that_is_none(url: str) -> None:
+    with pytest.raises(PlatformError, match=f"base_url '{url}' is no web address: write for example"):
+        OpenAIBackend(url, "tiny")
+
+
+def test_an_address_with_an_impossible_port(converse: Conversation) -> None:
+    with pytest.raises(PlatformError, match="is no web address"):
+        converse(hello, base_url="http://127.0.0.1:port/v1")
+
+
+def test_secrets_are_not_told(converse: Conversation) -> None:
+    refusal = refusing("401 Unauthorized", '{"error": {"message": "no such key: s3cret"}}')
+    with pytest.raises(PlatformError, match=r"no such key: \*\*\*\): check wildtalk.api_key") as failure:
+        converse(refusal, api_key=SecretStr("s3cret"))
+    assert "s3cret" not in str(failure.value)
+    backend = OpenAIBackend("https://me:s3cret@example.org/v1", "tiny", api_key=SecretStr("s3cret"))
+    assert repr(backend) == "OpenAIBackend('https://example.org/v1', 'tiny')"
+
+
+def test_a_key_that_is_none(converse: Conversation) -> None:
+    with pytest.raises(PlatformError, match="api_key has characters that no key has"):
+        converse(hello, api_key=SecretStr("a\nb"))
+
+
+def test_without_httpx_it_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "httpx", None)
+    with pytest.raises(PlatformError, match=r"needs httpx: pip install 'ravestate\[wildtalk\]'"):
+        asyncio.run(OpenAIBackend("http://localhost/v1", "tiny").load())

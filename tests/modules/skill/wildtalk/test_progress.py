@@ -1,0 +1,57 @@
+"""The progress bar: for people only, and only when it takes long."""
+
+import io
+import sys
+
+import pytest
+
+from ravestate.modules.skill.wildtalk.progress import ProgressBar
+
+
+class Terminal(io.StringIO):
+    def isatty(self) -> bool:
+        return True
+
+
+def test_a_bar_is_drawn_on_a_terminal_and_removed() -> None:
+    pytest.importorskip("tqdm")
+    screen = Terminal()
+    with ProgressBar("Loading", delay=0.0, stream=screen) as bar:
+        for percent in range(0, 101, 10):
+            bar(percent / 100)
+        assert "Loading" in screen.getvalue()
+        assert "%" in screen.getvalue()
+    assert screen.getvalue().endswith("\r")
+
+
+@pytest.mark.parametrize(("screen", "delay"), [(io.StringIO(), 0.0), (Terminal(), 9999.0)])
+def test_nothing_is_drawn_elsewhere_or_early(screen: io.StringIO, delay: float) -> None:
+    with ProgressBar("Loading", delay=delay, stream=screen) as bar:
+        bar(0.5)
+        bar(1.0)
+    assert screen.getvalue() == ""
+
+
+def test_what_is_done_at_once_needs_no_bar() -> None:
+    screen = Terminal()
+    with ProgressBar("Loading", delay=0.0, stream=screen) as bar:
+        bar(1.0)
+    assert screen.getvalue() == ""
+
+
+def test_above_a_prompt_it_is_a_line_for_each_quarter(monkeypatch: pytest.MonkeyPatch) -> None:
+    screen = Terminal()
+    monkeypatch.setattr(sys, "stderr", screen)
+    with ProgressBar("Loading", delay=0.0) as bar:
+        for percent in range(101):
+            bar(percent / 100)
+    assert screen.getvalue().splitlines() == [f"Loading: {p} %" for p in (25, 50, 75, 100)]
+
+
+def test_without_tqdm_or_standard_error_it_is_silent(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "tqdm", None)
+    screen = Terminal()
+    ProgressBar("Loading", delay=0.0, stream=screen)(0.5)
+    assert screen.getvalue() == ""
+    monkeypatch.setattr(sys, "stderr", None)
+    ProgressBar("Loading", delay=0.0)(0.5)
