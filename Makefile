@@ -9,6 +9,7 @@ SHELL       := bash
 .SHELLFLAGS := -eu -o pipefail -c
 .DEFAULT_GOAL := help
 MAKEFLAGS   += --no-print-directory
+.NOTPARALLEL:
 
 ARGS ?=
 BIN  := .venv/bin
