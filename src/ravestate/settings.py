@@ -73,7 +73,9 @@ def load_settings(
     for name in given:
         if name not in known:
             why = "has no settings" if name in names else "is not part of this agent"
-            faults.append(DeclarationError(f"settings for {name!r}: module {name!r} {why}{nearest(name, known)}"))
+            faults.append(
+                DeclarationError(f"settings for {name!r}: module {name!r} {why}{nearest(name, known)}")
+            )
     found: dict[str, Any] = {}
     for name, model in known.items():
         values = given.get(name, {})
@@ -81,7 +83,9 @@ def load_settings(
             found[name] = values
             continue
         if not isinstance(values, Mapping):
-            faults.append(DeclarationError(f"settings for {name!r} must be fields and values, not {values!r}"))
+            faults.append(
+                DeclarationError(f"settings for {name!r} must be fields and values, not {values!r}")
+            )
             continue
         try:
             found[name] = model(**{**_from_environment(name, model, variables), **values})
@@ -92,7 +96,9 @@ def load_settings(
     return found
 
 
-def _from_environment(name: str, model: type[pydantic.BaseModel], variables: Mapping[str, str]) -> dict[str, Any]:
+def _from_environment(
+    name: str, model: type[pydantic.BaseModel], variables: Mapping[str, str]
+) -> dict[str, Any]:
     found: dict[str, Any] = {}
     for field in model.model_fields:
         text = variables.get(f"RAVESTATE_{name}_{field}".upper().replace("-", "_"))
@@ -106,7 +112,9 @@ def _from_environment(name: str, model: type[pydantic.BaseModel], variables: Map
     return found
 
 
-def _faults(name: str, model: type[pydantic.BaseModel], error: pydantic.ValidationError) -> Iterable[DeclarationError]:
+def _faults(
+    name: str, model: type[pydantic.BaseModel], error: pydantic.ValidationError
+) -> Iterable[DeclarationError]:
     for detail in error.errors():
         field = ".".join(str(part) for part in detail["loc"])
         if detail["type"] == "extra_forbidden":

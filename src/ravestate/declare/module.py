@@ -68,9 +68,7 @@ class Module:
             )
 
     @overload
-    def signal(
-        self, name: str, *, input: bool = ..., keep: Keep = ..., limit: int = ...
-    ) -> Signal[None]: ...
+    def signal(self, name: str, *, input: bool = ..., keep: Keep = ..., limit: int = ...) -> Signal[None]: ...
     @overload
     def signal(
         self, name: str, payload: type[T], *, input: bool = ..., keep: Keep = ..., limit: int = ...
@@ -237,9 +235,7 @@ class Module:
                     "ctx[slot] = value instead of yield"
                 )
             if code is not None and code.co_argcount == 0 and not code.co_flags & 0x04:
-                raise DeclarationError(
-                    f"rule {whole} ({origin}) takes no argument: write def {title}(ctx)"
-                )
+                raise DeclarationError(f"rule {whole} ({origin}) takes no argument: write def {title}(ctx)")
             _check_name(title, f"rule {whole}")
             if isinstance(when, Slot):
                 raise DeclarationError(
@@ -298,11 +294,7 @@ def as_module(value: object) -> Module:
         held = getattr(value, "module", None)
         if isinstance(held, Module):
             return held
-        held_all = {
-            id(v): v
-            for v in vars(value).values()
-            if isinstance(v, Module)
-        }
+        held_all = {id(v): v for v in vars(value).values() if isinstance(v, Module)}
         if len(held_all) == 1:
             return next(iter(held_all.values()))
         raise DeclarationError(

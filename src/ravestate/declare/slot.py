@@ -88,9 +88,7 @@ class Flag(Slot[bool]):
     def __init__(
         self, name: str, default: bool, *, always: bool, input: bool, keep: Keep, limit: int, origin: str
     ) -> None:
-        super().__init__(
-            name, default, always=always, input=input, keep=keep, limit=limit, origin=origin
-        )
+        super().__init__(name, default, always=always, input=input, keep=keep, limit=limit, origin=origin)
         self.true: Signal[bool] = self._signal("true", input, keep, limit)
         self.false: Signal[bool] = self._signal("false", input, keep, limit)
         self.signals = (self.changed, self.true, self.false)
@@ -107,9 +105,7 @@ class Collection(Slot[Mapping[str, V]]):
     kind = "collection"
 
     def __init__(self, name: str, *, input: bool, keep: Keep, limit: int, origin: str) -> None:
-        super().__init__(
-            name, NOTHING, always=False, input=input, keep=keep, limit=limit, origin=origin
-        )
+        super().__init__(name, NOTHING, always=False, input=input, keep=keep, limit=limit, origin=origin)
         self.added: Signal[Entry] = self._signal("added", input, keep, limit)
         self.removed: Signal[Entry] = self._signal("removed", input, keep, limit)
         self.signals = (self.changed, self.added, self.removed)

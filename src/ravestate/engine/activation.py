@@ -73,6 +73,8 @@ TRANSITIONS: dict[tuple[State, Step], State] = {
     (_C, Step.END): _E,
 }
 
+_TABLE = tuple(tuple(TRANSITIONS.get((state, step)) for step in Step) for state in State)
+
 
 class Activation:
     """A clause plus the spikes that it has acquired.
@@ -99,9 +101,9 @@ class Activation:
         "pressed",
         "recheck",
         "ripens",
-        "since",
         "speculative",
         "spikes",
+        "stands_on",
         "state",
         "told",
         "waits_for",
@@ -119,8 +121,8 @@ class Activation:
         self.pressed = NEVER
         self.recheck = NEVER  # when recovering utilities change the order (L9)
         self.deadline = NEVER  # of the run (timeout)
-        self.since = 0.0  # when the run began
         self.wrote = False  # whether the run has written a slot
+        self.stands_on: tuple[Spike, ...] = ()  # the non-detached spikes of the run
         self.groups: tuple[Group, ...] = ()  # of the run, as they were when it began
         self.waits_for: tuple[str, ...] = ()  # names, for explanations
         self.blockers: tuple[Activation, ...] = ()
@@ -134,9 +136,11 @@ class Activation:
         Raises:
             EngineError: The table has none.
         """
-        state = TRANSITIONS.get((self.state, step))
+        state = _TABLE[self.state][step]
         if state is None:
-            raise EngineError(f"activation {self.id} of {self.clause}: {step.name} in state {self.state.name}")
+            raise EngineError(
+                f"activation {self.id} of {self.clause}: {step.name} in state {self.state.name}"
+            )
         self.state = state
 
     def held(self, bits: int) -> Spike | None:
@@ -159,6 +163,8 @@ class Activation:
 
     def firm_spikes(self) -> tuple[Spike, ...]:
         """Its non-detached spikes: the parents of what its run causes."""
+        if self.clause.firm_bits == self.clause.all_bits and not self.missing:
+            return tuple(self.spikes)  # type: ignore[arg-type]  # nothing is missing
         return tuple(
             spike
             for spike, need in zip(self.spikes, self.clause.needs, strict=True)

@@ -16,8 +16,8 @@ from ravestate.engine.horizon import FIRM, NO, Horizon
 from ravestate.policy.plan import Clause, RulePlan
 
 if TYPE_CHECKING:
-    from ravestate.engine.engine import Engine
     from ravestate.engine.group import Group
+    from ravestate.engine.waves import Waves as Engine
 
 __all__ = ["Refusal", "ask", "stalemate"]
 
@@ -91,7 +91,9 @@ def ask(engine: Engine, activation: Activation) -> Refusal:
     return refusal
 
 
-def _rivals(engine: Engine, activation: Activation, group: Group) -> Iterator[tuple[Clause, Activation | None]]:
+def _rivals(
+    engine: Engine, activation: Activation, group: Group
+) -> Iterator[tuple[Clause, Activation | None]]:
     """The clauses of greater effective utility with a stake in the group that write one of the same slots."""
     clause = activation.clause
     slots = clause.rule.slotset

@@ -46,6 +46,10 @@ class Deadlines:
             heapq.heapify(self._heap)
             self._limit = max(256, 2 * len(self._heap))
 
+    def pending(self, now: float) -> bool:
+        """Whether an entry, stale or not, is due."""
+        return bool(self._heap) and self._heap[0][0] <= now
+
     def next(self) -> float | None:
         """The time of the first valid entry."""
         heap = self._heap

@@ -74,7 +74,10 @@ class Explanation:
             sums = " or ".join(" + ".join(pathway) for pathway in clause.pathways[:3])
             lines.append(f"  when {clause.condition}")
             lines.append(f"    utility {clause.utility:.6f} nats, now {clause.effective:.6f}; pathway {sums}")
-            lines += [f"    {gate}: {'true' if open_ else 'false, so it may not run'}" for gate, open_ in clause.gates]
+            lines += [
+                f"    {gate}: {'true' if open_ else 'false, so it may not run'}"
+                for gate, open_ in clause.gates
+            ]
         if not self.activations:
             lines.append("  stands by: it holds no spike")
         for one in self.activations:
@@ -136,7 +139,9 @@ def _activation(engine: Engine, activation: Activation) -> ActivationState:
         activation.id,
         state,
         clause.source,
-        tuple((spike.signal.name, engine.now - spike.born) for spike in activation.spikes if spike is not None),
+        tuple(
+            (spike.signal.name, engine.now - spike.born) for spike in activation.spikes if spike is not None
+        ),
         tuple(need.signal.name for need in clause.needs if need.bit & activation.missing),
         tuple(waits),
         None if until == NEVER else until,
@@ -148,7 +153,9 @@ def _history(rule: str, records: Iterable[Record]) -> Iterable[str]:
     for record in records:
         match record:
             case Held(rule=name) if name == rule:
-                lacking = f", still lacking {', '.join(record.lacks)}" if record.lacks else ": it has all it needs"
+                lacking = (
+                    f", still lacking {', '.join(record.lacks)}" if record.lacks else ": it has all it needs"
+                )
                 yield f"{record.time:.3f} s: took {record.signal}{lacking}"
             case GaveUp(rule=name) if name == rule:
                 yield f"{record.time:.3f} s: gave {record.signal} up: {WHY[record.reason]}"
@@ -163,7 +170,9 @@ def _history(rule: str, records: Iterable[Record]) -> Iterable[str]:
             case Started(rule=name) if name == rule:
                 yield f"{record.time:.3f} s: ran"
             case Settled(rule=name) if name == rule:
-                yield f"{record.time:.3f} s: {record.outcome}" + (f": {record.reason}" if record.reason else "")
+                yield f"{record.time:.3f} s: {record.outcome}" + (
+                    f": {record.reason}" if record.reason else ""
+                )
             case _:
                 pass
 

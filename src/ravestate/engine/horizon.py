@@ -24,8 +24,8 @@ from ravestate.engine.activation import Activation, State
 from ravestate.policy.plan import Clause, Need
 
 if TYPE_CHECKING:
-    from ravestate.engine.engine import Engine
     from ravestate.engine.group import Group
+    from ravestate.engine.waves import Waves as Engine
 
 __all__ = ["FIRM", "NO", "SPECULATIVE", "Horizon"]
 
@@ -52,7 +52,12 @@ class Horizon:
         self._by_rule: dict[Group, dict[int, list[Activation]]] = {}
 
     def viable(
-        self, clause: Clause, activation: Activation | None, group: Group, slots: Slots, path: Path = frozenset()
+        self,
+        clause: Clause,
+        activation: Activation | None,
+        group: Group,
+        slots: Slots,
+        path: Path = frozenset(),
     ) -> int:
         """How firmly a clause, by an activation of it or (None) in stand-by, may still become ready in a group.
 

@@ -76,5 +76,8 @@ def plain(value: Any) -> Any:
     if isinstance(value, Mapping):
         return {str(key): plain(item) for key, item in value.items()}
     if isinstance(value, (list, tuple, set, frozenset)):
-        return [plain(item) for item in (sorted(value, key=repr) if isinstance(value, (set, frozenset)) else value)]
+        return [
+            plain(item)
+            for item in (sorted(value, key=repr) if isinstance(value, (set, frozenset)) else value)
+        ]
     return repr(value)

@@ -23,7 +23,19 @@ class Spike:
         refused: Rules that gave it up for good.
     """
 
-    __slots__ = ("born", "claims", "group", "holders", "id", "parents", "payload", "refused", "rule", "signal", "source")
+    __slots__ = (
+        "born",
+        "claims",
+        "group",
+        "holders",
+        "id",
+        "parents",
+        "payload",
+        "refused",
+        "rule",
+        "signal",
+        "source",
+    )
 
     def __init__(
         self,

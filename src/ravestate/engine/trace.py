@@ -148,7 +148,5 @@ class Settled:
     fired: bool
 
 
-Record = (
-    Born | Dropped | Merged | Set | Held | GaveUp | Waits | Pressed | Started | Told | Settled
-)
+Record = Born | Dropped | Merged | Set | Held | GaveUp | Waits | Pressed | Started | Told | Settled
 Tracer = Callable[[Record], None]

@@ -92,7 +92,11 @@ class Causes:
     def grounded(self, given: Iterable[int]) -> frozenset[int]:
         """The signals that may ever occur if those in `given` do: a least fixed point over all rules."""
         reached = set(given)
-        lacking = {clause: {n.signal.index for n in clause.needs} - reached for r in self.rules for clause in r.clauses}
+        lacking = {
+            clause: {n.signal.index for n in clause.needs} - reached
+            for r in self.rules
+            for clause in r.clauses
+        }
         waiting: dict[int, list[Clause]] = {}
         ready: list[Clause] = []
         for clause, signals in lacking.items():

@@ -254,11 +254,18 @@ class _Compilation:
         clause.signals = tuple(need.signal.signal for need in needs)
         clause.all_bits = (1 << len(needs)) - 1
         clause.firm_bits = sum(need.bit for need in needs if not need.detached)
+        clause.simple = len(needs) == 1 and not clause.guards and not needs[0].min_age
         clause.asks_detached = 0 < clause.firm_bits < clause.all_bits
         return clause
 
     def need(
-        self, clause: Clause, index: int, constraint: Constraint, signal: SignalPlan, rule: Rule[Any, Any], where: str
+        self,
+        clause: Clause,
+        index: int,
+        constraint: Constraint,
+        signal: SignalPlan,
+        rule: Rule[Any, Any],
+        where: str,
     ) -> Need:
         def positive(n: float) -> bool:
             return n >= 0
@@ -266,7 +273,9 @@ class _Compilation:
         low = self.number(rule, constraint.min_age_, f"{constraint.signal}.min_age", positive, "0 s or more")
         high = math.inf
         if constraint.max_age_ is not None:
-            high = self.number(rule, constraint.max_age_, f"{constraint.signal}.max_age", positive, "0 s or more")
+            high = self.number(
+                rule, constraint.max_age_, f"{constraint.signal}.max_age", positive, "0 s or more"
+            )
         if low > high:
             self.faults.append(
                 DeclarationError(
@@ -420,7 +429,9 @@ class _Compilation:
         for rule in self.rules:
             if any(all(n.signal.index in grounded for n in clause.needs) for clause in rule.clauses):
                 continue
-            lacking = [n.signal for clause in rule.clauses for n in clause.needs if n.signal.index not in grounded]
+            lacking = [
+                n.signal for clause in rule.clauses for n in clause.needs if n.signal.index not in grounded
+            ]
             if not lacking:
                 continue
             raisers = ", ".join(dict.fromkeys(r.name for s in lacking for r in causes.all_causes[s.index]))

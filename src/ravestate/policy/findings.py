@@ -79,7 +79,9 @@ def _never_wins(policy: Policy) -> Iterator[Finding]:
     for rule in policy.rule_plans:
         if not rule.slots or not rule.clauses:
             continue
-        losers = [next((w for s in rule.slots for w in writers[s] if _dominates(w, c)), None) for c in rule.clauses]
+        losers = [
+            next((w for s in rule.slots for w in writers[s] if _dominates(w, c)), None) for c in rule.clauses
+        ]
         if all(losers):
             names = ", ".join(dict.fromkeys(w.rule.name for w in losers if w is not None))
             yield Finding(
@@ -123,7 +125,12 @@ def _ties(policy: Policy) -> Iterator[Finding]:
 
 def _unheard(policy: Policy) -> Iterator[Finding]:
     for signal in policy.signal_plans:
-        if signal.slot is None and not signal.listeners and not signal.watchers and not signal.name.startswith("core:"):
+        if (
+            signal.slot is None
+            and not signal.listeners
+            and not signal.watchers
+            and not signal.name.startswith("core:")
+        ):
             raisers = policy.causes.all_causes[signal.index]
             if raisers:
                 yield Finding(

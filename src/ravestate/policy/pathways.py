@@ -58,11 +58,14 @@ def assign_utilities(signals: Sequence[SignalPlan], rules: Sequence[RulePlan], c
         raised = set(rule.raises)
         for clause in rule.clauses:
             clause.cyclic = not rule.detached and any(
-                not need.detached and not raised.isdisjoint(closed(need.signal.index)) for need in clause.needs
+                not need.detached and not raised.isdisjoint(closed(need.signal.index))
+                for need in clause.needs
             )
     information = [-math.log(n / len(rules)) if n else 0.0 for n in counts]
     completion = _Completion(cause_signals, information, closed)
-    for signal in sorted(signals, key=lambda s: len(closed(s.index))):  # causes first: keeps recursion shallow
+    for signal in sorted(
+        signals, key=lambda s: len(closed(s.index))
+    ):  # causes first: keeps recursion shallow
         completion.pathways(signal.index, frozenset())
     for rule in rules:
         for clause in rule.clauses:
@@ -155,4 +158,6 @@ class _Completion:
         if len(pathways) <= MAX_PATHWAYS:
             return list(pathways)
         information = self.information
-        return sorted(pathways, key=lambda p: (math.fsum(information[s] for s in p), sorted(p)))[:MAX_PATHWAYS]
+        return sorted(pathways, key=lambda p: (math.fsum(information[s] for s in p), sorted(p)))[
+            :MAX_PATHWAYS
+        ]

@@ -25,7 +25,18 @@ NO_INFORMATION = 1e-9
 class SignalPlan:
     """A signal: who hears it, who causes it, how it is kept."""
 
-    __slots__ = ("index", "input", "keep_latest", "limit", "listeners", "name", "retain", "signal", "slot", "watchers")
+    __slots__ = (
+        "index",
+        "input",
+        "keep_latest",
+        "limit",
+        "listeners",
+        "name",
+        "retain",
+        "signal",
+        "slot",
+        "watchers",
+    )
 
     def __init__(self, index: int, signal: Signal[Any], slot: int | None, input: bool) -> None:
         self.index = index
@@ -64,7 +75,13 @@ class Need:
     __slots__ = ("bit", "clause", "detached", "index", "kin", "max_age", "min_age", "predicates", "signal")
 
     def __init__(
-        self, clause: Clause, index: int, constraint: Constraint, signal: SignalPlan, min_age: float, max_age: float
+        self,
+        clause: Clause,
+        index: int,
+        constraint: Constraint,
+        signal: SignalPlan,
+        min_age: float,
+        max_age: float,
     ) -> None:
         self.clause = clause
         self.index = index
@@ -102,6 +119,7 @@ class Clause:
         "pathways",
         "rule",
         "signals",
+        "simple",
         "source",
         "utility",
     )
@@ -120,6 +138,7 @@ class Clause:
         self.all_bits = 0
         self.firm_bits = 0  # of the non-detached needs
         self.asks_detached = False  # some, but not all, of its needs are detached
+        self.simple = False  # one need, of any age, and no gate: whoever takes a spike is ready
         self.cyclic = False  # its rule may cause, without detachment, one of its own needs
 
     def __repr__(self) -> str:

@@ -71,9 +71,7 @@ class Context:
         journal: Callable[[Event, float], None] | None = None,
     ) -> None:
         policy = (
-            modules[0]
-            if len(modules) == 1 and isinstance(modules[0], Policy)
-            else compile_policy(*modules)  # type: ignore[arg-type]  # a policy among modules is refused there
+            modules[0] if len(modules) == 1 and isinstance(modules[0], Policy) else compile_policy(*modules)  # type: ignore[arg-type]  # a policy among modules is refused there
         )
         self.settings = load_settings(policy.modules, settings)
         self.trace: deque[Record] = deque(maxlen=TRACE_LIMIT)

@@ -45,7 +45,11 @@ async def run_context(context: Context) -> None:
     for number in signals:
         try:
             loop.add_signal_handler(number, ask)
-        except (NotImplementedError, RuntimeError, ValueError):  # not on this platform, or not in the main thread
+        except (
+            NotImplementedError,
+            RuntimeError,
+            ValueError,
+        ):  # not on this platform, or not in the main thread
             pass
     try:
         async with context:

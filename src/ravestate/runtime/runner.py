@@ -238,7 +238,9 @@ class Runner:
         except RuntimeError:
             pass  # the loop is closed: the context ended while the function ran
 
-    def _work_done(self, run: int, rule: Rule[Any, Any], result: Any, exception: BaseException | None) -> None:
+    def _work_done(
+        self, run: int, rule: Rule[Any, Any], result: Any, exception: BaseException | None
+    ) -> None:
         self.threads -= 1
         self._finish(run, rule, result, exception)
 

@@ -51,7 +51,9 @@ class Simulation:
         except RuntimeError:
             pass
         else:
-            raise EngineError("simulate runs a loop of its own: use it in a plain function, not in an async one")
+            raise EngineError(
+                "simulate runs a loop of its own: use it in a plain function, not in an async one"
+            )
         loop = self._loop = VirtualLoop()
         self.context._on_ended = self._ended  # pyright: ignore[reportPrivateUsage]  # a friend of the context
         loop.run_until_complete(self.context.__aenter__())

@@ -64,7 +64,9 @@ class _Selector(selectors.DefaultSelector):  # type: ignore[misc,valid-type]  # 
         if self._loop.busy():
             events = super().select(REAL_LIMIT)
             if not events:
-                raise TimeoutError(f"a plain function has kept virtual time waiting for {REAL_LIMIT:g} real seconds")
+                raise TimeoutError(
+                    f"a plain function has kept virtual time waiting for {REAL_LIMIT:g} real seconds"
+                )
             return events
         self._loop.nothing_ready()
         return []

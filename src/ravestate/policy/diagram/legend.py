@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 
+from ravestate.policy.diagram.graph import EdgeKind, NodeKind
 from ravestate.policy.diagram.layout import Box
-from ravestate.policy.diagram.notation import EDGES, NODES
+from ravestate.policy.diagram.notation import EDGES, JUNCTIONS, NODES
 from ravestate.policy.diagram.shapes import line, number, outline
 from ravestate.policy.diagram.sizes import SMALL
 from ravestate.policy.diagram.text import width
@@ -17,8 +20,10 @@ NARROWEST = 560.0
 
 _ROW = 26.0
 _GAP = 20.0
-_SAMPLE = {"slot": 30.0, "signal": 30.0, "rule": 30.0, "and": 18.0, "or": 18.0}
+_SAMPLE: dict[NodeKind, float] = {"slot": 30.0, "signal": 30.0, "rule": 30.0, "and": 18.0, "or": 18.0}
+_HIGH = 18.0
 _EDGE = 38.0
+_TEXT = 7.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,34 +37,48 @@ class Legend:
 
 def legend(x: float, y: float, room: float, prefix: str) -> Legend:
     """Draw the legend from (x, y) on, in rows of at most `room` pixels."""
-    at, row, widest = 0.0, 0, 0.0
-    found: list[str] = []
-    entries = [(kind, words, _SAMPLE[kind]) for kind, words in NODES.items() if kind not in ("and", "or")]
-    samples: list[tuple[str, str, float]] = [
-        *entries,
-        *((kind, words, _EDGE) for kind, words in EDGES.items()),
-        *((kind, NODES[kind], _SAMPLE[kind]) for kind in ("and", "or")),
+    plain: list[NodeKind] = [kind for kind in NODES if kind not in JUNCTIONS]
+    junctions: list[NodeKind] = [kind for kind in NODES if kind in JUNCTIONS]
+    entries = [
+        *((NODES[kind], _SAMPLE[kind], partial(_node, kind)) for kind in plain),
+        *((words, _EDGE, partial(_edge, kind, prefix)) for kind, words in EDGES.items()),
+        *((NODES[kind], _SAMPLE[kind], partial(_node, kind)) for kind in junctions),
     ]
-    for kind, words, sample in samples:
-        whole = sample + 7.0 + width(words, SMALL)
-        if at > 0 and at + whole > room:
-            at, row = 0.0, row + 1
+    wide = [sample + _TEXT + width(words, SMALL) for words, sample, _ in entries]
+    places = _rows(wide, room)
+    found: list[str] = []
+    for (words, sample, draw), (at, row) in zip(entries, places, strict=True):
         left, middle = x + at, y + row * _ROW + _ROW / 2
         found.append(
-            f'<g>{_sample(kind, left, middle, sample, prefix)}<text class="srs-small" x="{number(left + sample + 7.0)}" y="{number(middle + 3.6)}">{words}</text></g>'
+            f'<g>{draw(left, middle)}<text class="srs-small" x="{number(left + sample + _TEXT)}" '
+            f'y="{number(middle + 3.6)}">{words}</text></g>'
         )
-        at += whole
-        widest = max(widest, at)
-        at += _GAP
-    return Legend("".join(found), widest, (row + 1) * _ROW)
+    widest = max(at + whole for (at, _), whole in zip(places, wide, strict=True))
+    return Legend("".join(found), widest, (places[-1][1] + 1) * _ROW)
 
 
-def _sample(kind: str, left: float, middle: float, wide: float, prefix: str) -> str:
-    for node in NODES:
-        if node == kind:
-            high = 18.0
-            return outline(node, Box(left, middle - high / 2, wide, high))
-    for edge in EDGES:
-        if edge == kind:
-            return line(edge, ((left, middle), (left + wide, middle)), prefix)
-    raise AssertionError(kind)
+def _rows(wide: Sequence[float], room: float) -> list[tuple[float, int]]:
+    """Where each entry begins, and in which row: as few rows as fit, as even as can be."""
+    found = _filled(wide, room)
+    while room > max(wide) and (narrower := _filled(wide, room - 10.0))[-1][1] == found[-1][1]:
+        found, room = narrower, room - 10.0
+    return found
+
+
+def _filled(wide: Sequence[float], room: float) -> list[tuple[float, int]]:
+    found: list[tuple[float, int]] = []
+    at, row = 0.0, 0
+    for whole in wide:
+        if at > 0 and at + whole > room:
+            at, row = 0.0, row + 1
+        found.append((at, row))
+        at += whole + _GAP
+    return found
+
+
+def _node(kind: NodeKind, left: float, middle: float) -> str:
+    return outline(kind, Box(left, middle - _HIGH / 2, _SAMPLE[kind], _HIGH))
+
+
+def _edge(kind: EdgeKind, prefix: str, left: float, middle: float) -> str:
+    return line(kind, ((left, middle), (left + _EDGE, middle)), prefix)

@@ -1,0 +1,119 @@
+"""Writing slots: values change, and their signals are raised (L2, L13)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import Any
+
+from ravestate.declare.slot import Entry
+from ravestate.engine import trace
+from ravestate.engine.activation import Activation
+from ravestate.engine.group import Group
+from ravestate.engine.pool import Pool
+from ravestate.engine.spike import Spike
+from ravestate.errors import RuleError, UndeclaredError
+from ravestate.policy.plan import SlotPlan
+
+__all__ = ["ABSENT", "Slots", "equal"]
+
+
+class Slots(Pool):
+    """The pool, and the slots whose changes feed it."""
+
+    def _mark_write(self, slot: SlotPlan, run: Activation | None) -> None:
+        if run is not None:
+            if slot.index not in run.clause.rule.slotset:
+                raise UndeclaredError(
+                    f"rule {run.clause.rule.name} writes {slot.name} without writes={slot.name}"
+                )
+            run.wrote = True
+
+    def _change(self, slot: SlotPlan, value: Any, parents: tuple[Spike, ...], run: Activation | None) -> None:
+        """Give a value or flag slot its value, and signal (L2, L13)."""
+        self.values[slot.index] = value
+        if self.tracer is not None:
+            self.tracer(trace.Set(self.now, slot.name, value, 0 if run is None else run.id))
+        if slot.signals[0].keep_latest:
+            for signal in slot.signals:
+                self._withdraw(signal, "superseded")
+        raised = slot.signals
+        if slot.slot.kind == "flag":
+            raised = (slot.signals[0], slot.signals[1] if value else slot.signals[2])
+        if (
+            any(s.listeners or s.watchers or s.name in self.watched for s in raised)
+            or self.tracer is not None
+        ):
+            group = self._group_of(parents)
+            for signal in raised:
+                self._birth(signal, value, parents, group, run)
+        self._regate()
+
+    def _change_item(
+        self,
+        slot: SlotPlan,
+        key: str,
+        item: Any,
+        run: Activation | None,
+        origin: tuple[tuple[Spike, ...], Group],
+    ) -> None:
+        old: Mapping[str, Any] = self.read(slot.index)
+        known = old.get(key, ABSENT)
+        if known is item or (known is not ABSENT and item is not ABSENT and equal(known, item)):
+            return
+        items = dict(old)
+        changed, added, removed = slot.signals
+        raised = (changed,)
+        if item is ABSENT:
+            items.pop(key, None)
+            raised = (changed, removed)
+        else:
+            if known is ABSENT:
+                raised = (changed, added)
+            items[key] = item
+        self.values[slot.index] = MappingProxyType(items)
+        if self.tracer is not None:
+            self.tracer(trace.Set(self.now, slot.name, items, 0 if run is None else run.id))
+        entry = Entry(key, known if item is ABSENT else item)
+        for signal in raised:
+            if signal.keep_latest:
+                self._withdraw(signal, "superseded")
+            self._birth(signal, entry, origin[0], origin[1], run)
+        self._regate()
+
+    def _replace(self, slot: SlotPlan, value: Mapping[str, Any], run: Activation | None) -> None:
+        """Give a collection all its items at once: as if each difference had been written."""
+        if not isinstance(value, Mapping):
+            raise RuleError(f"{slot.name} is a collection: write a mapping of keys to items, not {value!r}")
+        self._mark_write(slot, run)
+        old: Mapping[str, Any] = self.read(slot.index)
+        for key in [*(k for k in old if k not in value), *value]:
+            self._change_item(slot, key, value.get(key, ABSENT), run, self._origin(run))
+
+    def _regate(self) -> None:
+        """A slot has changed: predicates on slots may have become true, or false."""
+        if self.gated:
+            for activation in list(self.gated):
+                del self.gated[activation]
+                self._update(activation)
+        if self.waiting:
+            for activation in self.waiting if self.policy.guarded else ():
+                self._asking[activation] = None
+
+
+class _Absent:
+    def __repr__(self) -> str:
+        return "absent"
+
+
+ABSENT: Any = _Absent()
+
+
+def equal(old: Any, new: Any) -> bool:
+    """Whether a write changes nothing; values that cannot be compared (arrays, say) are different."""
+    if old is new:
+        return True
+    try:
+        return bool(old == new)
+    except Exception:  # a value's comparison is foreign code: it may fail in any way
+        return False

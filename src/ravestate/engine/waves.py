@@ -1,0 +1,247 @@
+"""The waves in which an instant is settled: who starts, who is asked, who waits (L15-L17, L22).
+
+1. Rules that exclude nobody start at once.
+2. When none of these is left (those that ended without waiting have reported by then), ready writers ask for
+   consent, the greatest utility first (``consent.py``).
+3. When nobody may start any more, the built-in flags are brought up to date.
+
+So whoever waits is asked again in the same instant in which a classifier ends, and never before all that could
+end in this instant has ended.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ravestate.engine import trace
+from ravestate.engine.activation import NEVER, Activation, State, Step
+from ravestate.engine.consent import Refusal, ask, stalemate
+from ravestate.engine.deadlines import Kind
+from ravestate.engine.effects import Effect, Run
+from ravestate.engine.group import Group
+from ravestate.engine.horizon import FIRM, Horizon
+from ravestate.engine.slots import Slots
+from ravestate.engine.watch import Watch
+from ravestate.policy.plan import Clause
+from ravestate.policy.policy import Policy
+
+__all__ = ["Waves"]
+
+
+class Waves(Slots):
+    """The pool and its slots, and who of the ready may run."""
+
+    def __init__(self, policy: Policy, patience: float) -> None:
+        super().__init__(policy)
+        self.patience = patience
+        self.ran: dict[int, float] = {}
+        """When rules with a cooldown ran last."""
+        self._activity = policy.slot_of["core:activity"]
+        self._pressure = policy.slot_of["core:pressure"]
+
+    def effects(self) -> list[Effect]:
+        """What is to be done now; ask again after doing it, until there is nothing."""
+        while not self._out:
+            if self._busy and not self.read(self._activity.index):
+                self._change(self._activity, True, (), None)
+            elif self._free:
+                self._start_free()
+            elif self._asking or self._dirty or self._stirred:
+                self._consent_round()
+            elif not self._settle_flags():
+                break
+        out = self._out
+        self._out = []
+        return out
+
+    def effective(self, clause: Clause) -> float:
+        """The effective utility of a clause now (L9): utility x weight x recovery, in nats."""
+        cooldown = clause.rule.cooldown
+        if cooldown:
+            ran = self.ran.get(clause.rule.index)
+            if ran is not None and self.now - ran < cooldown:
+                return clause.base * ((self.now - ran) / cooldown)
+        return clause.base
+
+    def recovery(self, clause: Clause) -> tuple[float, float, float]:
+        """Effective utility (nats), its slope (nats per second), and when the rule has recovered (seconds)."""
+        rule = clause.rule
+        ran = self.ran.get(rule.index)
+        if not rule.cooldown or ran is None or self.now - ran >= rule.cooldown:
+            return clause.base, 0.0, -NEVER
+        return self.effective(clause), clause.base / rule.cooldown, ran + rule.cooldown
+
+    def order(self, activation: Activation) -> tuple[float, int, int]:
+        """By what ready activations are asked: the greatest utility, then the first declared, then the oldest."""
+        return (-self.effective(activation.clause), activation.clause.index, activation.id)
+
+    def _start_free(self) -> None:
+        free = self._free
+        self._free = []
+        for activation in free:
+            if activation.state != State.READY:
+                continue
+            if not self._guarded(activation):
+                continue
+            rule = activation.clause.rule
+            if not rule.slots:
+                other = self._claimed(activation)
+                if other is not None:
+                    self._refuse(activation, Refusal.by(other, activation))
+                    continue
+            self._start(activation)
+
+    def _claimed(self, activation: Activation) -> Activation | None:
+        """A run of the same rule on one of the same spikes: all that excludes a rule without slots (L10)."""
+        for spike in activation.firm_spikes():
+            if spike.claims is not None:
+                other = spike.claims.get(activation.clause.rule.index)
+                if other is not None:
+                    return other
+        return None
+
+    def _guarded(self, activation: Activation) -> bool:
+        clause = activation.clause
+        if clause.guards and not all(self.holds(s, g, clause.rule) for s, g in clause.guards):
+            self._unready(activation)
+            self._update(activation)
+            return False
+        return True
+
+    def _consent_round(self) -> None:
+        asking = dict(self._asking)
+        for group in self._dirty:
+            asking.update(group.interested)
+        if self._stirred:
+            asking.update((a, None) for a in self.waiting if a.speculative)
+        self._asking.clear()
+        self._dirty.clear()
+        self._stirred = False
+        for activation in sorted(asking, key=self.order) if len(asking) > 1 else asking:
+            if activation.state not in (State.READY, State.WAITING) or not self._guarded(activation):
+                continue
+            if not activation.clause.rule.slots:
+                if self._claimed(activation) is None:
+                    self._start(activation)
+                continue
+            refusal = ask(self, activation)
+            if not refusal:
+                self._start(activation)
+                continue
+            for group, rival, member in refusal.pressed:
+                self._press(group, rival, member, activation)
+            self._refuse(activation, refusal)
+            activation.recheck = refusal.recheck
+            if refusal.recheck != NEVER:
+                self._deadlines.add(refusal.recheck, Kind.RECHECK, activation)
+        if self.waiting and not self._out and not self._free:
+            best = stalemate(self)
+            if best is not None:
+                self._start(best)
+
+    def _refuse(self, activation: Activation, refusal: Refusal) -> None:
+        activation.step(Step.REFUSE)
+        self._lose_interest(activation)
+        self.waiting[activation] = None
+        names = tuple(refusal.names)
+        changed = activation.waits_for != names
+        activation.waits_for = names
+        activation.blockers = tuple(refusal.blockers)
+        activation.speculative = bool(refusal.pressed)
+        activation.interests = tuple(refusal.interests)
+        for group in activation.interests:
+            group.interested[activation] = None
+        if changed and self.tracer is not None:
+            until = None if activation.blockers else self.patience_of_rivals(activation)
+            self.tracer(trace.Waits(self.now, activation.id, activation.clause.rule.name, names, until))
+
+    def patience_of_rivals(self, activation: Activation) -> float | None:
+        """Until when, at the latest, the rivals that a waiting activation waits for have patience (seconds)."""
+        names = activation.waits_for
+        times: list[float] = []
+        for group in activation.firm_groups():
+            times += [m.pressed for m in group.members if m.clause.rule.name in names and m.pressed != NEVER]
+            clauses = self.policy.clause_plans
+            times += [t for c, t in (group.pressed or {}).items() if clauses[c].rule.name in names]
+        return max(times, default=None)
+
+    def _press(self, group: Group, rival: Clause, member: Activation | None, by: Activation) -> None:
+        patience = self.patience if rival.rule.patience is None else rival.rule.patience
+        until = self.now + patience
+        if member is not None:
+            if member.pressed != NEVER:
+                return
+            member.pressed = until
+            self._deadlines.add(until, Kind.PATIENCE, member)
+        else:
+            if group.pressed is None:
+                group.pressed = {}
+            if rival.index in group.pressed:
+                return
+            group.pressed[rival.index] = until
+            self._deadlines.add(until, Kind.STANDBY, (group, rival.index, until))
+        if self.tracer is not None:
+            missing = rival.all_bits if member is None else member.missing
+            lacks = tuple(n.signal.name for n in rival.needs if n.bit & missing)
+            self.tracer(trace.Pressed(self.now, rival.rule.name, by.clause.rule.name, lacks, until))
+
+    def _pressed_for_nothing(self, rival: Activation) -> bool:
+        """Whether, when its patience ends, nobody waits for it any more, or it no longer depends on luck (L16)."""
+        slots = rival.clause.rule.slotset
+        groups = rival.firm_groups()
+        waited = any(
+            rival.clause.rule.name in waiter.waits_for and not waiter.clause.rule.slotset.isdisjoint(slots)
+            for group in groups
+            for waiter in group.members
+            if waiter.state == State.WAITING
+        )
+        if not waited:
+            return True
+        return all(Horizon(self).viable(rival.clause, rival, group, slots) == FIRM for group in groups)
+
+    def _start(self, activation: Activation) -> None:
+        """It takes its slots in its groups, and its function runs (L17)."""
+        activation.step(Step.GRANT)
+        clause = activation.clause
+        rule = clause.rule
+        if activation.interests:
+            self._lose_interest(activation)
+        activation.recheck = NEVER
+        activation.blockers = activation.waits_for = ()
+        stands_on = activation.stands_on = activation.firm_spikes()
+        if rule.slots:
+            activation.groups = tuple(activation.firm_groups())
+            for group in activation.groups:
+                for slot in rule.slots:
+                    group.taken[slot] = activation
+        elif len(clause.needs) > 1 or len(rule.clauses) > 1:
+            for spike in stands_on:
+                if spike.claims is None:
+                    spike.claims = {}
+                spike.claims[rule.index] = activation
+        self.running[activation.id] = activation
+        if rule.timeout is not None:
+            activation.deadline = self.now + rule.timeout
+            self._deadlines.add(activation.deadline, Kind.TIMEOUT, activation)
+        for until in rule.until:
+            self._watches.setdefault(until, {})[activation] = Watch(activation, until)
+        payloads = {spike.signal.name: spike.payload for spike in activation.spikes if spike is not None}
+        values: dict[str, Any] = {}
+        for slot in rule.readable:
+            values[self.policy.slot_plans[slot].name] = self.read(slot)
+        if self.tracer is not None:
+            ids = tuple(spike.id for spike in activation.spikes if spike is not None)
+            self.tracer(trace.Started(self.now, activation.id, rule.name, clause.number, ids))
+        self._out.append(Run(activation.id, rule.rule, payloads, values))
+
+    def _settle_flags(self) -> bool:
+        """Bring ``core:activity`` and ``core:pressure`` up to date (L22); whether one has changed."""
+        pressure = bool(self.waiting)
+        if pressure != self.read(self._pressure.index):
+            self._change(self._pressure, pressure, (), None)
+            return True
+        activity = self._busy > 0
+        if activity != self.read(self._activity.index):
+            self._change(self._activity, activity, (), None)
+            return True
+        return False
