@@ -1,0 +1,68 @@
+"""What the questions have at hand: contestants, the number of repetitions, and a way to say how far they are."""
+
+from __future__ import annotations
+
+import contextlib
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+from benchmarks import environments
+from benchmarks.child import Child
+
+__all__ = ["Bench"]
+
+
+class Bench(contextlib.ExitStack):
+    """One question's contestants; they end when it is left.
+
+    Args:
+        quick: Whether to repeat less, for a first look.
+    """
+
+    def __init__(self, question: str, quick: bool) -> None:
+        super().__init__()
+        self.question = question
+        self.quick = quick
+
+    def rounds(self, many: int, few: int = 3) -> Iterator[int]:
+        """Repetitions. In each, every contestant has its turn, so that a noisy moment hits them alike."""
+        total = few if self.quick else many
+        for number in range(total):
+            self.progress(f"round {number + 1} of {total}")
+            yield number
+
+    def several(self, many: int, few: int) -> int:
+        """How many times within a repetition."""
+        return few if self.quick else many
+
+    def ours(self, module: str = "benchmarks.peers.ours") -> Child:
+        """A process of ours."""
+        return self._started(Child.ours(module))
+
+    def clips(self) -> Child:
+        """CLIPS."""
+        return self._started(Child.peer(environments.clips(self.progress), "clips_rules.py"))
+
+    def reference(self) -> Child:
+        """The reference implementation."""
+        return self._started(Child.peer(environments.reference(self.progress), "reference.py"))
+
+    def callbacks(self) -> Child:
+        """The floor."""
+        return self._started(Child.peer(sys.executable, "callbacks.py"))
+
+    def reference_interpreter(self) -> Path:
+        """The interpreter that has the reference implementation."""
+        return environments.reference(self.progress)
+
+    def progress(self, text: str) -> None:
+        """Say on the error stream how far it is."""
+        if sys.stderr.isatty():
+            print(f"\r\033[K{self.question}: {text}", end="", file=sys.stderr, flush=True)
+        elif not text.startswith("round"):
+            print(f"{self.question}: {text}", file=sys.stderr, flush=True)
+
+    def _started(self, child: Child) -> Child:
+        self.callback(child.close)
+        return child

@@ -1,0 +1,75 @@
+"""How long until an input is answered?
+
+The same work for all: an input, a chain of k rules each raising the next signal, an answering rule on the last
+signal and a competing fallback rule on the input, both writing one output. The answering rule must answer, and
+the fallback must stay quiet; each contestant checks it for every input.
+"""
+
+from __future__ import annotations
+
+import statistics
+from collections.abc import Iterable
+
+from benchmarks.bench import Bench
+from benchmarks.figures import Figure, compare
+
+CHAINS = (1, 4, 8)
+LIVED_IN = 3000
+"""Inputs after which CLIPS is measured once more: clipspy slows with every input that it has seen."""
+
+
+def at_most(ratio: float) -> bool:
+    """The target: no more time than CLIPS needs."""
+    return ratio <= 1
+
+
+def ask(bench: Bench) -> Iterable[Figure]:
+    """Ours against CLIPS (judged), and against the floor and the reference implementation."""
+    ours, clips, floor, reference = bench.ours(), bench.clips(), bench.callbacks(), bench.reference()
+    for k in CHAINS:
+        mine: list[float] = []
+        turn: list[float] = []
+        virtual: list[float] = []
+        theirs: dict[str, list[float]] = {}
+        inputs = bench.several(100, 50)
+
+        def note(who: str, values: list[float], theirs: dict[str, list[float]] = theirs) -> None:
+            theirs.setdefault(who, []).append(statistics.median(values))
+
+        for _ in bench.rounds(25, 5):
+            times = ours.ask("answer", k=k, inputs=inputs)
+            mine.append(statistics.median(times["answered"]))
+            turn.append(statistics.median(times["turn"]))
+            times = clips.ask("answer", k=k, inputs=inputs, style="raise")
+            note("CLIPS", times["answered"])
+            note("CLIPS turn", times["turn"])
+            note("CLIPS quickest", clips.ask("answer", k=k, inputs=inputs, style="return")["answered"])
+            note("floor", floor.ask("answer", k=k, inputs=inputs))
+            virtual.append(statistics.median(ours.ask("simulated", k=k, inputs=inputs)))
+        yield compare(
+            "answer",
+            f"k={k}: answered",
+            mine,
+            "CLIPS",
+            theirs["CLIPS"],
+            target="<= 1",
+            reach=lambda r: r <= 1,
+        )
+        yield compare(
+            "answer", f"k={k}: answered", mine, "CLIPS, rules assert in C", theirs["CLIPS quickest"]
+        )
+        yield compare("answer", f"k={k}: and ready for the next", turn, "CLIPS", theirs["CLIPS turn"])
+        yield compare("answer", f"k={k}: answered, virtual time", virtual, "CLIPS", theirs["CLIPS"])
+        yield compare("answer", f"k={k}: answered", mine, f"floor: {k + 1} bare callbacks", theirs["floor"])
+
+        old = f"CLIPS after {LIVED_IN:,} inputs"
+        lived: list[float] = []
+        slow: list[float] = []
+        live: list[float] = []
+        for _ in bench.rounds(3, 2):
+            live.append(statistics.median(ours.ask("answer", k=k, inputs=inputs)["answered"]))
+            times = clips.ask("answer", k=k, inputs=inputs, style="raise", before=LIVED_IN)
+            lived.append(statistics.median(times["answered"]))
+            slow.append(statistics.median(reference.ask("answer", k=k, inputs=bench.several(4, 2))))
+        yield compare("answer", f"k={k}: answered", live, old, lived, target="<= 1", reach=at_most)
+        yield compare("answer", f"k={k}: answered", live, "reference implementation", slow)

@@ -1,0 +1,48 @@
+"""How long does it take to compile a policy?
+
+The common work with a chain of one, beside as many rules each on a signal of its own; declarations not counted.
+CLIPS builds as many rules from text. What counts is also how it grows: each rule of many against each of few.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterable
+
+import ravestate as rs
+from benchmarks.bench import Bench
+from benchmarks.figures import Figure, compare
+from benchmarks.peers.ours import Agent
+from benchmarks.peers.wire import serve
+
+FEW, MANY = 100, 10_000
+
+
+def compiling(unrelated: int) -> float:
+    """Seconds to compile."""
+    module = Agent(1, unrelated).module
+    begin = time.perf_counter()
+    rs.compile(module)
+    return time.perf_counter() - begin
+
+
+def ask(bench: Bench) -> Iterable[Figure]:
+    """Many rules against CLIPS, and each of many against each of few."""
+    ours, clips = bench.ours("benchmarks.questions.compiling"), bench.clips()
+    many, few, theirs = [], [], []
+    for _ in bench.rounds(5, 2):
+        many.append(ours.ask("compiling", unrelated=MANY))
+        few.append(ours.ask("compiling", unrelated=FEW))
+        theirs.append(clips.ask("build", rules=MANY))
+    yield compare("compiling", f"{MANY:,} rules", many, "CLIPS", theirs)
+    yield compare(
+        "compiling",
+        f"each of {MANY:,} rules",
+        [seconds / MANY for seconds in many],
+        f"each of {FEW}",
+        [seconds / FEW for seconds in few],
+    )
+
+
+if __name__ == "__main__":
+    serve(compiling)

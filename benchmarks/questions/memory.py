@@ -1,0 +1,75 @@
+"""What does one more context hold, beyond the policy that it shares?
+
+Many contexts of one policy on one loop; each has answered inputs, and everything has aged (virtual time would
+do, but this is the real thing). What tracemalloc counts after that, divided by their number.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import gc
+import tracemalloc
+from collections.abc import Iterable
+
+import ravestate as rs
+from benchmarks.bench import Bench
+from benchmarks.figures import Figure, measured
+from benchmarks.peers.ours import Agent
+from benchmarks.peers.wire import serve
+
+LIMIT = 20_000
+"""Bytes that a context at rest may hold."""
+
+AGED = 6.0
+"""Seconds after which every spike of the common work is past its age (5 s)."""
+
+
+def held(contexts: int, k: int, unrelated: int) -> float:
+    """Bytes for each context."""
+
+    async def measure() -> float:
+        agent = Agent(k, unrelated)
+        policy = rs.compile(agent.module)
+        async with rs.Context(policy) as first:  # what is made once, for all, is not counted
+            await agent.turn(first, "warm", "answer warm")
+        gc.collect()
+        tracemalloc.start()
+        before, _ = tracemalloc.get_traced_memory()
+        agents = []
+        for _ in range(contexts):
+            context = rs.Context(policy)
+            await context.__aenter__()
+            for n in range(3):
+                await agent.turn(context, f"word {n}", f"answer word {n}")
+            agents.append(context)
+        await asyncio.sleep(AGED)
+        gc.collect()
+        after, _ = tracemalloc.get_traced_memory()
+        tracemalloc.stop()
+        for context in agents:
+            await context.stop()
+        return (after - before) / contexts
+
+    return asyncio.run(measure())
+
+
+def ask(bench: Bench) -> Iterable[Figure]:
+    """A small agent, and one of a thousand rules."""
+    contexts = bench.several(100, 30)
+    for k, unrelated in ((1, 0), (8, 1000)):
+        values = [
+            bench.ours("benchmarks.questions.memory").ask("held", contexts=contexts, k=k, unrelated=unrelated)
+            for _ in bench.rounds(3, 1)
+        ]
+        yield measured(
+            "memory",
+            f"a context at rest, {k + 2 + unrelated:,} rules",
+            values,
+            unit="B",
+            target="< 20 kB",
+            reach=lambda value: value < LIMIT,
+        )
+
+
+if __name__ == "__main__":
+    serve(held)

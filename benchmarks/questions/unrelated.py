@@ -1,0 +1,34 @@
+"""What do rules cost that do not concern the input?
+
+The common work with a chain of one, beside 10 and beside 10,000 rules, each on a signal of its own. Each case
+has a process of its own, so that neither pays for the other's memory.
+"""
+
+from __future__ import annotations
+
+import statistics
+from collections.abc import Iterable
+
+from benchmarks.bench import Bench
+from benchmarks.figures import Figure, compare
+
+FEW, MANY = 10, 10_000
+
+
+def ask(bench: Bench) -> Iterable[Figure]:
+    """An input beside many rules against one beside few."""
+    small, large = bench.ours(), bench.ours()
+    few, many = [], []
+    inputs = bench.several(100, 50)
+    for _ in bench.rounds(25, 5):
+        few.append(statistics.median(small.ask("answer", k=1, inputs=inputs, unrelated=FEW)["answered"]))
+        many.append(statistics.median(large.ask("answer", k=1, inputs=inputs, unrelated=MANY)["answered"]))
+    yield compare(
+        "unrelated",
+        f"answered beside {MANY:,} rules",
+        many,
+        f"beside {FEW}",
+        few,
+        target="<= 1.5",
+        reach=lambda ratio: ratio <= 1.5,
+    )

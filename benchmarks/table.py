@@ -1,0 +1,77 @@
+"""Figures as one table, and as JSON."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Sequence
+from dataclasses import asdict
+from pathlib import Path
+
+from benchmarks.figures import Figure, Spread
+
+__all__ = ["as_table", "write_json"]
+
+HEAD = ("question", "measured", "ours", "against", "theirs", "ratio", "target", "reached")
+
+
+def as_table(figures: Iterable[Figure]) -> str:
+    """Text in columns, which is a Markdown table as well."""
+    rows = [_row(figure) for figure in figures]
+    widths = [max(map(len, column)) for column in zip(HEAD, *rows, strict=True)]
+    lines = [_line(HEAD, widths), "|" + "|".join("-" * (width + 2) for width in widths) + "|"]
+    return "\n".join(lines + [_line(row, widths) for row in rows])
+
+
+def write_json(path: Path, machine: str, figures: Iterable[Figure]) -> None:
+    """Everything in the table, unrounded: seconds, bytes, shares of a core."""
+    document = {"machine": machine, "figures": [asdict(figure) for figure in figures]}
+    path.write_text(json.dumps(document, indent=1) + "\n", encoding="utf-8")
+
+
+def _row(figure: Figure) -> tuple[str, ...]:
+    if figure.failed:
+        return (figure.question, figure.what, "failed: " + figure.failed, "", "", "", figure.target, "NO")
+    verdict = {True: "yes", False: "NO", None: ""}[figure.reached]
+    return (
+        figure.question,
+        figure.what,
+        _value(figure.ours, figure.unit),
+        figure.against,
+        _value(figure.theirs, figure.unit),
+        _ratio(figure.ratio),
+        figure.target,
+        verdict,
+    )
+
+
+def _line(cells: Sequence[str], widths: Sequence[int]) -> str:
+    return "| " + " | ".join(cell.ljust(width) for cell, width in zip(cells, widths, strict=True)) + " |"
+
+
+def _value(spread: Spread | None, unit: str) -> str:
+    if spread is None:
+        return ""
+    value = spread.median
+    if unit == "core":
+        return f"{value:.3%}"
+    if unit == "B":
+        return f"{value / 1000:.3g} kB"
+    if unit == "s":
+        for scale, name in ((1, "s"), (1e-3, "ms"), (1e-6, "µs"), (1e-9, "ns")):
+            if value >= scale:
+                return f"{_digits(value / scale)} {name}"
+    return _digits(value)
+
+
+def _ratio(spread: Spread | None) -> str:
+    if spread is None:
+        return ""
+    return f"{_digits(spread.median)} ({_digits(spread.low)}-{_digits(spread.high)})"
+
+
+def _digits(value: float) -> str:
+    if value >= 100:
+        return f"{value:.0f}"
+    if value >= 10:
+        return f"{value:.1f}"
+    return f"{value:.2f}" if value >= 0.1 else f"{value:.2g}"
