@@ -49,9 +49,6 @@ class DeclarationErrors(RavestateError, ExceptionGroup[DeclarationError]):
         count = f"{len(faults)} fault" + ("s" if len(faults) != 1 else "")
         return super().__new__(cls, f"{count} in the declarations", faults)
 
-    def __init__(self, faults: Sequence[DeclarationError]) -> None:
-        super().__init__(faults)
-
     def derive(self, excs: Sequence[Exception]) -> ExceptionGroup[Exception]:  # type: ignore[override]  # typeshed has the wider type
         return DeclarationErrors([e for e in excs if isinstance(e, DeclarationError)])
 

@@ -82,7 +82,7 @@ def load_settings(
         if isinstance(values, pydantic.BaseModel):
             found[name] = values
             continue
-        if not isinstance(values, Mapping):
+        if not isinstance(values, Mapping):  # pyright: ignore[reportUnnecessaryIsInstance]  # it comes from a file
             faults.append(
                 DeclarationError(f"settings for {name!r} must be fields and values, not {values!r}")
             )

@@ -20,6 +20,8 @@ T = TypeVar("T")
 P = ParamSpec("P")
 R = TypeVar("R")
 
+ANY_SLOT: type[Slot[Any]] = Slot
+ANY_SIGNAL: type[Signal[Any]] = Signal
 GENERATOR_FLAGS = 0x20 | 0x200  # inspect.CO_GENERATOR | CO_ASYNC_GENERATOR, without importing inspect
 
 
@@ -62,7 +64,7 @@ class Module:
         self.signals: list[Signal[Any]] = []
         self.slots: list[Slot[Any]] = []
         self.rules: list[Rule[Any, Any]] = []
-        if settings is not None and not isinstance(settings, type):
+        if settings is not None and not isinstance(cast("object", settings), type):
             raise DeclarationError(
                 f"module {name}: settings={settings!r} must be a class derived from rs.Settings, not a value"
             )
@@ -252,7 +254,7 @@ class Module:
             numbers = {"weight": weight, "cooldown": cooldown, "patience": patience, "timeout": timeout}
             for what, number in numbers.items():
                 if number is not None and (
-                    isinstance(number, bool) or not isinstance(number, type_of_number)
+                    isinstance(number, bool) or not isinstance(cast("object", number), type_of_number)
                 ):
                     raise DeclarationError(
                         f"rule {whole} ({origin}): {what}={number!r} is no number; write {what}=1.0 or a setting"
@@ -261,9 +263,9 @@ class Module:
                 whole,
                 function,
                 when=when,
-                reads=_many(reads, Slot, f"rule {whole} ({origin}): reads"),
-                writes=_many(writes, Slot, f"rule {whole} ({origin}): writes"),
-                emits=_many(emits, Signal, f"rule {whole} ({origin}): emits"),
+                reads=_many(reads, ANY_SLOT, f"rule {whole} ({origin}): reads"),
+                writes=_many(writes, ANY_SLOT, f"rule {whole} ({origin}): writes"),
+                emits=_many(emits, ANY_SIGNAL, f"rule {whole} ({origin}): emits"),
                 weight=_float(weight),
                 cooldown=_float(cooldown),
                 patience=None if patience is None else _float(patience),

@@ -85,13 +85,13 @@ class Engine(Waves):
 
     # ------------------------------------------------------------------------------------ events
 
-    def _on_start(self, event: events.Start) -> None:
+    def on_start(self, event: events.Start) -> None:
         self._birth(self.policy.signal_of["core:startup"], None, (), self._new_group(), None)
 
-    def _on_stop(self, event: events.Stop) -> None:
+    def on_stop(self, event: events.Stop) -> None:
         self._birth(self.policy.signal_of["core:shutdown"], None, (), self._new_group(), None)
 
-    def _on_write(self, event: events.Write) -> None:
+    def on_write(self, event: events.Write) -> None:
         slot = self._slot(event.slot)
         run = self._run(event.run)
         if slot.slot.kind == "collection":
@@ -103,19 +103,19 @@ class Engine(Waves):
             return
         self._change(slot, event.value, self._parents(run), run)
 
-    def _on_store(self, event: events.Store) -> None:
+    def on_store(self, event: events.Store) -> None:
         slot = self._slot(event.slot)
         run = self._run(event.run)
         self._mark_write(slot, run)
         self._change_item(slot, event.key, event.item, run, self._origin(run))
 
-    def _on_discard(self, event: events.Discard) -> None:
+    def on_discard(self, event: events.Discard) -> None:
         slot = self._slot(event.slot)
         run = self._run(event.run)
         self._mark_write(slot, run)
         self._change_item(slot, event.key, ABSENT, run, self._origin(run))
 
-    def _on_emit(self, event: events.Emit) -> None:
+    def on_emit(self, event: events.Emit) -> None:
         signal = self.policy.signal_of.get(event.signal)
         if signal is None:
             raise UndeclaredError(self._unknown("signal", event.signal, self.policy.signals))
@@ -125,7 +125,7 @@ class Engine(Waves):
         parents, group = self._origin(run)
         self._birth(signal, event.payload, parents, group, run)
 
-    def _on_wipe(self, event: events.Wipe) -> None:
+    def on_wipe(self, event: events.Wipe) -> None:
         signal = self.policy.signal_of.get(event.signal)
         if signal is None:
             raise UndeclaredError(self._unknown("signal", event.signal, self.policy.signals))
@@ -140,7 +140,7 @@ class Engine(Waves):
                     self._cancel(holder, "wiped")
             self._kill(spike, "wiped")
 
-    def _on_add_rule(self, event: events.AddRule) -> None:
+    def on_add_rule(self, event: events.AddRule) -> None:
         """Replace the policy by one that has the same rules in the same order, and more."""
         clauses = event.policy.clause_plans
         self.policy = event.policy
@@ -162,7 +162,7 @@ class Engine(Waves):
                 watch.clause = clauses[watch.clause.index]
         self._asking.update(self.waiting)
 
-    def _on_finish(self, event: events.Finish) -> None:
+    def on_finish(self, event: events.Finish) -> None:
         run = self.running.pop(event.run, None)
         if run is None:
             raise EngineError(f"run {event.run} is over, or never was")
@@ -262,9 +262,7 @@ class Engine(Waves):
                 for other in list(spike.holders):
                     if other is not run and other.clause.rule is rule and other.state < State.RUNNING:
                         self._lose(other, self._of_spike(other, spike), reason)
-            if spike.refused is None:
-                spike.refused = set()
-            spike.refused.add(rule.index)
+            spike.refuse(rule.index)
 
     def _retire(self, rule: RulePlan) -> None:
         self.retired.add(rule.index)
@@ -297,9 +295,7 @@ class Engine(Waves):
             for need in owner.clause.needs:
                 spike = owner.spikes[need.index]
                 if spike is not None and not need.detached:
-                    if spike.refused is None:
-                        spike.refused = set()
-                    spike.refused.add(owner.clause.rule.index)
+                    spike.refuse(owner.clause.rule.index)
             for need in owner.clause.needs:
                 self._release(owner, need, "eliminated")
             self._end(owner)
@@ -309,9 +305,7 @@ class Engine(Waves):
             del group.pressed[clause]
             rival = self.policy.clause_plans[clause]
             if Horizon(self).viable(rival, None, group, rival.rule.slotset) != FIRM:
-                if group.eliminated is None:
-                    group.eliminated = set()
-                group.eliminated.add(clause)
+                group.eliminate(clause)
             self._dirty[group] = None
         elif kind is Kind.RECHECK:
             owner.recheck = NEVER
@@ -336,13 +330,13 @@ def _overdue(rule: RulePlan) -> str:
 
 
 HANDLERS: dict[type, Any] = {
-    events.Start: Engine._on_start,
-    events.Stop: Engine._on_stop,
-    events.Write: Engine._on_write,
-    events.Store: Engine._on_store,
-    events.Discard: Engine._on_discard,
-    events.Emit: Engine._on_emit,
-    events.Wipe: Engine._on_wipe,
-    events.Finish: Engine._on_finish,
-    events.AddRule: Engine._on_add_rule,
+    events.Start: Engine.on_start,
+    events.Stop: Engine.on_stop,
+    events.Write: Engine.on_write,
+    events.Store: Engine.on_store,
+    events.Discard: Engine.on_discard,
+    events.Emit: Engine.on_emit,
+    events.Wipe: Engine.on_wipe,
+    events.Finish: Engine.on_finish,
+    events.AddRule: Engine.on_add_rule,
 }

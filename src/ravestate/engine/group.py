@@ -39,6 +39,12 @@ class Group:
             group = group.into
         return group
 
+    def eliminate(self, clause: int) -> None:
+        """The patience of a stand-by rival has run out."""
+        if self.eliminated is None:
+            self.eliminated = set()
+        self.eliminated.add(clause)
+
     def absorb(self, other: Group) -> None:
         """Make `other` part of this group. What is finished in either is finished in both."""
         other.into = self

@@ -95,11 +95,11 @@ class Pool:
         try:
             return self.values[slot]
         except KeyError:
-            default = self.policy.slot_plans[slot].slot.default
+            default: Any = self.policy.slot_plans[slot].slot.default
             if not isinstance(default, PASSIVE):
                 default = copy.deepcopy(default)  # contexts share no state
             self.values[slot] = default
-            return default
+            return self.values[slot]
 
     def live_spike(self, need: Need) -> Spike | None:
         """A live spike, not given up by the rule and not consumed for it, that could meet a need."""

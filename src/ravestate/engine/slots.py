@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from types import MappingProxyType
-from typing import Any
+from typing import Any, cast
 
 from ravestate.declare.slot import Entry
 from ravestate.engine import trace
@@ -81,14 +81,15 @@ class Slots(Pool):
             self._birth(signal, entry, origin[0], origin[1], run)
         self._regate()
 
-    def _replace(self, slot: SlotPlan, value: Mapping[str, Any], run: Activation | None) -> None:
+    def _replace(self, slot: SlotPlan, value: Any, run: Activation | None) -> None:
         """Give a collection all its items at once: as if each difference had been written."""
         if not isinstance(value, Mapping):
             raise RuleError(f"{slot.name} is a collection: write a mapping of keys to items, not {value!r}")
         self._mark_write(slot, run)
+        items = cast("Mapping[str, Any]", value)
         old: Mapping[str, Any] = self.read(slot.index)
-        for key in [*(k for k in old if k not in value), *value]:
-            self._change_item(slot, key, value.get(key, ABSENT), run, self._origin(run))
+        for key in [*(k for k in old if k not in items), *items]:
+            self._change_item(slot, key, items.get(key, ABSENT), run, self._origin(run))
 
     def _regate(self) -> None:
         """A slot has changed: predicates on slots may have become true, or false."""

@@ -60,9 +60,15 @@ class Spike:
         self.refused: set[int] | None = None
         self.claims: dict[int, Activation | None] | None = None
 
+    def refuse(self, rule: int) -> None:
+        """The rule gives it up for good."""
+        if self.refused is None:
+            self.refused = set()
+        self.refused.add(rule)
+
     def descends_from(self, rule: int) -> bool:
         """Whether a run of the rule is among its causes: cycles are cut there, so that loops end (L19)."""
-        stack = [self]
+        stack: list[Spike] = [self]
         seen: set[int] = set()
         while stack:
             spike = stack.pop()
@@ -76,7 +82,7 @@ class Spike:
 
     def has_ancestor(self, ancestors: set[int]) -> bool:
         """Whether it is, or descends from, a spike whose id is among `ancestors`."""
-        stack = [self]
+        stack: list[Spike] = [self]
         seen: set[int] = set()
         while stack:
             spike = stack.pop()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any, cast
 
 from ravestate.declare.condition import AllOf, AnyOf, Condition, Constraint, Holds
 from ravestate.declare.signal import Signal
@@ -41,7 +42,7 @@ def normal_form(condition: Condition) -> tuple[Conjunction, ...]:
 
 def _expand(condition: Condition) -> list[tuple[Constraint | Holds, ...]]:
     if isinstance(condition, Signal):
-        return [(Constraint(condition),)]
+        return [(Constraint(cast("Signal[Any]", condition)),)]
     if isinstance(condition, (Constraint, Holds)):
         return [(condition,)]
     if isinstance(condition, AnyOf):

@@ -162,7 +162,7 @@ class Context:
         """
         self._running().receive(AddRule(self.policy.with_rule(rule)))
 
-    async def next(self, signal: Signal[T], timeout: float | None = None) -> T:
+    async def next(self, signal: Signal[T], timeout: float | None = None) -> T:  # noqa: ASYNC109  # the public name
         """The payload of the next spike of a signal.
 
         Args:

@@ -79,7 +79,7 @@ class Nest:
                 except GeneratorExit:
                     coroutine.close()
                     raise
-                except BaseException as thrown:  # noqa: BLE001  # handed on to the coroutine
+                except BaseException as thrown:  # handed on to the coroutine
                     error = thrown
             began = perf_counter()
             try:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import signal
 from types import ModuleType
 from typing import Any
@@ -12,6 +13,9 @@ from ravestate.policy.policy import Policy
 from ravestate.runtime.context import Context
 
 __all__ = ["run", "run_context"]
+
+UNABLE = (NotImplementedError, RuntimeError, ValueError)
+"""What handling signals raises where the platform cannot, or outside of the main thread."""
 
 
 def run(*modules: Module | ModuleType | Policy, **options: Any) -> None:
@@ -58,7 +62,5 @@ async def run_context(context: Context) -> None:
         pass
     finally:
         for number in signals:
-            try:
+            with contextlib.suppress(*UNABLE):
                 loop.remove_signal_handler(number)
-            except (NotImplementedError, RuntimeError, ValueError):
-                pass

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import functools
 import logging
 import random
 import threading
 from collections.abc import Callable, Mapping
 from time import perf_counter
-from typing import Any
+from typing import Any, cast
 
 from ravestate.declare.outcome import Resign, Retire
 from ravestate.declare.rule import Rule
@@ -208,7 +209,7 @@ class Runner:
             nest.first_step(rule.function(ctx), rule)
         except StopIteration as stop:
             self._finish(effect.run, rule, stop.value, None)
-        except BaseException as exception:  # noqa: BLE001  # a rule may raise anything
+        except BaseException as exception:  # a rule may raise anything
             self._finish(effect.run, rule, None, exception)
             if isinstance(exception, (KeyboardInterrupt, SystemExit)):
                 raise
@@ -231,12 +232,12 @@ class Runner:
         result, exception = None, None
         try:
             result = rule.function(ctx)
-        except BaseException as raised:  # noqa: BLE001  # a rule may raise anything
+        except BaseException as raised:  # a rule may raise anything
             exception = raised
-        try:
+        with contextlib.suppress(
+            RuntimeError
+        ):  # the loop is closed: the context ended while the function ran
             self.loop.call_soon_threadsafe(self._work_done, run, rule, result, exception)
-        except RuntimeError:
-            pass  # the loop is closed: the context ended while the function ran
 
     def _work_done(
         self, run: int, rule: Rule[Any, Any], result: Any, exception: BaseException | None
@@ -316,9 +317,9 @@ class Runner:
             self.loop.call_soon(self._pump)
             await future
 
-    async def wait_for_runs(self, since: int, timeout: float) -> None:
+    async def wait_for_runs(self, since: int, seconds: float) -> None:
         """Wait, for some seconds at most, for the runs with a number above `since`."""
-        end = self.loop.time() + timeout
+        end = self.loop.time() + seconds
         while any(run > since for run in self._contexts) and self.loop.time() < end:
             tasks = [task for run, task in self._tasks.items() if run > since]
             if tasks:
@@ -349,13 +350,13 @@ class Runner:
         self.workers.close()
 
 
-def _is_async(function: Any) -> bool:
+def _is_async(function: Callable[..., Any]) -> bool:
     import inspect
 
     while isinstance(function, functools.partial):
-        function = function.func
+        function = cast("functools.partial[Any]", function).func
     return inspect.iscoroutinefunction(function) or inspect.iscoroutinefunction(
-        getattr(type(function), "__call__", None)
+        vars(type(function)).get("__call__")  # an object with an async call
     )
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import asyncio
 import selectors
 from collections.abc import Callable
-from typing import Any
 
 __all__ = ["VirtualLoop"]
 
@@ -41,7 +40,7 @@ class VirtualLoop(asyncio.SelectorEventLoop):
 
     def nothing_ready(self) -> None:
         """Called when only timers are left: jump to the next one, or stop."""
-        timers: list[Any] = self._scheduled  # type: ignore[attr-defined]  # of BaseEventLoop
+        timers: list[asyncio.TimerHandle] = vars(self)["_scheduled"]  # of BaseEventLoop
         due: float | None = timers[0].when() if timers else None
         if self.goal is not None and (due is None or due > self.goal):
             self._virtual = self.goal

@@ -20,6 +20,7 @@ Segment = tuple[int, int, float, float]
 _NEAR = 5.0  # stubs nearer than this look like one line
 _APART = 7.0  # least distance of two verticals on one track
 _LEVEL = 0.01
+_TOUCHING = 4 * STRONG  # far above what crossings may add up to
 
 
 @dataclass(slots=True)
@@ -58,7 +59,7 @@ def tracks(segments: Sequence[Segment]) -> Tracks:
             overlaps[b].append(a)
             first, second = _cost(nets[a], nets[b], joined), _cost(nets[b], nets[a], joined)
             if first >= STRONG and second >= STRONG:
-                wishes += [(a, b, STRONG), (b, a, STRONG)]
+                wishes += [(a, b, _TOUCHING), (b, a, _TOUCHING)]
             elif first < second:
                 wishes.append((a, b, second - first))
             elif second < first:
@@ -123,7 +124,7 @@ def _cost(a: _Net, b: _Net, joined: set[tuple[int, int]]) -> int:
             cost += 1
         for q, z in a.right.items():
             if abs(y - z) < _NEAR and (p, q) not in joined:
-                cost += STRONG
+                cost += _TOUCHING
     for q, z in a.right.items():
         if b.top < z < b.bottom and q not in b.right:
             cost += 1
