@@ -46,14 +46,20 @@ class DeclarationErrors(RavestateError, ExceptionGroup[DeclarationError]):
     """Every fault that compiling found; each one is a `DeclarationError` in ``.exceptions``."""
 
     def __new__(cls, faults: Sequence[DeclarationError]) -> DeclarationErrors:
-        count = f"{len(faults)} fault" + ("s" if len(faults) != 1 else "")
-        return super().__new__(cls, f"{count} in the declarations", faults)
+        return super().__new__(cls, _count(faults), faults)
+
+    def __init__(self, faults: Sequence[DeclarationError]) -> None:
+        super().__init__(_count(faults), faults)
 
     def derive(self, excs: Sequence[Exception]) -> ExceptionGroup[Exception]:  # type: ignore[override]  # typeshed has the wider type
         return DeclarationErrors([e for e in excs if isinstance(e, DeclarationError)])
 
     def __str__(self) -> str:
         return "\n".join([f"{self.message}:", *(f"  - {fault}" for fault in self.exceptions)])
+
+
+def _count(faults: Sequence[DeclarationError]) -> str:
+    return f"{len(faults)} fault" + ("s" if len(faults) != 1 else "") + " in the declarations"
 
 
 class RuleError(RavestateError, RuntimeError):

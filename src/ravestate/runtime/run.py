@@ -47,14 +47,8 @@ async def run_context(context: Context) -> None:
 
     signals = (signal.SIGINT, signal.SIGTERM)
     for number in signals:
-        try:
+        with contextlib.suppress(*UNABLE):
             loop.add_signal_handler(number, ask)
-        except (
-            NotImplementedError,
-            RuntimeError,
-            ValueError,
-        ):  # not on this platform, or not in the main thread
-            pass
     try:
         async with context:
             await context.until_stopped()
