@@ -1,0 +1,81 @@
+"""The command line: ``ravestate COMMAND ...``, one file a command.
+
+Exit codes: 0 all well, 1 the agent has faults or failed, 2 the command was used wrongly. A user's mistake gives a
+message, never a traceback.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Sequence
+from importlib import import_module
+
+from ravestate.errors import PlatformError, RavestateError
+
+__all__ = ["main"]
+
+COMMANDS = {
+    "chat": "talk with the complete agent on the console",
+    "run": "run an agent from modules or an agent file",
+    "check": "print an agent's faults, ties, rules that can never win, and signals nobody hears",
+    "graph": "draw an agent's Signal-Rule-Slot diagram",
+    "new": "write a small project to begin with",
+}
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run the command line.
+
+    Args:
+        argv: The arguments; the process's own by default.
+
+    Returns:
+        The exit code.
+    """
+    from ravestate import __version__
+
+    parser = argparse.ArgumentParser(
+        prog="ravestate", description="Design, run and inspect interactive agents.", allow_abbrev=False
+    )
+    parser.add_argument("--version", action="version", version=f"ravestate {__version__}")
+    parser.add_argument("-v", "--verbose", action="count", default=0, help="say more; twice for everything")
+    commands = parser.add_subparsers(dest="command", metavar="COMMAND", required=True)
+    arguments = sys.argv[1:] if argv is None else list(argv)
+    for name, summary in COMMANDS.items():
+        command = commands.add_parser(name, help=summary, description=summary.capitalize() + ".", allow_abbrev=False)
+        if name in arguments:  # the others' options are not needed to list them
+            import_module(f"ravestate.cli.{name}").add_arguments(command)
+    options = parser.parse_args(arguments)
+    _log(options.verbose)
+    try:
+        return import_module(f"ravestate.cli.{options.command}").run(options)
+    except UsageError as error:
+        print(f"ravestate {options.command}: {error}", file=sys.stderr)
+        return 2
+    except (RavestateError, PlatformError) as error:
+        print(f"ravestate {options.command}: {error}", file=sys.stderr)
+        return 1
+    except KeyboardInterrupt:
+        return 130
+    except BrokenPipeError:
+        return 0
+
+
+class UsageError(RavestateError):
+    """The command was used wrongly: exit code 2."""
+
+
+def _log(verbosity: int) -> None:
+    """Warnings go to whatever ``sys.stderr`` is at the time: a console may have replaced it."""
+    import logging
+
+    class Handler(logging.Handler):
+        def emit(self, record: logging.LogRecord) -> None:
+            print(self.format(record), file=sys.stderr)
+
+    logging.basicConfig(
+        level=[logging.WARNING, logging.INFO, logging.DEBUG][min(verbosity, 2)],
+        handlers=[Handler()],
+        format="%(levelname)s %(name)s: %(message)s",
+    )

@@ -1,0 +1,232 @@
+"""An agent named on the command line: modules, settings, and the file that may hold both."""
+
+from __future__ import annotations
+
+import argparse
+import importlib.util
+import os
+import re
+import sys
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from importlib import import_module
+from importlib.metadata import entry_points
+from pathlib import Path
+from typing import Any, cast
+
+from ravestate.cli import UsageError
+from ravestate.declare.module import Module, as_module
+from ravestate.errors import DeclarationError, RavestateError, nearest
+from ravestate.modules import BUILT_IN
+
+__all__ = ["Agent", "add_arguments", "load_agent", "load_module"]
+
+KEYS = ("modules", "settings", "seed", "patience")
+VARIABLE = re.compile(r"\$\{([A-Za-z_][A-Za-z0-9_]*)(?::-([^}]*))?\}")
+
+
+@dataclass(slots=True)
+class Agent:
+    """Modules, and what their contexts are to be given."""
+
+    modules: list[Module]
+    settings: dict[str, dict[str, Any]] = field(default_factory=dict[str, dict[str, Any]])
+    seed: int | None = None
+    patience: float = 1.0
+
+    def options(self) -> dict[str, Any]:
+        """The arguments for `ravestate.Context` besides the modules."""
+        return {"settings": self.settings, "seed": self.seed, "patience": self.patience}
+
+
+def add_arguments(parser: argparse.ArgumentParser, *, modules: str = "+") -> None:
+    """The arguments that name an agent."""
+    parser.add_argument(
+        "modules",
+        nargs=modules,
+        metavar="MODULE",
+        help="a built-in name (hibye), an installed entry point, a dotted path (pkg.mod or pkg.mod:module), a file "
+        "(./hello.py), or an agent file (agent.yaml)",
+    )
+    parser.add_argument("-f", "--file", metavar="FILE", help="an agent file: modules, settings, seed, patience")
+    parser.add_argument(
+        "--set",
+        dest="sets",
+        action="append",
+        default=[],
+        metavar="MODULE.KEY=VALUE",
+        help="a setting, before the file's and the environment's (may be repeated)",
+    )
+    parser.add_argument("--seed", type=int, help="of all random choices, to repeat a run")
+
+
+def load_agent(options: argparse.Namespace, first: Iterable[str] = ()) -> Agent:
+    """The agent that parsed arguments name; `first` are modules that it has in any case.
+
+    Raises:
+        UsageError: Something that is named does not exist or cannot be read.
+    """
+    agent = Agent([])
+    names = [(name, Path()) for name in first]
+    files = [name for name in options.modules if name.endswith((".yaml", ".yml"))]
+    if options.file:
+        files.append(options.file)
+    for file in files:
+        names += _read_file(agent, Path(file))
+    names += [(name, Path()) for name in options.modules if name not in files]
+    if not names:
+        raise UsageError("name a module, or an agent file that names some")
+    for name, folder in names:
+        module = load_module(name, folder)
+        if module not in agent.modules:
+            agent.modules.append(module)
+    for text in options.sets:
+        _set(agent.settings, text)
+    if options.seed is not None:
+        agent.seed = options.seed
+    return agent
+
+
+def load_module(name: str, folder: Path = Path()) -> Module:
+    """A module by its built-in name, entry point, dotted path or file.
+
+    Args:
+        name: What to load.
+        folder: Against which a file's path is resolved.
+
+    Raises:
+        UsageError: There is no such module, or it fails when it is imported.
+    """
+    if name.endswith(".py"):
+        return _from_file(name, (folder / name).resolve())
+    if name in BUILT_IN:
+        return as_module(import_module(f"ravestate.modules.{BUILT_IN[name]}.{name}"))
+    installed = {point.name: point for point in entry_points(group="ravestate.modules")}
+    if name in installed:
+        return _as_module(name, installed[name].load())
+    if "." in name or ":" in name or importlib.util.find_spec(name) is not None:
+        path, _, attribute = name.partition(":")
+        if str(Path.cwd()) not in sys.path:
+            sys.path.insert(0, str(Path.cwd()))
+        try:
+            value: Any = import_module(path)
+        except ModuleNotFoundError as error:
+            raise UsageError(f"module {name!r}: {error}{nearest(name, [*BUILT_IN, *installed])}") from None
+        except RavestateError:
+            raise
+        except Exception as error:
+            raise UsageError(f"module {name!r} fails when it is imported: {_where(error)}") from error
+        if attribute:
+            if not hasattr(value, attribute):
+                raise UsageError(f"{path} has no {attribute!r}{nearest(attribute, vars(value))}")
+            value = getattr(value, attribute)
+        return _as_module(name, value)
+    raise UsageError(
+        f"there is no module {name!r}{nearest(name, [*BUILT_IN, *installed])}; built in: {', '.join(BUILT_IN)}"
+    )
+
+
+def _from_file(name: str, path: Path) -> Module:
+    if not path.is_file():
+        raise UsageError(f"there is no file {name}")
+    spec = importlib.util.spec_from_file_location(path.stem, path)
+    if spec is None or spec.loader is None:
+        raise UsageError(f"{name} is no Python file")
+    if str(path.parent) not in sys.path:  # so that it can import what lies beside it
+        sys.path.insert(0, str(path.parent))
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[path.stem] = module
+    try:
+        spec.loader.exec_module(module)
+    except RavestateError:
+        raise
+    except Exception as error:
+        raise UsageError(f"{name} fails when it is loaded: {_where(error)}") from error
+    return _as_module(name, module)
+
+
+def _as_module(name: str, value: object) -> Module:
+    try:
+        return as_module(value)
+    except DeclarationError as error:
+        raise UsageError(f"{name}: {error}") from None
+
+
+def _where(error: Exception) -> str:
+    """An exception in one line, with the place in the user's file."""
+    if isinstance(error, SyntaxError):
+        return f"{error.filename}:{error.lineno}: {error.msg}"
+    trace = error.__traceback__
+    place = ""
+    while trace is not None:
+        file = trace.tb_frame.f_code.co_filename
+        if not file.startswith("<") and "importlib" not in file and "ravestate" not in Path(file).parts:
+            place = f"{file}:{trace.tb_lineno}: "
+        trace = trace.tb_next
+    return f"{place}{type(error).__name__}: {error}"
+
+
+def _read_file(agent: Agent, path: Path) -> list[tuple[str, Path]]:
+    """Add what an agent file says; returns the modules that it names, with the folder they are relative to."""
+    import yaml
+
+    try:
+        content: Any = yaml.safe_load(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise UsageError(f"cannot read {path}: {error.strerror}") from None
+    except (yaml.YAMLError, UnicodeDecodeError) as error:
+        raise UsageError(f"{path} is not valid YAML: {error}") from None
+    if not isinstance(content, dict):
+        raise UsageError(f"{path} must hold `modules: [...]`, and may hold {', '.join(KEYS[1:])}")
+    said = cast("dict[str, Any]", content)
+    for key in said:
+        if key not in KEYS:
+            raise UsageError(f"{path}: unknown key {key!r}{nearest(str(key), KEYS)}")
+    modules: Any = said.get("modules", [])
+    if not isinstance(modules, list) or not all(isinstance(m, str) for m in cast("list[Any]", modules)):
+        raise UsageError(f"{path}: modules must be a list of names, not {modules!r}")
+    settings = _filled(said.get("settings") or {}, path)
+    if not isinstance(settings, Mapping):
+        raise UsageError(f"{path}: settings must map a module to its settings, not {settings!r}")
+    for module, values in cast("Mapping[str, Any]", settings).items():
+        if not isinstance(values, Mapping):
+            raise UsageError(f"{path}: settings of {module} must be keys and values, not {values!r}")
+        agent.settings.setdefault(str(module), {}).update(cast("Mapping[str, Any]", values))
+    for key, kind in (("seed", int), ("patience", (int, float))):
+        if key in said:
+            if not isinstance(said[key], kind) or isinstance(said[key], bool):
+                raise UsageError(f"{path}: {key} must be a number, not {said[key]!r}")
+            setattr(agent, key, said[key])
+    return [(name, path.parent) for name in cast("list[str]", modules)]
+
+
+def _filled(value: Any, path: Path) -> Any:
+    """Replace ``${NAME}`` and ``${NAME:-default}`` by the environment's values: secrets do not belong into files."""
+    if isinstance(value, str):
+
+        def fill(match: re.Match[str]) -> str:
+            found = os.environ.get(match[1], match[2])
+            if found is None:
+                raise UsageError(f"{path}: the environment has no {match[1]}; set it, or write ${{{match[1]}:-default}}")
+            return found
+
+        return VARIABLE.sub(fill, value)
+    if isinstance(value, dict):
+        return {key: _filled(item, path) for key, item in cast("dict[Any, Any]", value).items()}
+    if isinstance(value, list):
+        return [_filled(item, path) for item in cast("list[Any]", value)]
+    return value
+
+
+def _set(settings: dict[str, dict[str, Any]], text: str) -> None:
+    import yaml
+
+    name, equals, value = text.partition("=")
+    module, dot, key = name.strip().partition(".")
+    if not equals or not dot or not module or not key:
+        raise UsageError(f"--set {text}: write --set module.key=value, e.g. --set idle.bored_after=10")
+    try:
+        parsed: Any = yaml.safe_load(value)
+    except yaml.YAMLError:
+        parsed = value
+    settings.setdefault(module, {})[key] = "" if parsed is None and value == "" else parsed
