@@ -1,0 +1,50 @@
+"""``ravestate new``: a small project to begin with, whose tests pass."""
+
+from __future__ import annotations
+
+import argparse
+import keyword
+import re
+from importlib.resources import files
+from pathlib import Path
+
+from ravestate.cli import UsageError
+
+__all__ = ["add_arguments", "run"]
+
+FILES = {
+    "README.md": "README.md",
+    "agent.yaml": "agent.yaml",
+    "pyproject.toml": "pyproject.toml",
+    "module.py": "{package}.py",
+    "test_module.py": "tests/test_{package}.py",
+}
+"""Template, and the path that it gets in the new project."""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """The command's options."""
+    parser.add_argument("name", help="of the project, and of the folder that is made, e.g. my-agent")
+
+
+def run(options: argparse.Namespace) -> int:
+    """Carry the command out."""
+    folder = Path(options.name)
+    name = folder.name
+    package = name.replace("-", "_").lower()
+    if not re.fullmatch(r"[A-Za-z][A-Za-z0-9_-]*", name) or keyword.iskeyword(package):
+        raise UsageError(f"{name!r} is no name for a project: use letters, digits, '-' and '_', e.g. my-agent")
+    if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
+        raise UsageError(f"{folder} exists already, and is not empty")
+    templates = files("ravestate.cli") / "template"
+    for template, target in FILES.items():
+        text = (templates / f"{template}.txt").read_text(encoding="utf-8")
+        path = folder / target.format(package=package)
+        try:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text(text.replace("__name__", name).replace("__package__", package), encoding="utf-8")
+        except OSError as error:
+            raise UsageError(f"cannot write {path}: {error.strerror}") from None
+        print(f"wrote {path}")
+    print(f"\nNow:\n  cd {folder}\n  ravestate run agent.yaml\n  python -m pytest")
+    return 0
