@@ -33,7 +33,9 @@ def route(graph: Layered, middle: Sequence[float]) -> Routed:
     for number in range(len(graph.segments)):
         gaps[graph.layer[graph.ends(number)[0]]].append(number)
     across = [0.0] * len(graph.layer)
-    turns: list[float | None] = [None] * len(graph.segments)
+    turns = [(0.0, 0.0)] * len(
+        graph.segments
+    )  # where a segment leaves its first height, and reaches its second
     x = 0.0
     for layer, numbers in zip(graph.order, gaps, strict=True):
         column = max(graph.width[v] for v in layer)
@@ -42,9 +44,11 @@ def route(graph: Layered, middle: Sequence[float]) -> Routed:
         x += column
         if numbers:
             found = tracks([_segment(graph, middle, number) for number in numbers])
+            last = x + _BEFORE + max(0, found.count - 1) * _PITCH
             for number, track in zip(numbers, found.of, strict=True):
-                turns[number] = None if track is None else x + _BEFORE + track * _PITCH
-            x += _BEFORE + max(0, found.count - 1) * _PITCH + _AFTER
+                turn = x + _BEFORE + (track or 0) * _PITCH
+                turns[number] = (x + _BEFORE / 3, last + _AFTER / 4) if track is None else (turn, turn)
+            x = last + _AFTER
     return Routed(
         [(across[v], middle[v]) for v in range(len(middle))],
         [_line(graph, chain, across, middle, turns) for chain in graph.chains],
@@ -63,21 +67,19 @@ def _line(
     chain: Chain,
     across: Sequence[float],
     middle: Sequence[float],
-    turns: Sequence[float | None],
+    turns: Sequence[Point],
 ) -> list[Point]:
     points: list[Point] = []
     for number in chain:
         low, high, y, z = _segment(graph, middle, number)
         u, v = graph.ports[low].vertex, graph.ports[high].vertex
-        start = across[u] + graph.width[u] / 2
-        end = across[v] - graph.width[v] / 2
-        turn = turns[number]
-        points.append((start, y))
-        if turn is not None:
-            points += [(turn, y), (turn, z)]
-        elif abs(y - z) > _LEVEL:  # slantwise between the borders of the layers
-            points += [(start + _BEFORE / 2, y), (end - _AFTER, z)]
-        points.append((end, z))
+        leaves, reaches = turns[number]
+        points += [
+            (across[u] + graph.width[u] / 2, y),
+            (leaves, y),
+            (reaches, z),
+            (across[v] - graph.width[v] / 2, z),
+        ]
     return _simple(points)
 
 
