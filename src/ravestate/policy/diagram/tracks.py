@@ -69,7 +69,7 @@ def tracks(segments: Sequence[Segment]) -> Tracks:
     waiting = [0] * len(nets)
     for (a, b, weight), turned in zip(wishes, backward(len(nets), wishes), strict=True):
         if turned and weight >= STRONG:
-            slanted.add(min(a, b, key=lambda i: (len(nets[i].segments), i)))
+            slanted |= _offending(nets[a], nets[b], segments, joined)
         u, v = (b, a) if turned else (a, b)
         after[u].append(v)
         waiting[v] += 1
@@ -77,14 +77,15 @@ def tracks(segments: Sequence[Segment]) -> Tracks:
     least = [0] * len(nets)
     ready = [i for i in range(len(nets)) if not waiting[i]]
     for i in ready:
-        if i not in slanted:
+        turning = [segment for segment in nets[i].segments if segment not in slanted]
+        if turning:
             used = {place[j] for j in overlaps[i]}
             track = least[i]
             while track in used:
                 track += 1
             place[i] = track
             found.count = max(found.count, track + 1)
-            for segment in nets[i].segments:
+            for segment in turning:
                 found.of[segment] = track
         for j in after[i]:
             least[j] = max(least[j], place[i] + 1)
@@ -113,6 +114,18 @@ def _nets(segments: Sequence[Segment]) -> list[_Net]:
         net.top, net.bottom = min(heights), max(heights)
         if net.bottom - net.top > _LEVEL:
             found.append(net)
+    return found
+
+
+def _offending(a: _Net, b: _Net, segments: Sequence[Segment], joined: set[tuple[int, int]]) -> set[int]:
+    """The segments that lie upon each other's stubs with `a` not on the left of `b`: of each pair the fewer."""
+    found: set[int] = set()
+    for p, y in a.left.items():
+        for q, z in b.right.items():
+            if abs(y - z) < _NEAR and (p, q) not in joined:
+                leaving = [segment for segment in a.segments if segments[segment][0] == p]
+                entering = [segment for segment in b.segments if segments[segment][1] == q]
+                found.update(leaving if len(leaving) < len(entering) else entering)
     return found
 
 
