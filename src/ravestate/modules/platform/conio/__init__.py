@@ -1,0 +1,1 @@
+"""The console: what is typed is heard, what is said is printed."""

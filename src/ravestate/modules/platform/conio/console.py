@@ -1,0 +1,171 @@
+"""A console: lines that come in, texts that go out, whether a person sits there or a pipe ends there."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import AsyncIterator, Callable
+from pathlib import Path
+from types import TracebackType
+from typing import Literal, Protocol, TextIO
+
+from ravestate.errors import PlatformError
+from ravestate.modules._text import printable, without_controls
+
+__all__ = ["Console", "Screen", "history_file"]
+
+Ending = Literal["end of input", "interrupt", "closed"]
+
+
+class Screen(Protocol):
+    """What a `Console` reads from and writes to."""
+
+    async def __aenter__(self) -> object: ...
+
+    async def __aexit__(self, *_: object) -> None: ...
+
+    async def read(self) -> str:
+        """The next line. Raises EOFError at the end, KeyboardInterrupt for Ctrl-C, OSError for a lost line."""
+        ...
+
+    def show(self, text: str) -> None:
+        """Print whole lines. Raises OSError where nobody reads any more."""
+        ...
+
+    def stream(self, piece: str) -> None:
+        """Print a piece of a line as soon as it makes sense."""
+        ...
+
+    def end(self) -> None:
+        """End the line that was streamed, if any."""
+        ...
+
+
+class Console:
+    """An async iterator of the lines that are typed, and a place to write to meanwhile.
+
+    Where input and output are a terminal there is a prompt with editing and a history, and what is written
+    appears above it. Elsewhere lines are read and written plainly. Control characters and bytes that are not
+    text are taken out in both directions, so that neither a user nor a language model moves the cursor.
+
+    Everything is to be called on one event loop; writing never fails: if nobody reads any more, the
+    iteration ends.
+
+    Example:
+        ::
+
+            async with Console() as console:
+                async for line in console:
+                    console.write(f"You said {line!r}.")
+    """
+
+    def __init__(
+        self,
+        screen: Screen | None = None,
+        *,
+        prompt: str = "> ",
+        history: Path | None = None,
+        stdin: TextIO | None = None,
+        stdout: TextIO | None = None,
+    ) -> None:
+        """Choose how to read and write; nothing is read or written yet.
+
+        Args:
+            screen: What to read from and write to, chosen by default.
+            prompt: What stands before the line that is typed.
+            history: The file that keeps what was typed; None keeps it for this session only.
+            stdin: Read this instead of standard input.
+            stdout: Write this instead of standard output.
+
+        Raises:
+            PlatformError: It is a terminal, but prompt_toolkit is not installed.
+        """
+        if screen is None:
+            stdin, stdout = stdin or sys.stdin, stdout or sys.stdout
+            screen = _screen(prompt, history, stdin, stdout)
+        self._screen = screen
+        self._streaming = False
+        self.ending: Ending | None = None
+        """Why the iteration ended: end of input (Ctrl-D), interrupt (Ctrl-C), or closed (by whoever reads)."""
+
+    async def __aenter__(self) -> Console:
+        await self._screen.__aenter__()
+        return self
+
+    async def __aexit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.end()
+        await self._screen.__aexit__(kind, error, trace)
+
+    def __aiter__(self) -> AsyncIterator[str]:
+        return self
+
+    async def __anext__(self) -> str:
+        """Wait for the next line, without its line end. A line that was begun when this was cancelled is kept."""
+        if self.ending is None:
+            try:
+                return printable(await self._screen.read())
+            except EOFError:
+                self.ending = "end of input"
+            except KeyboardInterrupt:
+                self.ending = "interrupt"
+            except OSError:
+                self.ending = "closed"
+        raise StopAsyncIteration
+
+    def write(self, text: str) -> None:
+        """Print `text` and a line end; a line that is being streamed is ended before."""
+        self.end()
+        self._safely(lambda: self._screen.show(printable(text)))
+
+    def stream(self, piece: str) -> None:
+        """Print `piece` behind the pieces before it; where nobody watches, once its line is complete."""
+        piece = without_controls(piece)
+        if piece:
+            self._streaming = True
+            self._safely(lambda: self._screen.stream(piece))
+
+    def end(self) -> None:
+        """End the line that was streamed; without one this does nothing."""
+        if self._streaming:
+            self._streaming = False
+            self._safely(self._screen.end)
+
+    def _safely(self, write: Callable[[], None]) -> None:
+        if self.ending == "closed":
+            return
+        try:
+            write()
+        except (OSError, ValueError):  # a broken pipe, a closed file
+            self.ending = "closed"
+
+
+def _screen(prompt: str, history: Path | None, stdin: TextIO | None, stdout: TextIO | None) -> Screen:
+    if stdin is not None and stdout is not None and stdin.isatty() and stdout.isatty():
+        try:
+            from .terminal import Terminal
+        except ImportError as error:
+            raise PlatformError(
+                "conio on a terminal needs prompt_toolkit: pip install 'ravestate[console]'"
+            ) from error
+        return Terminal(prompt, history)
+    from .pipes import Pipes
+
+    return Pipes(stdin, stdout)
+
+
+def history_file() -> Path:
+    """Return where the lines typed are kept from session to session: in the user's folder for state."""
+    if os.name == "nt":
+        base = os.environ.get("LOCALAPPDATA") or str(Path.home() / "AppData" / "Local")
+    elif sys.platform == "darwin":
+        base = str(Path.home() / "Library" / "Application Support")
+    else:
+        base = os.environ.get("XDG_STATE_HOME") or ""
+        if not os.path.isabs(base):  # so the specification
+            base = str(Path.home() / ".local" / "state")
+    return Path(base) / "ravestate" / "history"

@@ -1,0 +1,144 @@
+"""The console without a terminal: plain lines from standard input to standard output."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import os
+import sys
+import threading
+from typing import TextIO
+
+__all__ = ["Pipes"]
+
+_BLOCK = 1 << 16
+
+
+class Pipes:
+    """Reads lines in a thread of its own, one at a time and only when asked; writes and flushes line by line.
+
+    A file works as well as a pipe, on every system. The thread ends with the input, when it is closed, or, while it
+    waits for a line that nobody writes, with the process.
+    """
+
+    def __init__(self, stdin: TextIO | None, stdout: TextIO | None, *, longest_line: int = 1 << 20) -> None:
+        """Nothing is read yet.
+
+        Args:
+            stdin: Where lines come from; None (standard input is closed) is an input that has ended.
+            stdout: Where lines go to; None is an output that is closed.
+            longest_line: What follows in a line after so many bytes is left out.
+        """
+        self._stdin = stdin
+        self._stdout = stdout
+        self._longest = longest_line
+        self._watched = stdout is not None and stdout.isatty()
+        self._unwritten = ""
+        self._ended = False
+        self._wanted = threading.Semaphore(0)
+        self._line: asyncio.Future[str | None] | None = None
+        self._loop: asyncio.AbstractEventLoop | None = None
+
+    async def __aenter__(self) -> Pipes:
+        return self
+
+    async def __aexit__(self, *_: object) -> None:
+        self._loop = None  # whatever is read from now on is nobody's
+        self._wanted.release()
+
+    async def read(self) -> str:
+        """See `Screen.read`."""
+        if self._stdin is None or self._ended:
+            raise EOFError
+        if self._loop is None:
+            self._loop = asyncio.get_running_loop()
+            # A daemon: who waits for input at the end of the program cannot be woken.
+            threading.Thread(target=self._read_all, args=(self._stdin,), name="conio", daemon=True).start()
+        if self._line is None:
+            self._line = self._loop.create_future()
+            self._wanted.release()
+        line = await asyncio.shield(self._line)  # if this is cancelled, the next call gets the line
+        self._line = None
+        if line is None:
+            self._ended = True
+            raise EOFError
+        return line
+
+    def show(self, text: str) -> None:
+        """See `Screen.show`."""
+        self._write(text + "\n")
+
+    def stream(self, piece: str) -> None:
+        """See `Screen.stream`. Somebody who watches sees each piece; elsewhere it waits for its line end."""
+        self._unwritten += piece
+        if self._watched:
+            ready, self._unwritten = self._unwritten, ""
+        else:
+            ready, line_end, self._unwritten = self._unwritten.rpartition("\n")
+            ready += line_end
+        if ready:
+            self._write(ready)
+
+    def end(self) -> None:
+        """See `Screen.end`."""
+        rest, self._unwritten = self._unwritten, ""
+        self._write(rest + "\n")
+
+    # ------------------------------------------------------------------------------- internals
+
+    def _write(self, text: str) -> None:
+        if self._stdout is None:
+            raise BrokenPipeError
+        encoding = self._stdout.encoding or "utf-8"
+        try:
+            self._stdout.write(text.encode(encoding, "replace").decode(encoding))
+            self._stdout.flush()
+        except OSError:
+            self._silence()
+            raise
+
+    def _silence(self) -> None:
+        """Let Python's own flush at its end go nowhere, where it would print a second error."""
+        if self._stdout is not None and self._stdout is sys.stdout:
+            with contextlib.suppress(OSError, ValueError):
+                nowhere = os.open(os.devnull, os.O_WRONLY)
+                os.dup2(nowhere, self._stdout.fileno())
+                os.close(nowhere)
+
+    # In the thread.
+
+    def _read_all(self, stdin: TextIO) -> None:
+        rest, ended, skipping = b"", False, False
+        while True:
+            self._wanted.acquire()
+            if self._loop is None:
+                return
+            while b"\n" not in rest and not ended:
+                try:
+                    block = os.read(stdin.fileno(), _BLOCK)
+                except (OSError, ValueError):
+                    block = b""
+                ended = not block
+                if skipping:  # the tail of a line that was too long
+                    _, line_end, block = block.partition(b"\n")
+                    skipping = not line_end
+                rest += block
+                if len(rest) > self._longest and b"\n" not in rest:
+                    rest, skipping = rest[: self._longest] + b"\n", True
+            line, line_end, rest = rest.partition(b"\n")
+            if ended and not line and not line_end:
+                self._deliver(None)
+                return
+            self._deliver(line[: self._longest].removesuffix(b"\r").decode("utf-8", "replace"))
+
+    def _deliver(self, line: str | None) -> None:
+        loop, future = self._loop, self._line
+        if loop is None or future is None:
+            return
+
+        def resolve() -> None:
+            if not future.done():
+                future.set_result(line)
+
+        with contextlib.suppress(RuntimeError):  # the loop is closed
+            loop.call_soon_threadsafe(resolve)

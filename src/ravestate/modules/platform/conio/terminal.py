@@ -1,0 +1,167 @@
+"""The console on a terminal: a prompt with editing and history; what is written appears above it."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import contextvars
+import os
+from collections.abc import Iterable
+from pathlib import Path
+
+from prompt_toolkit import PromptSession
+from prompt_toolkit.application import in_terminal
+from prompt_toolkit.formatted_text import StyleAndTextTuples
+from prompt_toolkit.history import FileHistory, History, InMemoryHistory
+from prompt_toolkit.input import Input
+from prompt_toolkit.output import Output
+from prompt_toolkit.patch_stdout import patch_stdout
+from prompt_toolkit.utils import get_cwidth
+
+from ravestate.modules._text import without_controls
+
+__all__ = ["Terminal"]
+
+
+class Terminal:
+    """Reads by prompt_toolkit, and keeps what is written out of the line that is being typed.
+
+    A finished line is printed above the prompt. The line that is being streamed is a part of the prompt, its
+    first row, until it is finished or full: so it can grow while somebody types below it.
+    """
+
+    def __init__(
+        self,
+        prompt: str = "> ",
+        history: Path | None = None,
+        *,
+        input: Input | None = None,
+        output: Output | None = None,
+    ) -> None:
+        """Nothing is read or written yet.
+
+        Args:
+            prompt: What stands before the line that is typed.
+            history: The file that keeps what was typed; without one, or if it cannot be written, it is kept for
+                this session only.
+            input: What is typed on, by default the terminal.
+            output: What is printed on, by default the terminal.
+        """
+        self._prompt = prompt
+        self._streamed = ""
+        self._unprinted: list[str] = []
+        self._printing: asyncio.Task[None] | None = None
+        self._lost = False
+        self._session: PromptSession[str] = PromptSession(
+            self._message, history=_history(history), input=input, output=output
+        )
+        self._patch = contextlib.ExitStack()
+        self._context = contextvars.copy_context()
+
+    async def __aenter__(self) -> Terminal:
+        self._context = contextvars.copy_context()
+        # What others print, and what is logged, goes above the prompt as well.
+        self._patch.enter_context(patch_stdout(raw=True))
+        return self
+
+    async def __aexit__(self, *_: object) -> None:
+        self.end()
+        if self._printing is not None:
+            await asyncio.wait([self._printing])
+        self._patch.close()
+
+    async def read(self) -> str:
+        """See `Screen.read`."""
+        if self._lost:
+            raise EOFError
+        try:
+            return await self._session.prompt_async(handle_sigint=False, set_exception_handler=False)
+        finally:
+            # What was streamed so far stays where it was last seen, above the line that was typed.
+            self._streamed = ""
+
+    def show(self, text: str) -> None:
+        """See `Screen.show`."""
+        if self._lost:
+            raise BrokenPipeError
+        self._unprinted.append(text + "\n")
+        if self._printing is None or self._printing.done():
+            loop = asyncio.get_running_loop()
+            self._printing = loop.create_task(self._print(), context=self._context.copy())
+
+    def stream(self, piece: str) -> None:
+        """See `Screen.stream`."""
+        *lines, self._streamed = (self._streamed + piece).split("\n")
+        for line in lines:
+            self.show(line)
+        width = self._session.output.get_size().columns
+        while get_cwidth(self._streamed) >= width > 1:
+            row, self._streamed = _full_row(self._streamed, width)
+            self.show(row)
+        self._session.app.invalidate()
+
+    def end(self) -> None:
+        """See `Screen.end`."""
+        line, self._streamed = self._streamed, ""
+        if line:
+            self.show(line)
+
+    # ------------------------------------------------------------------------------- internals
+
+    def _message(self) -> StyleAndTextTuples:
+        before: StyleAndTextTuples = [("", self._streamed + "\n")] if self._streamed else []
+        return [*before, ("class:prompt", self._prompt)]
+
+    async def _print(self) -> None:
+        output = self._session.output
+        try:
+            while self._unprinted:
+                async with in_terminal():
+                    text, self._unprinted = "".join(self._unprinted), []
+                    output.enable_autowrap()
+                    output.write_raw(text.replace("\n", "\r\n"))
+                    output.flush()
+        except OSError:  # the terminal is gone
+            self._lost = True
+            app = self._session.app
+            if app.is_running:
+                app.exit(exception=EOFError())
+
+
+def _full_row(text: str, width: int) -> tuple[str, str]:
+    """Cut `text`, which is too long, into a row of less than `width` columns and the rest."""
+    used = end = 0
+    for end, character in enumerate(text):  # noqa: B007  # it is wanted after the loop
+        used += get_cwidth(character)
+        if used >= width:
+            break
+    space = text.rfind(" ", 0, end + 1)
+    if space > 0:
+        return text[:space], text[space + 1 :]
+    end = max(end, 1)
+    return text[:end], text[end:]
+
+
+class _KeptHistory(FileHistory):
+    """A file that may become unreadable or unwritable at any time, which is no reason to stop talking."""
+
+    def load_history_strings(self) -> Iterable[str]:
+        with contextlib.suppress(OSError):
+            return super().load_history_strings()
+        return ()
+
+    def store_string(self, string: str) -> None:
+        with contextlib.suppress(OSError):
+            super().store_string(without_controls(string))
+
+
+def _history(file: Path | None) -> History:
+    if file is None:
+        return InMemoryHistory()
+    try:
+        file.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
+        # What one says to an agent is for nobody else to read.
+        os.close(os.open(file, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o600))
+    except OSError:
+        return InMemoryHistory()
+    return _KeptHistory(str(file))

@@ -1,0 +1,268 @@
+"""The console as an agent sees it, on a screen of ours, on real pipes and on a real terminal."""
+
+import asyncio
+import io
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from ravestate.errors import PlatformError
+from ravestate.modules.platform.conio.console import Console, history_file
+from ravestate.modules.platform.conio.pipes import Pipes
+
+ECHO = """
+import asyncio, sys
+from pathlib import Path
+from ravestate.modules.platform.conio.console import Console
+
+async def main():
+    async with Console(history=Path(sys.argv[1])) as console:
+        async for line in console:
+            console.write(f"heard {line!r}")
+            for piece in ("What", " do", " you mean?"):
+                console.stream(piece)
+            if line == "bye":
+                break
+    print("ending:", console.ending, file=sys.stderr)
+
+asyncio.run(main())
+"""
+
+
+class Script:
+    """A screen with a script: lines and exceptions to be read; what is written is kept."""
+
+    def __init__(self, *script: str | BaseException) -> None:
+        self.script = list(script)
+        self.log: list[str] = []
+        self.broken: Exception | None = None
+
+    async def __aenter__(self) -> object:
+        self.log.append("begin")
+        return self
+
+    async def __aexit__(self, *_: object) -> None:
+        self.log.append("finish")
+
+    async def read(self) -> str:
+        step = self.script.pop(0) if self.script else EOFError()
+        if isinstance(step, BaseException):
+            raise step
+        return step
+
+    def _log(self, what: str) -> None:
+        if self.broken:
+            raise self.broken
+        self.log.append(what)
+
+    def show(self, text: str) -> None:
+        self._log(f"show {text}")
+
+    def stream(self, piece: str) -> None:
+        self._log(f"stream {piece}")
+
+    def end(self) -> None:
+        self._log("end")
+
+
+def heard(screen: Script) -> tuple[list[str], Console]:
+    async def main() -> tuple[list[str], Console]:
+        async with Console(screen) as console:
+            return [line async for line in console], console
+
+    return asyncio.run(main())
+
+
+@pytest.mark.parametrize(
+    ("last", "ending"),
+    [
+        (EOFError(), "end of input"),
+        (KeyboardInterrupt(), "interrupt"),
+        (OSError(5, "Input/output error"), "closed"),
+    ],
+)
+def test_lines_come_until_it_ends(last: BaseException, ending: str) -> None:
+    screen = Script("hello", "", "a\x1b[2Jb\x00\udcff", last, "never")
+    lines, console = heard(screen)
+    assert lines == ["hello", "", "ab\ufffd"]
+    assert console.ending == ending
+    assert screen.log == ["begin", "finish"]
+    with pytest.raises(StopAsyncIteration):
+        asyncio.run(console.__anext__())
+
+
+def test_what_is_written_is_clean_and_in_order() -> None:
+    screen = Script()
+    console = Console(screen)
+    console.write("one\x07\r\ntwo\x1b]0;x\x07")
+    console.stream("th")
+    console.stream("\x1b")
+    console.stream("ree")
+    console.write("four")
+    console.end()
+    assert screen.log == ["show one\ntwo", "stream th", "stream ree", "end", "show four"]
+
+
+def test_a_streamed_line_is_ended_at_the_end() -> None:
+    screen = Script()
+
+    async def main() -> None:
+        async with Console(screen) as console:
+            console.stream("half")
+
+    asyncio.run(main())
+    assert screen.log == ["begin", "stream half", "end", "finish"]
+
+
+@pytest.mark.parametrize("broken", [BrokenPipeError(), ValueError("I/O operation on closed file")])
+def test_writing_where_nobody_reads_ends_it(broken: Exception) -> None:
+    screen = Script("hello")
+    console = Console(screen)
+    screen.broken = broken
+    console.write("one")
+    console.stream("two")
+    console.end()
+    assert console.ending == "closed"
+    with pytest.raises(StopAsyncIteration):
+        asyncio.run(console.__anext__())
+
+
+def test_anything_but_a_terminal_is_plain(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert isinstance(Console(stdin=io.StringIO(), stdout=io.StringIO())._screen, Pipes)
+    monkeypatch.setattr(sys, "stdin", None)
+    monkeypatch.setattr(sys, "stdout", None)
+    lines = asyncio.run(_lines(Console()))
+    assert lines == []
+
+
+async def _lines(console: Console) -> list[str]:
+    async with console:
+        console.write("hello")
+        return [line async for line in console]
+
+
+def test_without_prompt_toolkit_it_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
+    class Terminal(io.StringIO):
+        def isatty(self) -> bool:
+            return True
+
+    monkeypatch.delitem(sys.modules, "ravestate.modules.platform.conio.terminal", raising=False)
+    monkeypatch.setitem(sys.modules, "prompt_toolkit", None)
+    with pytest.raises(PlatformError, match=r"needs prompt_toolkit: pip install 'ravestate\[console\]'"):
+        Console(stdin=Terminal(), stdout=Terminal())
+
+
+@pytest.mark.parametrize(
+    ("platform", "variable", "value", "expected"),
+    [
+        ("linux", "XDG_STATE_HOME", "/state", "/state/ravestate/history"),
+        ("linux", "XDG_STATE_HOME", "not/absolute", "~/.local/state/ravestate/history"),
+        ("linux", "XDG_STATE_HOME", "", "~/.local/state/ravestate/history"),
+        ("darwin", "XDG_STATE_HOME", "/state", "~/Library/Application Support/ravestate/history"),
+    ],
+)
+@pytest.mark.skipif(os.name != "posix", reason="another system's folders")
+def test_where_the_history_is_kept(
+    monkeypatch: pytest.MonkeyPatch, platform: str, variable: str, value: str, expected: str
+) -> None:
+    monkeypatch.setattr(sys, "platform", platform)
+    monkeypatch.setenv(variable, value)
+    assert history_file() == Path(expected).expanduser()
+
+
+# -------------------------------------------------------------------------- in a process of its own
+
+
+def test_through_pipes(tmp_path: Path) -> None:
+    run = subprocess.run(
+        [sys.executable, "-c", ECHO, str(tmp_path / "history")],
+        input=b"hello\ncaf\xe9\x00\n" + b"x" * 100_000 + b"\nlast",
+        capture_output=True,
+        check=True,
+    )
+    question = "What do you mean?"
+    said = ["heard 'hello'", "heard 'caf\ufffd'", f"heard '{'x' * 100_000}'", "heard 'last'"]
+    assert run.stdout.decode().splitlines() == [line for first in said for line in (first, question)]
+    assert run.stderr.decode() == "ending: end of input\n"
+    assert not (tmp_path / "history").exists()
+
+
+@pytest.mark.skipif(os.name != "posix", reason="pipes of the shell")
+def test_a_reader_that_goes_is_a_clean_end(tmp_path: Path) -> None:
+    run = subprocess.Popen(
+        [sys.executable, "-c", ECHO, str(tmp_path / "history")],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+    )
+    assert run.stdin is not None
+    assert run.stdout is not None
+    assert run.stderr is not None
+    with run:
+        run.stdin.write(b"hello\n")
+        run.stdin.flush()
+        assert run.stdout.readline() == b"heard 'hello'\n"
+        run.stdout.close()
+        run.stdin.write(b"anybody?\n")
+        run.stdin.flush()
+        assert run.stderr.read() == b"ending: closed\n"
+        assert run.wait() == 0
+
+
+@pytest.mark.skipif(os.name != "posix", reason="pseudo-terminals")
+@pytest.mark.parametrize(
+    ("keys", "ending"), [(b"\x04", "end of input"), (b"\x03", "interrupt"), (b"bye\r", "None")]
+)
+def test_on_a_terminal(tmp_path: Path, keys: bytes, ending: str) -> None:
+    pytest.importorskip("prompt_toolkit")
+    ours, theirs = os.openpty()
+    history = tmp_path / "state" / "history"
+    run = subprocess.Popen(
+        [sys.executable, "-c", ECHO, str(history)],
+        stdin=theirs,
+        stdout=theirs,
+        stderr=subprocess.PIPE,
+        env={**os.environ, "TERM": "xterm"},
+        start_new_session=True,
+    )
+    os.close(theirs)
+    seen = b""
+
+    def wait_for(text: bytes) -> None:
+        """Be the terminal until it shows `text`."""
+        nonlocal seen
+        while text not in seen:
+            received = os.read(ours, 4096)
+            seen += received
+            os.write(ours, b"\x1b[1;1R" * received.count(b"\x1b[6n"))
+        seen = seen.partition(text)[2]
+
+    assert run.stderr is not None
+    with run:
+        wait_for(b"\x1b[?2004h")  # the prompt reads
+        os.write(ours, b"helo\x1b[Dl\r")  # back once, and mended
+        wait_for(b"'hello'")
+        wait_for(b"mean?")
+        os.write(ours, b"\x1b[A\r")  # the line before
+        wait_for(b"'hello'")
+        os.write(ours, b"caf\xe9" + b"y" * 2000 + b"\r")
+        wait_for(b"'caf")
+        wait_for(b"mean?")
+        os.write(ours, keys)
+        if keys.startswith(b"bye"):
+            wait_for(b"'bye'")
+        # On a Unix terminal the end of the other side is an error of reading.
+        try:
+            while received := os.read(ours, 4096):
+                os.write(ours, b"\x1b[1;1R" * received.count(b"\x1b[6n"))
+        except OSError:
+            pass
+        assert run.stderr.read().decode().endswith(f"ending: {ending}\n")
+        assert run.wait() == 0
+    os.close(ours)
+    assert history.stat().st_mode & 0o777 == 0o600
+    kept = [line for line in history.read_text().splitlines() if line.startswith("+")]
+    assert kept[0] == "+hello"

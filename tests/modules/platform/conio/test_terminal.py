@@ -1,0 +1,231 @@
+"""The prompt: what is typed below, and what is written above it."""
+
+import asyncio
+import io
+import os
+import sys
+from collections.abc import Awaitable, Callable
+from pathlib import Path
+
+import pytest
+
+pytest.importorskip("prompt_toolkit")
+
+from prompt_toolkit.data_structures import Size
+from prompt_toolkit.history import InMemoryHistory
+from prompt_toolkit.input import PipeInput, create_pipe_input
+from prompt_toolkit.output import DummyOutput
+from prompt_toolkit.output.vt100 import Vt100_Output
+
+from ravestate.modules.platform.conio.terminal import Terminal, _full_row, _history
+
+
+class Paper(DummyOutput):
+    """An output of 20 columns that keeps what is printed above the prompt."""
+
+    def __init__(self) -> None:
+        self.printed = ""
+        self.broken: OSError | None = None
+
+    def get_size(self) -> Size:
+        return Size(rows=40, columns=20)
+
+    def write_raw(self, data: str) -> None:
+        if self.broken:
+            raise self.broken
+        self.printed += data
+
+
+Play = Callable[[Terminal, PipeInput, Paper], Awaitable[None]]
+
+
+def play(scene: Play, history: Path | None = None) -> str:
+    async def main() -> str:
+        paper = Paper()
+        with create_pipe_input() as keys:
+            async with Terminal("> ", history, input=keys, output=paper) as terminal:
+                await scene(terminal, keys, paper)
+        return paper.printed.replace("\r\n", "\n")
+
+    return asyncio.run(main())
+
+
+async def drawn(terminal: Terminal) -> None:
+    """Wait until the prompt is there."""
+    app, shown = terminal._session.app, asyncio.Event()
+    app.after_render += lambda _: shown.set()
+    await shown.wait()
+
+
+def message(terminal: Terminal) -> str:
+    return "".join(fragment[1] for fragment in terminal._message())
+
+
+def test_lines_are_typed_and_edited() -> None:
+    async def scene(terminal: Terminal, keys: PipeInput, paper: Paper) -> None:
+        keys.send_text("helo\x1b[Dl\r")
+        assert await terminal.read() == "hello"
+        keys.send_text("\x1b[A\r")
+        assert await terminal.read() == "hello"
+        pasted = f"\x1b[200~{'x' * 100_000}\x1b[201~\r"
+        _, line = await asyncio.gather(asyncio.to_thread(keys.send_text, pasted), terminal.read())
+        assert line == "x" * 100_000
+        keys.send_text("\x04")
+        with pytest.raises(EOFError):
+            await terminal.read()
+        keys.send_text("abc\x03")
+        with pytest.raises(KeyboardInterrupt):
+            await terminal.read()
+
+    play(scene)
+
+
+def test_lines_are_printed_in_order_with_and_without_a_prompt() -> None:
+    async def scene(terminal: Terminal, keys: PipeInput, paper: Paper) -> None:
+        terminal.show("one\ntwo")
+        reading = asyncio.create_task(terminal.read())
+        await drawn(terminal)
+        terminal.show("three")
+        terminal.show("four")
+        keys.send_text("x\r")
+        await reading
+        terminal.show("five")
+
+    assert play(scene) == "one\ntwo\nthree\nfour\nfive\n"
+
+
+def test_a_streamed_line_grows_above_the_prompt() -> None:
+    async def scene(terminal: Terminal, keys: PipeInput, paper: Paper) -> None:
+        reading = asyncio.create_task(terminal.read())
+        await drawn(terminal)
+        terminal.stream("Hel")
+        assert message(terminal) == "Hel\n> "
+        await drawn(terminal)
+        terminal.stream("lo\nyou")
+        assert message(terminal) == "you\n> "
+        terminal.end()
+        assert message(terminal) == "> "
+        terminal.end()
+        keys.send_text("x\r")
+        await reading
+
+    assert play(scene) == "Hello\nyou\n"
+
+
+def test_a_full_row_goes_above() -> None:
+    async def scene(terminal: Terminal, keys: PipeInput, paper: Paper) -> None:
+        terminal.stream("So long a line does not fit into the row, and nor does " + "x" * 45)
+        assert message(terminal) == "xxxxxxx\n> "
+
+    rows = ["So long a line does", "not fit into the", "row, and nor does", *["x" * 19] * 2, "x" * 7]
+    assert play(scene).splitlines() == rows
+
+
+def test_what_was_streamed_stays_above_the_line_that_was_typed() -> None:
+    async def scene(terminal: Terminal, keys: PipeInput, paper: Paper) -> None:
+        reading = asyncio.create_task(terminal.read())
+        await drawn(terminal)
+        terminal.stream("Once upon a")
+        await drawn(terminal)
+        keys.send_text("wait\r")
+        assert await reading == "wait"
+        assert message(terminal) == "> "
+        terminal.end()
+
+    assert play(scene) == ""  # nothing is printed twice
+
+
+def test_what_others_print_goes_above_as_well(monkeypatch: pytest.MonkeyPatch) -> None:
+    async def scene(terminal: Terminal, keys: PipeInput, paper: Paper) -> None:
+        assert sys.stdout is not before
+        assert sys.stderr is sys.stdout
+
+    before = sys.stdout
+    play(scene)
+    assert sys.stdout is before
+
+
+def test_a_terminal_that_is_gone_ends_it() -> None:
+    async def scene(terminal: Terminal, keys: PipeInput, paper: Paper) -> None:
+        reading = asyncio.create_task(terminal.read())
+        await drawn(terminal)
+        paper.broken = OSError(5, "Input/output error")
+        terminal.show("hello")
+        with pytest.raises(EOFError):
+            await reading
+        with pytest.raises(EOFError):
+            await terminal.read()
+        with pytest.raises(BrokenPipeError):
+            terminal.show("hello")
+
+    play(scene)
+
+
+def test_reading_can_be_cancelled() -> None:
+    async def scene(terminal: Terminal, keys: PipeInput, paper: Paper) -> None:
+        reading = asyncio.create_task(terminal.read())
+        await drawn(terminal)
+        reading.cancel()
+        with pytest.raises(asyncio.CancelledError):
+            await reading
+        keys.send_text("hello\r")
+        assert await terminal.read() == "hello"
+
+    play(scene)
+
+
+def test_what_was_typed_is_kept(tmp_path: Path) -> None:
+    file = tmp_path / "state" / "history"
+
+    async def type_it(terminal: Terminal, keys: PipeInput, paper: Paper) -> None:
+        keys.send_text("hello\r")
+        await terminal.read()
+
+    async def find_it(terminal: Terminal, keys: PipeInput, paper: Paper) -> None:
+        keys.send_text("\x1b[A\r")
+        assert await terminal.read() == "hello"
+
+    play(type_it, file)
+    play(find_it, file)
+    if os.name == "posix":
+        assert file.stat().st_mode & 0o777 == 0o600
+
+
+def test_a_history_that_cannot_be_kept_is_no_reason_to_fail(tmp_path: Path) -> None:
+    (tmp_path / "file").touch()
+    assert isinstance(_history(tmp_path / "file" / "history"), InMemoryHistory)
+    history = _history(tmp_path / "history")
+    (tmp_path / "history").unlink()
+    (tmp_path / "history").mkdir()
+    history.store_string("hello")
+    assert list(history.load_history_strings()) == []
+
+
+@pytest.mark.parametrize(
+    ("text", "width", "row", "rest"),
+    [
+        ("hello you", 8, "hello", "you"),
+        ("hello", 4, "hel", "lo"),
+        ("日本語", 4, "日", "本語"),
+        ("日", 2, "日", ""),
+    ],
+)
+def test_a_row_is_cut_at_a_space_or_at_the_edge(text: str, width: int, row: str, rest: str) -> None:
+    assert _full_row(text, width) == (row, rest)
+
+
+def test_the_streamed_line_is_really_drawn() -> None:
+    async def main() -> str:
+        screen = io.StringIO()
+        output = Vt100_Output(screen, lambda: Size(rows=40, columns=80), enable_cpr=False)
+        with create_pipe_input() as keys:
+            async with Terminal("> ", input=keys, output=output) as terminal:
+                reading = asyncio.create_task(terminal.read())
+                await drawn(terminal)
+                terminal.stream("Hello")
+                await drawn(terminal)
+                keys.send_text("x\r")
+                await reading
+        return screen.getvalue()
+
+    assert "Hello" in asyncio.run(main())
