@@ -92,7 +92,7 @@ docs: $(DONE)/docs ## build the documentation into site/
 	@echo "Open site/index.html"
 
 .PHONY: constraints
-constraints: ## renew constraints.txt: the newest versions of everything, in a fresh environment
+constraints: setup ## renew constraints.txt: the newest versions of everything
 	@tools/constraints '$(MODEL)'
 
 .PHONY: clean
