@@ -1,0 +1,1 @@
+"""Intents to phrases: what is meant is worded from files of phrases."""

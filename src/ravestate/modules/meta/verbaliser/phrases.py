@@ -1,0 +1,335 @@
+"""What an agent may say for what it means: phrases by intent and language, from YAML files.
+
+A file maps each intent to its languages, and each language to phrases; parameters stand in braces::
+
+    greet:
+      en:
+        - Hello!
+        - Hello {name}, good to see you.
+      de: [Hallo!, "Schön, dich zu sehen, {name}."]
+    farewell: Goodbye!           # without a language: the default one
+
+Several files make one book. In a later file an intent's phrases of a language *replace* those of earlier
+files, and ``!add`` in front of them adds them instead; what a file does not mention stays::
+
+    greet:
+      en: !add [Ahoy!]
+
+Everything is text: ``no`` is Norwegian and ``1`` is a phrase. ``{{`` and ``}}`` stand for braces.
+"""
+
+from __future__ import annotations
+
+import random
+import string
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from importlib.resources.abc import Traversable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ravestate.errors import DeclarationError, PlatformError, RuleError, nearest
+
+if TYPE_CHECKING:
+    import yaml
+
+__all__ = ["Phrase", "PhraseBook", "Template"]
+
+Source = Path | Traversable | str
+
+
+@dataclass(frozen=True, slots=True)
+class Template:
+    """A phrase as it is written: its text with parameters in braces, and their names."""
+
+    text: str
+    parameters: frozenset[str]
+
+
+@dataclass(frozen=True, slots=True)
+class Phrase:
+    """A phrase as it is said, and the template that it was made of."""
+
+    text: str
+    template: str
+
+
+class PhraseBook:
+    """Phrases by intent and language, of which one is chosen at a time.
+
+    Example:
+        >>> book = PhraseBook({"greet": {"en": ["Hello {name}!"]}}, language="en-GB")
+        >>> book.choose("greet", {"name": "Ada"}, random.Random(1)).text
+        'Hello Ada!'
+    """
+
+    def __init__(
+        self,
+        phrases: Mapping[str, Mapping[str, Sequence[str]]],
+        *,
+        language: str = "en",
+        default_language: str = "en",
+    ) -> None:
+        """Make a book from what a file would say.
+
+        Args:
+            phrases: Texts by intent and language.
+            language: The one to speak, as in ``de`` or ``de-AT``. Where an intent lacks ``de-AT`` it is worded in
+                ``de``, and where it lacks that, in the default language.
+            default_language: What is spoken where `language` is missing.
+
+        Raises:
+            DeclarationError: A phrase has braces that name no parameter.
+        """
+        self.language = _tag(language)
+        self.default_language = _tag(default_language)
+        self._phrases: dict[str, dict[str, tuple[Template, ...]]] = {
+            intent: {_tag(tag): tuple(map(_template, texts)) for tag, texts in languages.items()}
+            for intent, languages in phrases.items()
+        }
+
+    @classmethod
+    def load(
+        cls,
+        sources: Iterable[Source],
+        language: str = "en",
+        *,
+        default_language: str = "en",
+    ) -> PhraseBook:
+        """Read `sources`, YAML files, in this order; see the module for what is in them.
+
+        Args:
+            sources: Paths, or files in packages as ``importlib.resources`` gives them.
+            language: See the class.
+            default_language: See the class; also the language of phrases without one.
+
+        Raises:
+            DeclarationError: A file is no such book; file and line are named.
+            PlatformError: A file is missing or cannot be read.
+        """
+        book = cls({}, language=language, default_language=default_language)
+        for source in sources:
+            file = Path(source).expanduser() if isinstance(source, str) else source
+            book._merge(str(source), _read(file))
+        return book
+
+    @property
+    def intents(self) -> tuple[str, ...]:
+        """All intents, in the order in which they were first read."""
+        return tuple(self._phrases)
+
+    @property
+    def languages(self) -> tuple[str, ...]:
+        """All languages of any intent, sorted."""
+        return tuple(sorted({tag for languages in self._phrases.values() for tag in languages}))
+
+    def templates(self, intent: str, language: str | None = None) -> tuple[Template, ...]:
+        """Return the phrases for `intent` in `language` (default: the book's), or in what it falls back to.
+
+        Raises:
+            RuleError: There is no such intent, or it is in none of these languages.
+        """
+        languages = self._phrases.get(intent)
+        if languages is None:
+            known = ", ".join(self._phrases) or "none"
+            raise RuleError(
+                f"there are no phrases for the intent {intent!r}{nearest(intent, self._phrases)} "
+                f"(known: {known}). To add it, write in your phrases file:\n{intent}:\n"
+                f"  {self.language}: [...]"
+            )
+        tried = list(_fallbacks(_tag(language) if language else self.language, self.default_language))
+        for tag in tried:
+            if found := languages.get(tag):
+                return found
+        raise RuleError(
+            f"the intent {intent!r} has no phrases in {' or '.join(tried)}, only in "
+            f"{', '.join(languages) or 'no language'}. To add them, write in your phrases file:\n{intent}:\n"
+            f"  {tried[0]}: [...]"
+        )
+
+    def choose(
+        self,
+        intent: str,
+        parameters: Mapping[str, object],
+        rng: random.Random,
+        last: str | None = None,
+        *,
+        language: str | None = None,
+    ) -> Phrase:
+        """Choose a phrase at random, and fill it in.
+
+        A phrase is eligible if all of its parameters are given; more may be given than it has.
+
+        Args:
+            intent: What is meant.
+            parameters: Values for the braces; None counts as not given.
+            rng: Whose chance decides; the same state gives the same phrase.
+            last: The template that was used for this intent before, which is not used again if there is another.
+            language: Instead of the book's.
+
+        Raises:
+            RuleError: There is no such intent or language, or each phrase lacks a parameter.
+        """
+        templates = self.templates(intent, language)
+        given = {name: value for name, value in parameters.items() if value is not None}
+        eligible = [template for template in templates if template.parameters <= given.keys()]
+        if not eligible:
+            needed = min((template.parameters - given.keys() for template in templates), key=len)
+            hints = "".join(nearest(name, sorted(given.keys())) for name in sorted(needed))
+            raise RuleError(
+                f"each phrase for the intent {intent!r} lacks a parameter; give {', '.join(sorted(needed))} "
+                f"(given: {', '.join(given) or 'none'}{hints}), or add a phrase that needs none"
+            )
+        fresh = [template for template in eligible if template.text != last] or eligible
+        chosen = rng.choice(fresh)
+        values = {name: str(given[name]) for name in chosen.parameters}
+        return Phrase(chosen.text.format_map(values), chosen.text)
+
+    # ------------------------------------------------------------------------------- internals
+
+    def _merge(self, name: str, text: str) -> None:
+        root = _composed(name, text)
+        if root is None:
+            return
+        for key, languages in _entries(name, root, "a file of phrases maps intents to languages"):
+            intent = self._phrases.setdefault(_text_of(name, key, "an intent is a text"), {})
+            if _kind(languages) != "mapping":  # no language: the default one
+                self._put(name, intent, self.default_language, languages)
+                continue
+            for tag, phrases in _entries(name, languages, "an intent maps languages to phrases"):
+                self._put(name, intent, _tag(_text_of(name, tag, "a language is a text")), phrases)
+
+    def _put(self, name: str, intent: dict[str, tuple[Template, ...]], tag: str, node: yaml.Node) -> None:
+        added = _added(name, node)
+        items: list[yaml.Node] = node.value if _kind(node) == "sequence" else [node]
+        templates: list[Template] = []
+        for item in items:
+            text = _text_of(name, item, "a phrase is a text").strip()
+            if not text:
+                raise _fault(name, item, "a phrase is empty")
+            try:
+                templates.append(_template(text))
+            except DeclarationError as error:
+                raise _fault(name, item, str(error)) from None
+        if not templates:
+            raise _fault(name, node, "there are no phrases; leave the language out, or write some")
+        before = intent.get(tag, ()) if added else ()
+        intent[tag] = (*before, *templates)
+
+
+def _tag(language: str) -> str:
+    """The language's tag as books compare it: ``de_at`` is ``de-AT``."""
+    first, *rest = language.strip().replace("_", "-").split("-")
+    return "-".join([first.lower(), *(part.upper() if len(part) == 2 else part.title() for part in rest)])
+
+
+def _fallbacks(language: str, default: str) -> Iterator[str]:
+    seen: set[str] = set()
+    for whole in (language, default):
+        parts = whole.split("-")
+        for length in range(len(parts), 0, -1):
+            tag = "-".join(parts[:length])
+            if tag not in seen:
+                seen.add(tag)
+                yield tag
+
+
+def _template(text: str) -> Template:
+    names: set[str] = set()
+    try:
+        for _, name, form, conversion in string.Formatter().parse(text):
+            if name is None:
+                continue
+            if not name.isidentifier() or form or conversion:
+                whole = name + (f"!{conversion}" if conversion else "") + (f":{form}" if form else "")
+                raise ValueError(f"{{{whole}}} is no parameter")
+            names.add(name)
+    except ValueError as error:
+        raise DeclarationError(
+            f"the braces in {text!r} name no parameter ({error}): write {{name}}, or {{{{ for a brace"
+        ) from None
+    return Template(text, frozenset(names))
+
+
+# ------------------------------------------------------------------------------------- YAML
+
+
+def _read(file: Path | Traversable) -> str:
+    try:
+        return file.read_text(encoding="utf-8")
+    except FileNotFoundError as error:
+        near = ""
+        if isinstance(file, Path) and file.parent.is_dir():
+            near = nearest(file.name, [other.name for other in file.parent.iterdir()])
+        raise PlatformError(f"the file of phrases {str(file)!r} does not exist{near}") from error
+    except OSError as error:
+        raise PlatformError(
+            f"the file of phrases {str(file)!r} cannot be read: {error.strerror or error}"
+        ) from error
+    except UnicodeDecodeError as error:
+        raise DeclarationError(
+            f"{file}: this is no text in UTF-8 ({error.reason} at byte {error.start})"
+        ) from None
+
+
+def _composed(name: str, text: str) -> yaml.Node | None:
+    """The nodes of a YAML text, which know their lines. No value is made of them, so nothing can run."""
+    import yaml
+
+    try:
+        return yaml.compose(text, Loader=yaml.BaseLoader)
+    except yaml.MarkedYAMLError as error:
+        mark = error.problem_mark or error.context_mark
+        line = "" if mark is None else f":{mark.line + 1}"
+        reason = ", ".join(filter(None, (error.context, error.problem)))
+        raise DeclarationError(
+            f"{name}{line}: this is no YAML ({reason}). A text with : or # or braces in front wants quotes"
+        ) from None
+    except yaml.YAMLError as error:  # a character that YAML does not allow; it knows no line
+        position = getattr(error, "position", 0)
+        raise DeclarationError(
+            f"{name}:{text.count(chr(10), 0, position) + 1}: this is no YAML (a control character)"
+        ) from None
+    except RecursionError:
+        raise DeclarationError(f"{name}: this is no file of phrases, but nested without end") from None
+
+
+def _kind(node: yaml.Node) -> str:
+    return str(getattr(node, "id", ""))
+
+
+def _fault(name: str, node: yaml.Node, problem: str) -> DeclarationError:
+    return DeclarationError(f"{name}:{node.start_mark.line + 1}: {problem}")
+
+
+def _added(name: str, node: yaml.Node) -> bool:
+    tag = str(node.tag)
+    if tag.startswith("!") and tag != "!add":
+        raise _fault(name, node, f"the only tag there is is !add, not {tag}{nearest(tag, ['!add'])}")
+    return tag == "!add"
+
+
+def _entries(name: str, node: yaml.Node, meaning: str) -> Iterator[tuple[yaml.Node, yaml.Node]]:
+    if _kind(node) != "mapping":
+        raise _fault(
+            name, node, f"{meaning}, and this is no mapping: write for example\ngreet:\n  en: [Hello!]"
+        )
+    if _added(name, node):
+        raise _fault(name, node, "!add goes in front of phrases: write en: !add [...]")
+    seen: set[str] = set()
+    for key, value in node.value:
+        if _kind(key) == "scalar":
+            if key.value in seen:
+                raise _fault(name, key, f"{key.value!r} is here a second time")
+            seen.add(key.value)
+        yield key, value
+
+
+def _text_of(name: str, node: yaml.Node, meaning: str) -> str:
+    if _kind(node) != "scalar":
+        raise _fault(
+            name,
+            node,
+            f"{meaning}, and this is a {_kind(node)}; a text with : or braces in front wants quotes",
+        )
+    return str(node.value)
