@@ -1,9 +1,9 @@
 """How long to decide among a thousand rules for one slot?
 
-Three shapes. All on the input: they tie, so the first declared wins. All on the input with predicates of
-different weight: the greatest utility wins, declared in the middle. And ``input & topic_i``: a classifier that
-might raise any of a thousand topics raises one, and the rule of that topic wins over the others and over a
-fallback.
+Four shapes. Tied: all on the input, and the first declared wins. Weighted: all on the input, and the one of
+greatest weight wins, declared in the middle. Predicates: the same, each with a predicate on the payload.
+Topics: ``input & topic_i``; a classifier that might raise any of a thousand topics raises one, and the rule of
+that topic wins over the others and over a fallback.
 """
 
 from __future__ import annotations
@@ -19,6 +19,12 @@ from benchmarks.figures import Figure, Spread, compare
 from benchmarks.peers.wire import serve
 
 RULES = 1000
+TITLES = {
+    "tied": "on the input",
+    "weighted": "on the input, weighted",
+    "predicates": "on the input, with predicates",
+    "topics": "on input & topic_i",
+}
 LIMIT = 0.002
 """Seconds in which the decision has to fall."""
 
@@ -38,11 +44,11 @@ class Contest:
         if shape == "tied":
             for i in range(rules):
                 self.rival(f"rival{i}", self.heard.changed)
-        elif shape == "weighted":
+        elif shape in ("weighted", "predicates"):
             self.winner = f"rival{rules // 2}"
+            when = self.heard.changed.where(bool) if shape == "predicates" else self.heard.changed
             for i in range(rules):
-                weight = 2.0 if i == rules // 2 else 1.0
-                self.rival(f"rival{i}", self.heard.changed.where(bool), weight)
+                self.rival(f"rival{i}", when, weight=2.0 if i == rules // 2 else 1.0)
         else:
             self.winner = f"rival{rules // 2}"
             topics = [module.signal(f"topic{i}") for i in range(rules)]
@@ -84,16 +90,15 @@ def compete(shape: str, rules: int, inputs: int) -> list[float]:
 def ask(bench: Bench) -> Iterable[Figure]:
     """Ours, each shape; CLIPS has a thousand rules on the input and decides by salience."""
     ours, clips = bench.ours("benchmarks.questions.competing"), bench.clips()
-    times: dict[str, list[float]] = {"tied": [], "weighted": [], "topics": []}
+    times: dict[str, list[float]] = {shape: [] for shape in TITLES}
     theirs = []
     inputs = bench.several(20, 8)
     for _ in bench.rounds(5, 2):
         for shape, values in times.items():
             values.append(statistics.median(ours.ask("compete", shape=shape, rules=RULES, inputs=inputs)))
         theirs.append(statistics.median(clips.ask("compete", rules=RULES, inputs=inputs)))
-    titles = {"tied": "on the input", "weighted": "on the input, weighted", "topics": "on input & topic_i"}
     for shape, values in times.items():
-        yield _judged(compare("competing", f"{RULES:,} {titles[shape]}", values, "CLIPS, salience", theirs))
+        yield _judged(compare("competing", f"{RULES:,} {TITLES[shape]}", values, "CLIPS, salience", theirs))
 
 
 def _judged(figure: Figure) -> Figure:
