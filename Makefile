@@ -97,7 +97,7 @@ constraints: setup ## renew constraints.txt: the newest versions of everything
 
 .PHONY: clean
 clean: ## remove the environment and everything built
-	@rm -rf .venv .venv-* build dist site htmlcov .coverage .coverage.* \
+	@rm -rf .venv .bench build dist site htmlcov .coverage .coverage.* \
 		.pytest_cache .ruff_cache .hypothesis .import_linter_cache
 	@find src tests benchmarks examples tools -name __pycache__ -prune -exec rm -rf {} + 2>/dev/null || true
 
