@@ -30,7 +30,11 @@ if TYPE_CHECKING:
     from ravestate.engine.spike import Spike
     from ravestate.policy.plan import Clause
 
-__all__ = ["TRANSITIONS", "Activation", "State", "Step"]
+__all__ = ["NEVER", "TRANSITIONS", "Activation", "State", "Step"]
+
+
+NEVER = float("inf")
+"""A time that does not come."""
 
 
 class State(enum.IntEnum):
@@ -79,36 +83,39 @@ _TABLE = tuple(tuple(TRANSITIONS.get((state, step)) for step in Step) for state 
 class Activation:
     """A clause plus the spikes that it has acquired.
 
+    Most activations are given up before they run or wait; what only those that do need stands on the class as its
+    default.
+
     Attributes:
         id: A number that grows with age; also the number of its run.
         spikes: One place for each need of the clause.
         missing: Bits of the needs that hold nothing.
-        expires: When it gives a spike up for age next (seconds); infinite when none may.
-        ripens: When its youngest spike is old enough, while that is in the future.
-        pressed: Until when it has patience, while others wait for it (L16).
-        blockers: While it waits: the live activations on whose progress that depends.
     """
 
-    __slots__ = (
-        "blockers",
-        "clause",
-        "deadline",
-        "expires",
-        "groups",
-        "id",
-        "interests",
-        "missing",
-        "pressed",
-        "recheck",
-        "ripens",
-        "speculative",
-        "spikes",
-        "stands_on",
-        "state",
-        "told",
-        "waits_for",
-        "wrote",
-    )
+    ripens: float = NEVER
+    """When its youngest spike is old enough, while that is in the future (seconds)."""
+    pressed: float = NEVER
+    """Until when it has patience, while others wait for it (L16)."""
+    waits_for: tuple[str, ...] = ()
+    """While it waits: the names of the rules for which."""
+    blockers: tuple[Activation, ...] = ()
+    """While it waits: the live activations on whose progress that depends."""
+    interests: tuple[Group, ...] = ()
+    """While it waits: the groups whose changes concern it."""
+    speculative: bool = False
+    """Whether it waits for a rival that only patience bounds."""
+    recheck: float = NEVER
+    """While it waits: when recovering utilities change the order (L9)."""
+    stands_on: tuple[Spike, ...] = ()
+    """The non-detached spikes of the run: the parents of what it causes."""
+    groups: tuple[Group, ...] = ()
+    """The groups in which the run has taken slots, as they were when it began."""
+    wrote: bool = False
+    """Whether the run has written a slot."""
+    deadline: float = NEVER
+    """When the run has taken too long (seconds)."""
+    told: str = ""
+    """Why the run was told to end."""
 
     def __init__(self, id: int, clause: Clause) -> None:
         self.id = id
@@ -116,19 +123,6 @@ class Activation:
         self.state = State.GATHERING
         self.spikes: list[Spike | None] = [None] * len(clause.needs)
         self.missing = clause.all_bits
-        self.expires = NEVER
-        self.ripens = NEVER
-        self.pressed = NEVER
-        self.recheck = NEVER  # when recovering utilities change the order (L9)
-        self.deadline = NEVER  # of the run (timeout)
-        self.wrote = False  # whether the run has written a slot
-        self.stands_on: tuple[Spike, ...] = ()  # the non-detached spikes of the run
-        self.groups: tuple[Group, ...] = ()  # of the run, as they were when it began
-        self.waits_for: tuple[str, ...] = ()  # names, for explanations
-        self.blockers: tuple[Activation, ...] = ()
-        self.interests: tuple[Group, ...] = ()  # while it waits: the groups whose changes concern it
-        self.told = ""  # why its run was told to end
-        self.speculative = False  # it waits for a rival that only patience bounds
 
     def step(self, step: Step) -> None:
         """Make a transition.
@@ -173,6 +167,3 @@ class Activation:
 
     def __repr__(self) -> str:
         return f"{self.clause}@{self.id}"
-
-
-NEVER = float("inf")

@@ -72,6 +72,9 @@ def ask(engine: Engine, activation: Activation) -> Refusal:
                 refusal.blockers[holder] = None
         if taken:
             continue
+        for member in list(group.members):
+            if member in engine.benches and member is not activation:
+                engine.unfold(member)
         for rival, member in _rivals(engine, activation, group):
             if horizon is None:
                 horizon = Horizon(engine)

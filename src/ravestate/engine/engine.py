@@ -142,6 +142,7 @@ class Engine(Waves):
 
     def on_add_rule(self, event: events.AddRule) -> None:
         """Replace the policy by one that has the same rules in the same order, and more."""
+        self.unfold_all()
         clauses = event.policy.clause_plans
         self.policy = event.policy
         self._activity = event.policy.slot_of["core:activity"]
@@ -191,6 +192,7 @@ class Engine(Waves):
             self._consume(run, spikes)
         else:
             self._relinquish(run, spikes)
+            self._substitute(run)
         if self.tracer is not None:
             text = reason or (str(exception) if exception is not None else "")
             self.tracer(trace.Settled(self.now, run.id, rule.name, outcome, text, fired))
@@ -265,12 +267,11 @@ class Engine(Waves):
             spike.refuse(rule.index)
 
     def _retire(self, rule: RulePlan) -> None:
+        self.unfold_all()
         self.retired.add(rule.index)
         for activation in list(self.active.get(rule.index, ())):
             if activation.state < State.RUNNING:
-                for need in activation.clause.needs:
-                    self._release(activation, need, "retired")
-                self._end(activation)
+                self._end(activation, "retired")
         self._stirred = True
 
     # ------------------------------------------------------------------------------------ deadlines
@@ -278,12 +279,7 @@ class Engine(Waves):
     def _due(self, entry: Entry) -> None:
         time, kind, _, owner = entry
         if kind is Kind.EXPIRE:
-            owner.expires = NEVER
-            needs = owner.clause.needs
-            old = [
-                n for n in needs if (s := owner.spikes[n.index]) is not None and s.born + n.max_age <= time
-            ]
-            self._lose(owner, old, "age")
+            self._expire(owner, time)
         elif kind is Kind.RIPEN:
             owner.ripens = NEVER
             self._update(owner)
@@ -296,9 +292,7 @@ class Engine(Waves):
                 spike = owner.spikes[need.index]
                 if spike is not None and not need.detached:
                     spike.refuse(owner.clause.rule.index)
-            for need in owner.clause.needs:
-                self._release(owner, need, "eliminated")
-            self._end(owner)
+            self._end(owner, "eliminated")
         elif kind is Kind.STANDBY:
             group, clause, _ = owner
             group = group.root()

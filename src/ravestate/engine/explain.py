@@ -98,6 +98,8 @@ class Explanation:
 
 def explain(engine: Engine, rule: RulePlan, records: Iterable[Record] = (), limit: int = 12) -> Explanation:
     """Explain a rule of an engine; `records` is the trace to tell its recent history from."""
+    engine.unfold_all()
+    engine.settle()
     return Explanation(
         rule.name,
         engine.now,
@@ -130,7 +132,10 @@ def _activation(engine: Engine, activation: Activation) -> ActivationState:
         for name in activation.waits_for:
             theirs = max(engine.effective(c) for c in engine.policy.rule_plan(name).clauses)
             waits.append((name, max(0.0, theirs - mine)))
-    bounds = [activation.ripens, activation.expires, activation.pressed, activation.deadline]
+    bounds = [activation.ripens, activation.pressed, activation.deadline]
+    if activation.state is State.GATHERING:
+        held = zip(activation.spikes, clause.needs, strict=True)
+        bounds += [spike.born + need.max_age for spike, need in held if spike is not None]
     until = min(bounds)
     if activation.state is State.WAITING:
         latest = engine.patience_of_rivals(activation)

@@ -47,6 +47,7 @@ class Horizon:
 
     def __init__(self, engine: Engine) -> None:
         self.engine = engine
+        engine.unfold_all()
         self.roots: list[Activation] = []
         self.visited: dict[Group, None] = {}
         self._by_rule: dict[Group, dict[int, list[Activation]]] = {}
@@ -154,7 +155,7 @@ class Horizon:
             return NO
         causes = self.engine.policy.causes
         by_rule = self._rules(group)
-        if causes.ancestors(signal).isdisjoint(by_rule):
+        if by_rule.keys().isdisjoint(causes.ancestors(signal)):
             return NO
         best = NO
         path = path | {signal}

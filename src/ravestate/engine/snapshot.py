@@ -21,6 +21,8 @@ def snapshot(engine: Engine) -> dict[str, Any]:
         ``now`` (seconds), ``slots``, ``spikes``, ``activations``, ``groups``, ``dropped``, ``retired``,
         ``next_deadline`` (seconds or None).
     """
+    engine.unfold_all()
+    engine.settle()
     groups = {spike.group.root() for spikes in engine.live.values() for spike in spikes}
     return {
         "now": engine.now,

@@ -20,12 +20,14 @@ class Spike:
         source: The number of the run that raised it, 0 if it came from outside.
         holders: The activations that hold it, in the order in which they took it.
         claims: For rules without slots: the activation that runs on it, or None once one has (L10).
+        expiring: The times at which holders that are still incomplete give it up for age (seconds).
         refused: Rules that gave it up for good.
     """
 
     __slots__ = (
         "born",
         "claims",
+        "expiring",
         "group",
         "holders",
         "id",
@@ -57,6 +59,7 @@ class Spike:
         self.source = source
         self.rule = rule  # index of the rule that raised it, -1 from outside
         self.holders: dict[Activation, None] = {}
+        self.expiring: set[float] | None = None
         self.refused: set[int] | None = None
         self.claims: dict[int, Activation | None] | None = None
 

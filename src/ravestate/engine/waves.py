@@ -42,7 +42,10 @@ class Waves(Slots):
     def effects(self) -> list[Effect]:
         """What is to be done now; ask again after doing it, until there is nothing."""
         while not self._out:
-            if self._busy and not self.read(self._activity.index):
+            if self._errors:
+                error = self.policy.signal_of["core:error"]
+                self._birth(error, self._errors.pop(0), (), self._new_group(), None)
+            elif self._busy and not self.read(self._activity.index):
                 self._change(self._activity, True, (), None)
             elif self._free:
                 self._start_free()
@@ -53,6 +56,11 @@ class Waves(Slots):
         out = self._out
         self._out = []
         return out
+
+    def settle(self) -> None:
+        """Ask those who are ready and have not been asked, so that whoever looks in sees for whom they wait."""
+        if self._asking and not self._free and not self._out:
+            self._consent_round()
 
     def effective(self, clause: Clause) -> float:
         """The effective utility of a clause now (L9): utility x weight x recovery, in nats."""
@@ -236,7 +244,7 @@ class Waves(Slots):
 
     def _settle_flags(self) -> bool:
         """Bring ``core:activity`` and ``core:pressure`` up to date (L22); whether one has changed."""
-        pressure = bool(self.waiting)
+        pressure = bool(self.waiting) or bool(self.benches)
         if pressure != self.read(self._pressure.index):
             self._change(self._pressure, pressure, (), None)
             return True

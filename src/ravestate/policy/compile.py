@@ -142,6 +142,7 @@ class _Compilation:
         if self.faults:
             return None
         assign_utilities(self.signals, self.rules, causes)
+        self.find_contests()
         return Policy(
             modules=tuple(self.modules),
             declared=tuple(self.declared),
@@ -417,6 +418,28 @@ class _Compilation:
                             for member in firm:
                                 if member.bit & joined:
                                     member.kin |= joined
+
+    def find_contests(self) -> None:
+        """Set apart the needs of clauses that differ in nothing but who comes first.
+
+        If several clauses are ready with one spike of the same signal, write the same slots, and keep their
+        order for good, then only the first can have consent, until it resigns or fails. The engine need not make
+        activations of the others before that (``engine/contests.py``).
+        """
+        for signal in self.signals:
+            contests: dict[tuple[frozenset[int], bool], list[Clause]] = {}
+            for need in signal.listeners:
+                clause, rule = need.clause, need.clause.rule
+                fixed = not (need.detached or need.predicates or clause.cyclic or rule.cooldown)
+                if clause.simple and rule.slots and fixed:
+                    contests.setdefault((rule.slotset, rule.background), []).append(clause)
+            signal.contests = tuple(
+                tuple(sorted(clauses, key=lambda c: (-c.base, c.index)))
+                for clauses in contests.values()
+                if len(clauses) > 1
+            )
+            contested = {clause for clauses in signal.contests for clause in clauses}
+            signal.uncontested = tuple(need for need in signal.listeners if need.clause not in contested)
 
     def check_reachable(self, causes: Causes) -> None:
         """Refuse rules that wait, directly or not, for an effect of their own, with no way in from outside.

@@ -28,6 +28,7 @@ class SignalPlan:
     __slots__ = (
         "index",
         "input",
+        "contests",
         "keep_latest",
         "limit",
         "listeners",
@@ -35,6 +36,7 @@ class SignalPlan:
         "retain",
         "signal",
         "slot",
+        "uncontested",
         "watchers",
     )
 
@@ -47,6 +49,10 @@ class SignalPlan:
         self.keep_latest = signal.keep == "latest"
         self.limit = signal.limit
         self.listeners: tuple[Need, ...] = ()  # of rule conditions, in declaration order
+        self.uncontested: tuple[Need, ...] = ()  # the listeners that are in none of the contests
+        self.contests: tuple[
+            tuple[Clause, ...], ...
+        ] = ()  # clauses of which one can have a spike, best first
         self.watchers: tuple[Need, ...] = ()  # of `until` conditions (L21)
         self.retain = -1.0  # seconds for which a spike stays to be looked at by detached needs
 
