@@ -35,6 +35,8 @@ asyncio.run(main())
 class Script:
     """A screen with a script: lines and exceptions to be read; what is written is kept."""
 
+    interactive = True
+
     def __init__(self, *script: str | BaseException) -> None:
         self.script = list(script)
         self.log: list[str] = []
@@ -106,6 +108,22 @@ def test_what_is_written_is_clean_and_in_order() -> None:
     assert screen.log == ["show one\ntwo", "stream th", "stream ree", "end", "show four"]
 
 
+def test_what_was_streamed_may_become_the_whole() -> None:
+    screen = Script()
+    console = Console(screen)
+    for whole in ("Hello you!", "Hello", "Help!", "again"):
+        console.stream("Hel")
+        console.stream("lo")
+        console.write(whole)
+    streamed = ["stream Hel", "stream lo"]
+    assert screen.log == [
+        *streamed, "stream  you!", "end",
+        *streamed, "end",
+        *streamed, "end", "show Help!",
+        *streamed, "end", "show again",
+    ]  # fmt: skip
+
+
 def test_a_streamed_line_is_ended_at_the_end() -> None:
     screen = Script()
 
@@ -131,7 +149,10 @@ def test_writing_where_nobody_reads_ends_it(broken: Exception) -> None:
 
 
 def test_anything_but_a_terminal_is_plain(monkeypatch: pytest.MonkeyPatch) -> None:
-    assert isinstance(Console(stdin=io.StringIO(), stdout=io.StringIO())._screen, Pipes)
+    plain = Console(stdin=io.StringIO(), stdout=io.StringIO())
+    assert isinstance(plain._screen, Pipes)
+    assert not plain.interactive
+    assert Console(Script()).interactive
     monkeypatch.setattr(sys, "stdin", None)
     monkeypatch.setattr(sys, "stdout", None)
     lines = asyncio.run(_lines(Console()))

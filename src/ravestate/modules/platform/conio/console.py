@@ -20,6 +20,9 @@ Ending = Literal["end of input", "interrupt", "closed"]
 class Screen(Protocol):
     """What a `Console` reads from and writes to."""
 
+    interactive: bool
+    """Whether somebody sits there."""
+
     async def __aenter__(self) -> object: ...
 
     async def __aexit__(self, *_: object) -> None: ...
@@ -84,9 +87,14 @@ class Console:
             stdin, stdout = stdin or sys.stdin, stdout or sys.stdout
             screen = _screen(prompt, history, stdin, stdout)
         self._screen = screen
-        self._streaming = False
+        self._streamed = ""
         self.ending: Ending | None = None
         """Why the iteration ended: end of input (Ctrl-D), interrupt (Ctrl-C), or closed (by whoever reads)."""
+
+    @property
+    def interactive(self) -> bool:
+        """Whether somebody sits there; otherwise all lines may come at once, and then the end."""
+        return self._screen.interactive
 
     async def __aenter__(self) -> Console:
         await self._screen.__aenter__()
@@ -118,21 +126,30 @@ class Console:
         raise StopAsyncIteration
 
     def write(self, text: str) -> None:
-        """Print `text` and a line end; a line that is being streamed is ended before."""
-        self.end()
-        self._safely(lambda: self._screen.show(printable(text)))
+        """Print `text` and a line end.
+
+        If `text` begins with what is being streamed, it is what the streamed line becomes; otherwise that line is
+        ended before.
+        """
+        text = printable(text)
+        if self._streamed and text.startswith(self._streamed):
+            self.stream(text[len(self._streamed) :])
+            self.end()
+        else:
+            self.end()
+            self._safely(lambda: self._screen.show(text))
 
     def stream(self, piece: str) -> None:
         """Print `piece` behind the pieces before it; where nobody watches, once its line is complete."""
         piece = without_controls(piece)
         if piece:
-            self._streaming = True
+            self._streamed += piece
             self._safely(lambda: self._screen.stream(piece))
 
     def end(self) -> None:
         """End the line that was streamed; without one this does nothing."""
-        if self._streaming:
-            self._streaming = False
+        if self._streamed:
+            self._streamed = ""
             self._safely(self._screen.end)
 
     def _safely(self, write: Callable[[], None]) -> None:

@@ -21,6 +21,8 @@ class Pipes:
     waits for a line that nobody writes, with the process.
     """
 
+    interactive = False
+
     def __init__(self, stdin: TextIO | None, stdout: TextIO | None, *, longest_line: int = 1 << 20) -> None:
         """Nothing is read yet.
 

@@ -30,6 +30,8 @@ class Terminal:
     first row, until it is finished or full: so it can grow while somebody types below it.
     """
 
+    interactive = True
+
     def __init__(
         self,
         prompt: str = "> ",

@@ -1,0 +1,53 @@
+"""The rules of the console: read, print, print while it grows."""
+
+from __future__ import annotations
+
+import ravestate as rs
+from ravestate.modules import interloc, rawio
+
+from . import module, screen
+from .console import Console, history_file
+
+USER = "conio"
+"""The key of whoever sits at the console, among the users."""
+
+
+@module.rule(
+    when=rs.startup,
+    writes=(screen, rawio.input, interloc.users),
+    detached=True,  # each line is a cause of its own
+    background=True,
+)
+async def listen(ctx: rs.RuleContext) -> None:
+    """Hear each line that is typed; end the agent when there are no more."""
+    console = Console(prompt=ctx.settings.prompt, history=history_file() if ctx.settings.history else None)
+    async with console:
+        ctx[screen] = console
+        ctx[interloc.users].add(USER, ctx.settings.name)
+        try:
+            async for line in console:
+                if line.strip():
+                    ctx[rawio.input] = line
+                if not console.interactive:
+                    await ctx.quiet()  # all lines may be there at once; each is to have its answer
+            ctx[interloc.users].remove(USER)
+            await ctx.quiet()  # a farewell
+        finally:
+            ctx[screen] = None
+            ctx.stop()
+
+
+@module.rule(when=rawio.output.changed.max_age(None).detached(), reads=screen)
+async def show(ctx: rs.RuleContext) -> None:
+    """Print what is said."""
+    console = ctx[screen]
+    if console is not None:
+        console.write(ctx.payload(rawio.output.changed))
+
+
+@module.rule(when=rawio.piece.max_age(None).detached(), reads=screen, background=True)
+async def show_piece(ctx: rs.RuleContext) -> None:
+    """Print what is being said."""
+    console = ctx[screen]
+    if console is not None:
+        console.stream(ctx.payload(rawio.piece))

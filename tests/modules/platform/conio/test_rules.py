@@ -1,0 +1,131 @@
+"""The console as a module: an agent that is talked to on a screen of ours."""
+
+import asyncio
+from collections import deque
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import ravestate as rs
+from ravestate.modules import conio, interloc, rawio
+from ravestate.modules.platform.conio.console import Console
+from ravestate.testing import simulate
+
+parrot = rs.Module("parrot", requires=(rawio, interloc))
+
+
+@parrot.rule(when=rawio.input.changed, writes=rawio.output, emits=rawio.piece)
+async def repeat(ctx: rs.RuleContext) -> None:
+    heard = ctx.payload(rawio.input.changed)
+    for word in heard.split(" ")[:-1]:
+        ctx.emit(rawio.piece, word + " ")
+        await ctx.sleep(1.0)
+    ctx[rawio.output] = heard
+
+
+@parrot.rule(when=interloc.users.removed, writes=rawio.output)
+async def miss(ctx: rs.RuleContext) -> None:
+    ctx[rawio.output] = "Bye!"
+
+
+class Keys:
+    """A screen on which lines are typed by a test; what is written is kept."""
+
+    def __init__(self, *, interactive: bool = True) -> None:
+        self.interactive = interactive
+        self.typed: deque[str | BaseException] = deque()
+        self.more = asyncio.Event()
+        self.log: list[str] = []
+
+    def type(self, *lines: str | BaseException) -> None:
+        self.typed += lines
+        self.more.set()
+
+    async def __aenter__(self) -> object:
+        return self
+
+    async def __aexit__(self, *_: object) -> None:
+        self.log.append("closed")
+
+    async def read(self) -> str:
+        while not self.typed:
+            self.more.clear()
+            await self.more.wait()
+        line = self.typed.popleft()
+        if isinstance(line, BaseException):
+            raise line
+        return line
+
+    def show(self, text: str) -> None:
+        self.log.append(text)
+
+    def stream(self, piece: str) -> None:
+        self.log.append(f"{piece}…")
+
+    def end(self) -> None:
+        self.log.append("end")
+
+
+@pytest.fixture
+def keys(monkeypatch: pytest.MonkeyPatch) -> Keys:
+    keys = Keys()
+    monkeypatch.setattr(conio.rules, "Console", lambda **_: Console(keys))
+    return keys
+
+
+def test_who_sits_there_is_present_and_heard(keys: Keys) -> None:
+    with simulate(parrot, conio, settings={"conio": {"name": "Ada"}}) as sim:
+        assert dict(sim.read(interloc.users)) == {"conio": "Ada"}
+        assert isinstance(sim.read(conio.screen), Console)
+        keys.type("hello", " ", "hello")
+        sim.settle()
+        assert sim.said == ["hello", "hello"]
+        assert keys.log == ["hello", "hello"]
+    assert keys.log[-1] == "closed"
+
+
+def test_what_is_said_shows_while_it_is_said(keys: Keys) -> None:
+    with simulate(parrot, conio) as sim:
+        keys.type("how are you")
+        sim.settle()
+        assert keys.log == ["how …"]
+        sim.advance(1.0)
+        assert keys.log == ["how …", "are …"]
+        sim.advance(1.0)
+        assert keys.log == ["how …", "are …", "you…", "end"]
+
+
+@pytest.mark.parametrize("end", [EOFError(), KeyboardInterrupt(), BrokenPipeError()])
+def test_the_end_of_input_ends_the_agent_after_a_farewell(keys: Keys, end: BaseException) -> None:
+    with simulate(parrot, conio) as sim:
+        keys.type(end)
+        sim.settle()
+        assert sim.said == ["Bye!"]
+        assert dict(sim.read(interloc.users)) == {}
+        assert sim.read(conio.screen) is None
+        assert sim.context._stopping is not None
+        assert sim.context._stopping.is_set()
+    assert not sim.failures
+
+
+def test_lines_of_a_pipe_are_answered_one_by_one(keys: Keys) -> None:
+    keys.interactive = False
+    with simulate(parrot, conio) as sim:
+        keys.type("one two", "three four", EOFError())
+        sim.settle()
+        assert sim.said == []
+        sim.advance(1.0)
+        assert sim.said == ["one two"]
+        sim.advance(1.0)
+        assert sim.said == ["one two", "three four", "Bye!"]
+
+
+def test_the_history_is_the_users_choice(monkeypatch: pytest.MonkeyPatch, keys: Keys) -> None:
+    seen: list[dict[str, Any]] = []
+    monkeypatch.setattr(conio.rules, "Console", lambda **options: seen.append(options) or Console(keys))
+    monkeypatch.setattr(conio.rules, "history_file", lambda: Path("file"))
+    for history in (True, False):
+        with simulate(conio, settings={"conio": {"history": history, "prompt": "$ "}}):
+            pass
+    assert seen == [{"prompt": "$ ", "history": Path("file")}, {"prompt": "$ ", "history": None}]
