@@ -1,0 +1,70 @@
+"""An apprentice who is taught new rules while running.
+
+"When I say ping, answer pong." adds a rule to this context; "Forget ping." makes that rule retire. Other
+contexts of the same policy are not touched. A learnt rule competes as any other: it is more specific than
+`puzzled`, so it goes first.
+
+    python examples/apprentice.py          to teach on the console
+"""
+
+import re
+
+import ravestate as rs
+from ravestate.modules import rawio
+
+LESSON = re.compile(r"when i say (?P<word>\w+), answer (?P<reply>.+)", re.IGNORECASE)
+
+module = rs.Module("apprentice", requires=[rawio])
+
+taught = module.signal("taught", payload=dict)
+forgotten = module.signal("forgotten", payload=str)
+lessons = module.slot("lessons", 0)
+
+
+@module.rule(when=rawio.input.changed, emits=(taught, forgotten))
+async def attend(ctx: rs.RuleContext) -> None:
+    """Notice that something is taught, or to be forgotten."""
+    text = ctx.payload(rawio.input.changed).rstrip(".")
+    if lesson := LESSON.fullmatch(text):
+        ctx.emit(taught, lesson.groupdict())
+    elif text.lower().startswith("forget "):
+        ctx.emit(forgotten, text.split()[1])
+
+
+@module.rule(when=taught, writes=(rawio.output, lessons))
+async def learn(ctx: rs.RuleContext) -> None:
+    """Add a rule to this context, and to no other."""
+    ctx[lessons] += 1
+    ctx.add_rule(answer_to(**ctx.payload(taught), number=ctx[lessons]))
+    ctx[rawio.output] = "Understood."
+
+
+@module.rule(when=rawio.input.changed, writes=rawio.output)
+async def puzzled(ctx: rs.RuleContext) -> None:
+    """Nothing that was learnt fits."""
+    ctx[rawio.output] = "Nobody has told me what to say to that."
+
+
+def answer_to(word: str, reply: str, number: int) -> rs.Rule:
+    """A rule that answers one word, until it is to be forgotten. It stands in a module of its own: the
+    apprentice's module is shared by all contexts, and stays as it is."""
+    lesson = rs.Module(f"lesson-{number}", requires=[module])
+
+    def said(text: str) -> bool:
+        return text.lower().strip(" .!?") == word.lower()
+
+    @lesson.rule(when=rawio.input.changed.where(said) | forgotten.where(said), writes=rawio.output)
+    async def answer(ctx: rs.RuleContext) -> rs.Retire | None:
+        if ctx.payload(forgotten):
+            ctx[rawio.output] = f"{word} is forgotten."
+            return rs.Retire()
+        ctx[rawio.output] = reply
+        return None
+
+    return answer
+
+
+if __name__ == "__main__":
+    from ravestate.modules import conio
+
+    rs.run(module, conio)

@@ -1,0 +1,42 @@
+"""The innkeeper: words, face and hands, each decided on its own."""
+
+from examples.loading import example
+from ravestate.testing import simulate
+
+inn = example("innkeeper")
+
+
+def state(sim) -> tuple[str, str, str]:
+    return sim.said[-1], sim.read(inn.face), sim.read(inn.hands)
+
+
+def test_an_insulting_order_is_refused_with_a_frown() -> None:
+    with simulate(inn) as sim:
+        sim.say("An ale, you stupid woman!")
+        assert state(sim) == (
+            "Say that again and you drink from the trough.",
+            "frowning",
+            "cross her arms",
+        )
+        assert {"innkeeper:refuse", "innkeeper:frown"} <= set(sim.fired)
+        assert "innkeeper:serve" not in sim.fired
+
+
+def test_an_order_is_served() -> None:
+    with simulate(inn) as sim:
+        sim.say("A mead please")
+        assert state(sim) == ("Here you are.", "neutral", "pour mead")
+
+
+def test_praise_brings_a_smile_and_leaves_the_answer_to_others() -> None:
+    with simulate(inn) as sim:
+        sim.say("What a lovely inn.")
+        assert state(sim) == ("If you say so. Ale, mead or water?", "smiling", "wipe the counter")
+
+
+def test_moods_pass() -> None:
+    with simulate(inn, settings={"idle": {"bored_after": 4}}) as sim:
+        sim.say("What an awful inn.")
+        assert sim.read(inn.face) == "frowning"
+        sim.advance(10)
+        assert sim.read(inn.face) == "neutral"
