@@ -1,0 +1,8 @@
+"""What is meant."""
+
+from ravestate.modules.meta.verbaliser.intents import Intent
+
+
+def test_an_intent_is_a_value() -> None:
+    assert Intent("greet") == Intent("greet", {}, None)
+    assert Intent("greet", {"name": "Ada"}) != Intent("greet")

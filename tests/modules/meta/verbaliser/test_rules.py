@@ -1,0 +1,98 @@
+"""The verbaliser as a module: what is meant is said."""
+
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import ravestate as rs
+from ravestate.errors import PlatformError, RuleError
+from ravestate.modules import verbaliser
+from ravestate.modules.meta.verbaliser.intents import Intent
+from ravestate.modules.meta.verbaliser.rules import as_intent, phrase_book
+from ravestate.testing import simulate
+
+me = rs.Module("me", requires=(verbaliser,))
+nudge = me.signal("nudge", payload=object)
+
+
+@me.rule(when=nudge, writes=verbaliser.intent)
+async def mean(ctx: rs.RuleContext) -> None:
+    ctx[verbaliser.intent] = ctx.payload(nudge)
+
+
+def said(*meant: object, seed: int = 1, **settings: Any) -> list[str]:
+    with simulate(me, settings={"verbaliser": settings}, seed=seed) as sim:
+        for intent in meant:
+            sim.emit(nudge, intent)
+        assert not sim.failures, sim.failures
+        return sim.said
+
+
+def failure(meant: object, **settings: Any) -> BaseException:
+    with simulate(me, settings={"verbaliser": settings}) as sim:
+        sim.emit(nudge, meant)
+        [(rule, error)] = sim.failures
+        assert rule == "verbaliser:verbalise"
+        assert sim.said == []
+        return error
+
+
+def test_an_intent_is_worded() -> None:
+    [farewell] = said("farewell")
+    assert farewell in ("Goodbye!", "See you soon!")
+    [greeting] = said(Intent("greet", {"name": "Ada"}))
+    assert greeting in ("Hello!", "Hi there!", "Hello Ada!", "Hi Ada, good to see you!")
+
+
+def test_no_phrase_comes_twice_running_and_the_seed_decides() -> None:
+    first = said(*["think"] * 20)
+    assert all(one != next_one for one, next_one in pairwise(first))
+    assert len(set(first)) == 3
+    assert first == said(*["think"] * 20)
+    assert any(first != said(*["think"] * 20, seed=seed) for seed in range(2, 6))
+
+
+def test_each_context_has_a_language() -> None:
+    assert said("farewell", language="de-CH")[0] in ("Auf Wiedersehen!", "Bis bald!")
+    assert said("farewell", language="fr")[0] in ("Goodbye!", "See you soon!")
+
+
+def test_own_phrases_replace_built_in_ones(tmp_path: Path) -> None:
+    file = tmp_path / "mine.yaml"
+    file.write_text("think: Arr…\njoke: Ha!")
+    assert said("think", "joke", phrases=(file,)) == ["Arr…", "Ha!"]
+
+
+def test_a_package_brings_its_phrases(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    package = tmp_path / "rav_test_phrases"
+    package.mkdir()
+    (package / "__init__.py").touch()
+    (package / "phrases.yaml").write_text("joke: Ho!")
+    monkeypatch.syspath_prepend(str(tmp_path))
+    assert said(Intent("joke", package="rav_test_phrases")) == ["Ho!"]
+    assert phrase_book("rav_test_phrases", (), "en").intents[0] == "greet"
+
+
+def test_what_cannot_be_said_is_an_error() -> None:
+    assert isinstance(failure("gret"), RuleError)
+    assert "did you mean 'greet'?" in str(failure("gret"))
+    assert "there is no package 'no.where'" in str(failure(Intent("greet", package="no.where")))
+    missing = failure("greet", phrases=(Path("nowhere.yaml"),))
+    assert isinstance(missing, PlatformError)
+
+
+@pytest.mark.parametrize("value", [None, "", 3, ["greet"]])
+def test_what_is_no_intent_is_refused(value: object) -> None:
+    with pytest.raises(RuleError, match=r"verbaliser.Intent\('greet', "):
+        as_intent(value)
+
+
+def test_each_intent_that_comes_with_it_is_in_both_languages() -> None:
+    book = phrase_book(None, (), "en")
+    for intent in book.intents:
+        english, german = book.templates(intent, "en"), book.templates(intent, "de")
+        assert english is not german
+        assert {t.parameters for t in english} == {t.parameters for t in german}
+        assert min(len(english), len(german)) > 1
