@@ -11,7 +11,7 @@ class Settings(rs.Settings):
     """When a pause is awkward."""
 
     bored_after: float = 5.0
-    """Seconds without activity after which the agent is bored; raised again after as many seconds of quiet."""
+    """Seconds without activity after which the agent is bored."""
     impatient_after: float = 1.0
     """Seconds for which a ready rule is kept waiting before the agent is impatient."""
 
@@ -19,14 +19,17 @@ class Settings(rs.Settings):
 module = rs.Module("idle", settings=Settings)
 
 bored = module.signal("bored")
-"""Nothing has happened for ``bored_after`` seconds."""
+"""Nothing has happened for ``bored_after`` seconds; once for each stretch of quiet, and an answer to it begins a new one."""
 
 impatient = module.signal("impatient")
 """Something has been due for ``impatient_after`` seconds: an answer takes its time."""
 
 
 @module.rule(
-    when=rs.activity.false.min_age(Settings.bored_after).max_age(None), emits=bored, detached=True, background=True
+    when=rs.activity.false.min_age(Settings.bored_after).max_age(None),
+    emits=bored,
+    detached=True,
+    background=True,
 )
 async def notice_silence(ctx: rs.RuleContext) -> None:
     """Nothing holds a spike or runs: say so."""

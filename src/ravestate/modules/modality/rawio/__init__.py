@@ -9,7 +9,7 @@ import ravestate as rs
 if TYPE_CHECKING:
     from ravestate.runtime.context import Context
 
-__all__ = ["input", "module", "output", "picture", "piece", "say"]
+__all__ = ["input", "module", "output", "picture", "piece", "say", "speaking"]
 
 module = rs.Module("rawio")
 
@@ -22,6 +22,9 @@ output = module.slot("output", "", always=True)
 piece = module.signal("piece", payload=str)
 """A piece of an utterance that is still being made, for platforms that show it as it grows. The whole utterance is
 written to `output` at its end."""
+
+speaking = module.flag("speaking")
+"""Whether an utterance is being made, piece by piece."""
 
 picture: rs.Slot[Any] = module.slot("picture", None, always=True, input=True)
 """The picture that the user showed last: encoded bytes (JPEG, PNG) or a path."""

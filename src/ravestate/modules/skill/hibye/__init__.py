@@ -1,0 +1,12 @@
+"""Greets and bids farewell: when users come and go, and when they say hello or goodbye."""
+
+from __future__ import annotations
+
+import ravestate as rs
+from ravestate.modules import interloc, rawio, verbaliser
+
+__all__ = ["module"]
+
+module = rs.Module("hibye", requires=[rawio, interloc, verbaliser])
+
+from . import rules as rules  # noqa: E402  # they use what is declared above

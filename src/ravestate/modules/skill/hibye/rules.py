@@ -1,0 +1,36 @@
+"""When to greet, and when to bid farewell."""
+
+from __future__ import annotations
+
+import ravestate as rs
+from ravestate.modules import interloc, rawio, verbaliser
+from ravestate.modules.meta.verbaliser.intents import Intent
+
+from . import module
+from .words import is_farewell, is_greeting
+
+
+@module.rule(when=interloc.users.added, writes=verbaliser.intent)
+async def greet_who_comes(ctx: rs.RuleContext) -> None:
+    """Somebody is there who was not."""
+    name = ctx.payload(interloc.users.added).item
+    ctx[verbaliser.intent] = Intent("greeting", {"name": name}, __package__)
+
+
+@module.rule(when=interloc.users.removed, writes=verbaliser.intent)
+async def bid_farewell_to_who_leaves(ctx: rs.RuleContext) -> None:
+    """Somebody is gone."""
+    name = ctx.payload(interloc.users.removed).item
+    ctx[verbaliser.intent] = Intent("farewell", {"name": name}, __package__)
+
+
+@module.rule(when=rawio.input.changed.where(is_greeting), writes=verbaliser.intent)
+async def answer_hello(ctx: rs.RuleContext) -> None:
+    """The user says hello."""
+    ctx[verbaliser.intent] = Intent("hello", phrases=__package__)
+
+
+@module.rule(when=rawio.input.changed.where(is_farewell), writes=verbaliser.intent)
+async def answer_goodbye(ctx: rs.RuleContext) -> None:
+    """The user says goodbye."""
+    ctx[verbaliser.intent] = Intent("goodbye", phrases=__package__)

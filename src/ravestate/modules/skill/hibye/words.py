@@ -1,0 +1,37 @@
+"""Whether an utterance is nothing but a greeting, or a farewell."""
+
+from __future__ import annotations
+
+import re
+
+__all__ = ["is_farewell", "is_greeting"]
+
+GREETING = re.compile(
+    r"(hi+|hello+|hey+|hiya|howdy|greetings|good (morning|afternoon|evening|day)|hallo+|guten (morgen|tag|abend)|moin)\b",
+    re.IGNORECASE,
+)
+FAREWELL = re.compile(
+    r"(bye+([ -]bye+)?|goodbye|good bye|good night|see (you|ya)( later| soon| tomorrow)?|farewell|cheerio|ciao|"
+    r"take care|tschüss|auf wiedersehen|gute nacht|i (have to|must|need to|gotta) go)\b",
+    re.IGNORECASE,
+)
+EXTRA_WORDS = 3
+"""So many words may follow: "hello my dear robot" is a greeting, "hello, can you tell me the time?" is more."""
+
+
+def is_greeting(text: str) -> bool:
+    """Whether `text` only greets."""
+    return _only(GREETING, text)
+
+
+def is_farewell(text: str) -> bool:
+    """Whether `text` only says goodbye."""
+    return _only(FAREWELL, text)
+
+
+def _only(pattern: re.Pattern[str], text: str) -> bool:
+    text = text.strip()
+    found = pattern.match(text)
+    if found is None or "?" in text:
+        return False
+    return len(re.findall(r"[^\W_]+", text[found.end() :])) <= EXTRA_WORDS
