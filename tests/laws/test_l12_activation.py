@@ -1,0 +1,170 @@
+"""L12: a clause and the spikes that it has acquired; one stands by always; several may hold a spike; coherence."""
+
+from typing import Any
+
+import pytest
+from laws.short import emitter, hearer, moments, output, started, writer, written
+
+import ravestate as rs
+
+
+def test_a_signal_that_arrives_while_the_rule_is_busy_starts_another_instance(play: Any) -> None:
+    m = rs.Module("m")
+    a, out = m.signal("a"), output(m)
+    writer(m, "slow", a, out, after=10.0)
+    with play(m) as sim:
+        for _ in range(3):
+            sim.emit(a)
+            sim.advance(1.0)
+        assert started(sim) == [(0.0, "slow"), (1.0, "slow"), (2.0, "slow")]
+        sim.advance(20.0)
+        assert moments(sim, out) == [(10.0, "slow"), (11.0, "slow"), (12.0, "slow")]
+
+
+def test_an_activation_that_still_gathers_leaves_room_for_another(play: Any) -> None:
+    m = rs.Module("m")
+    a, b, heard = m.signal("a", payload=int), m.signal("b", payload=int), list[Any]()
+
+    @m.rule(when=a & b)
+    async def pair(ctx: Any) -> None:
+        heard.append((ctx.payload(a), ctx.payload(b)))
+
+    with play(m) as sim:
+        for number in (1, 2, 3):
+            sim.emit(a, number)
+        assert len(sim.explain("m:pair").activations) == 3
+        for number in (1, 2, 3):
+            sim.emit(b, number)
+        assert heard == [(1, 1), (2, 2), (3, 3)]
+
+
+def test_several_activations_may_hold_a_spike_and_consent_lets_one_have_it(play: Any) -> None:
+    m = rs.Module("m")
+    a, b, c, out = m.signal("a"), m.signal("b"), m.signal("c"), output(m)
+    writer(m, "with_b", a & b, out)
+    writer(m, "with_c", a & c, out)
+    with play(m) as sim:
+        sim.emit(a)
+        holders = [one for rule in ("m:with_b", "m:with_c") for one in sim.explain(rule).activations]
+        assert [[name for name, _ in one.holds] for one in holders] == [["m:a"], ["m:a"]]
+        sim.emit(c)
+        sim.advance(10.0)
+        sim.emit(b)
+        assert written(sim, out) == ["with_c"]
+
+
+@pytest.mark.parametrize("writes", [True, False])
+def test_of_two_prompts_and_one_answer_the_older_prompt_is_answered(play: Any, writes: bool) -> None:
+    m = rs.Module("m")
+    prompt, answer = m.signal("prompt", payload=int), m.signal("answer", payload=str)
+    out, answered = m.slot("out", ""), list[Any]()
+
+    @m.rule(when=prompt.max_age(None) & answer, writes=(out,) if writes else ())
+    async def note(ctx: Any) -> None:
+        answered.append((ctx.payload(prompt), ctx.payload(answer)))
+        if writes:
+            ctx[out] = ctx.payload(answer)
+
+    with play(m) as sim:
+        sim.emit(prompt, 1)
+        sim.advance(3.0)
+        sim.emit(prompt, 2)
+        sim.advance(3.0)
+        sim.emit(answer, "one")
+        assert answered == [(1, "one")]
+        sim.advance(100.0)
+        assert answered == [(1, "one")]
+        [waiting] = sim.explain("m:note").activations
+        assert waiting.holds == (("m:prompt", 103.0),)
+        sim.emit(answer, "two")
+        assert answered == [(1, "one"), (2, "two")]
+        sim.emit(answer, "three")
+        sim.advance(10.0)
+        assert answered == [(1, "one"), (2, "two")]
+
+
+def utterances() -> tuple[rs.Module, rs.Slot[str], list[Any]]:
+    """`question & about_agent`, both raised from the words of an utterance."""
+    m = rs.Module("m")
+    text = m.slot("text", "", always=True)
+    question, about = m.signal("question"), m.signal("about")
+    answered: list[Any] = []
+
+    @m.rule(when=text.changed, emits=question)
+    async def ask(ctx: Any) -> None:
+        if "?" in ctx.payload(text.changed):
+            ctx.emit(question, ctx.payload(text.changed))
+
+    @m.rule(when=text.changed, emits=about)
+    async def mention(ctx: Any) -> None:
+        if "you" in ctx.payload(text.changed):
+            ctx.emit(about, ctx.payload(text.changed))
+
+    @m.rule(when=question.max_age(None) & about.max_age(None))
+    async def both(ctx: Any) -> None:
+        answered.append((ctx.payload(question), ctx.payload(about)))
+
+    return m, text, answered
+
+
+def test_the_question_of_one_utterance_never_joins_the_mention_in_another(play: Any) -> None:
+    m, text, answered = utterances()
+    with play(m) as sim:
+        for words in ("who?", "you!", "what?", "you there!"):
+            sim.put(text, words)
+            sim.advance(0.1)
+        assert answered == []
+
+
+def test_constraints_of_one_utterance_join(play: Any) -> None:
+    m, text, answered = utterances()
+    with play(m) as sim:
+        sim.put(text, "who are you?")
+        assert answered == [("who are you?", "who are you?")]
+
+
+def test_an_utterance_is_not_lost_because_another_one_gathers(play: Any) -> None:
+    m, text, answered = utterances()
+    with play(m) as sim:
+        for words in ("who?", "you!", "who are you?", "where are you?", "how?"):
+            sim.put(text, words)
+        assert answered == [("who are you?", "who are you?"), ("where are you?", "where are you?")]
+
+
+def test_inputs_that_share_nothing_may_join_from_two_groups(play: Any) -> None:
+    m = rs.Module("m")
+    point, speech, heard = m.signal("point"), m.signal("speech"), list[Any]()
+    hearer(m, "fuse", point & speech, speech, heard)
+    with play(m) as sim:
+        sim.emit(point)
+        sim.emit(speech, "there")
+        assert heard == ["there"]
+
+
+def test_coherence_reaches_over_a_chain_of_causes(play: Any) -> None:
+    m = rs.Module("m")
+    i, x, y = m.signal("i", payload=str), m.signal("x"), m.signal("y")
+    heard: list[Any] = []
+    emitter(m, "one", i, x, only_if=lambda ctx: "x" in ctx.payload(i))
+    emitter(m, "two", x, y)
+    hearer(m, "join", i.where(lambda text: "j" in text) & y, i, heard)
+    with play(m) as sim:
+        sim.emit(i, "j")
+        sim.emit(i, "x")
+        assert heard == []
+        sim.emit(i, "xj")
+        assert heard == ["xj"]
+
+
+def test_a_detached_constraint_need_not_cohere(play: Any) -> None:
+    m, text, _ = utterances()
+    seen: list[Any] = []
+
+    @m.rule(when=m.signals[0] & m.signals[1].detached())
+    async def loose(ctx: Any) -> None:
+        seen.append((ctx.payload(m.signals[0]), ctx.payload(m.signals[1])))
+
+    with play(m) as sim:
+        sim.put(text, "you!")
+        sim.put(text, "who?")
+        assert seen == [("who?", "you!")]

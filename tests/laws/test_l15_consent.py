@@ -1,0 +1,174 @@
+"""L15: a ready activation needs the consent of each causal group of its non-detached spikes."""
+
+from typing import Any
+
+from laws.short import emitter, moments, output, resigner, started, writer, written
+
+import ravestate as rs
+
+
+def test_without_a_rival_a_ready_rule_runs_at_once(play: Any) -> None:
+    m = rs.Module("m")
+    i, out = m.signal("i"), output(m)
+    writer(m, "only", i, out)
+    with play(m) as sim:
+        sim.emit(i)
+        assert moments(sim, out) == [(0.0, "only")]
+
+
+def test_a_slot_that_a_running_rule_has_taken_is_refused(play: Any) -> None:
+    m = rs.Module("m")
+    i, out = m.signal("i"), output(m)
+    resigner(m, "first", i, out, after=2.0)
+    writer(m, "second", i, out)
+    with play(m) as sim:
+        sim.emit(i)
+        sim.advance(10.0)
+        assert started(sim) == [(0.0, "first"), (2.0, "second")]
+
+
+def test_a_slot_that_a_finished_rule_has_taken_is_refused(play: Any) -> None:
+    m = rs.Module("m")
+    i, x, out = m.signal("i"), m.signal("x"), output(m)
+    writer(m, "first", i, out, weight=10.0)
+    emitter(m, "cause", i, x, after=2.0)
+    writer(m, "late", x, out, weight=0.1)
+    writer(m, "other", m.signal("k"), output(m, "face"))
+    with play(m) as sim:
+        sim.emit(i)
+        sim.advance(10.0)
+        assert written(sim, out) == ["first"]
+
+
+def test_the_greater_effective_utility_goes_first(play: Any) -> None:
+    m = rs.Module("m")
+    i, j, out = m.signal("i"), m.signal("j"), output(m)
+    writer(m, "general", i, out)
+    writer(m, "specific", i & j, out)
+    with play(m) as sim:
+        sim.emit(j)
+        sim.emit(i)
+        sim.advance(10.0)
+        assert written(sim, out) == ["specific"]
+
+
+def test_weight_may_turn_the_order_round(play: Any) -> None:
+    m = rs.Module("m")
+    i, j, out = m.signal("i"), m.signal("j"), output(m)
+    writer(m, "other", m.signal("k"), output(m, "face"))
+    writer(m, "general", i, out, weight=100.0)
+    writer(m, "specific", i & j, out)
+    with play(m) as sim:
+        sim.emit(j)
+        sim.emit(i)
+        sim.advance(10.0)
+        assert written(sim, out) == ["general"]
+
+
+def test_of_equals_the_first_declared_wins(play: Any) -> None:
+    m = rs.Module("m")
+    i, out = m.signal("i"), output(m)
+    for name in ("second", "first", "third"):
+        writer(m, name, i, out)
+    with play(m) as sim:
+        for _ in range(3):
+            sim.emit(i)
+        assert written(sim, out) == ["second"] * 3
+
+
+def test_a_rival_that_writes_another_slot_is_none(play: Any) -> None:
+    m = rs.Module("m")
+    i, j, out = m.signal("i"), m.signal("j"), output(m)
+    writer(m, "specific", i & j, output(m, "face"))
+    writer(m, "general", i, out)
+    with play(m) as sim:
+        sim.emit(i)
+        assert moments(sim, out) == [(0.0, "general")]
+
+
+def test_a_rule_that_waits_for_unrelated_things_is_nobodys_rival(play: Any) -> None:
+    m = rs.Module("m")
+    i, j, k, out = m.signal("i"), m.signal("j"), m.signal("k"), output(m)
+    writer(m, "unrelated", j & k, out, weight=10.0)
+    writer(m, "general", i, out)
+    with play(m) as sim:
+        sim.emit(j)
+        sim.emit(i)
+        assert moments(sim, out) == [(0.0, "general")]
+
+
+def test_a_rule_that_runs_for_another_cause_is_nobodys_rival(play: Any) -> None:
+    m = rs.Module("m")
+    i, out = m.signal("i"), output(m)
+    writer(m, "slow", i, out, after=10.0)
+    with play(m) as sim:
+        sim.emit(i)
+        sim.emit(i)
+        assert started(sim) == [(0.0, "slow")] * 2
+
+
+def test_a_rival_in_stand_by_has_a_stake_if_it_waits_for_what_the_group_may_cause(play: Any) -> None:
+    m = rs.Module("m")
+    i, x, out = m.signal("i"), m.signal("x"), output(m)
+    emitter(m, "cause", i, x, after=3.0)
+    writer(m, "specific", x, out)
+    writer(m, "general", i, out)
+    with play(m) as sim:
+        sim.emit(i)
+        sim.advance(10.0)
+        assert moments(sim, out) == [(3.0, "specific")]
+
+
+def test_a_lesser_rule_is_no_rival(play: Any) -> None:
+    m = rs.Module("m")
+    i, x, out = m.signal("i"), m.signal("x"), output(m)
+    emitter(m, "cause", i, x, after=3.0)
+    writer(m, "late", x, out, weight=0.1)
+    writer(m, "early", i & m.signal("j"), out, weight=10.0)
+    with play(m) as sim:
+        sim.emit(m.signals[2])
+        sim.emit(i)
+        sim.advance(10.0)
+        assert moments(sim, out) == [(0.0, "early")]
+
+
+def every_group(m: rs.Module) -> tuple[rs.Signal[Any], rs.Signal[Any], rs.Slot[str]]:
+    i, j, out = m.signal("i"), m.signal("j"), output(m)
+    writer(m, "fuse", i & j, out)
+    writer(m, "other", m.signal("k"), output(m, "face"))
+    return i, j, out
+
+
+def test_each_group_must_consent_and_one_refuses_for_a_while(play: Any) -> None:
+    m = rs.Module("m")
+    i, j, out = every_group(m)
+    resigner(m, "busy", j, out, weight=10.0, after=3.0)
+    with play(m) as sim:
+        sim.emit(j)
+        sim.emit(i)
+        sim.advance(10.0)
+        assert started(sim) == [(0.0, "busy"), (3.0, "fuse")]
+        assert written(sim, out) == ["fuse"]
+
+
+def test_each_group_must_consent_and_one_refuses_for_good(play: Any) -> None:
+    m = rs.Module("m")
+    i, j, out = every_group(m)
+    writer(m, "busy", j, out, weight=10.0, after=3.0)
+    with play(m) as sim:
+        sim.emit(j)
+        sim.emit(i)
+        sim.advance(20.0)
+        assert moments(sim, out) == [(3.0, "busy")]
+
+
+def test_the_group_of_a_detached_spike_is_not_asked(play: Any) -> None:
+    m = rs.Module("m")
+    i, j, out = m.signal("i"), m.signal("j"), output(m)
+    writer(m, "busy", j, out, weight=10.0, after=3.0)
+    writer(m, "look", i & j.detached(), out)
+    with play(m) as sim:
+        sim.emit(j)
+        sim.emit(i)
+        sim.advance(10.0)
+        assert moments(sim, out) == [(0.0, "look"), (3.0, "busy")]
