@@ -125,7 +125,7 @@ class Holdings:
 
     def _fits(self, need: Need, spike: Spike) -> bool:
         rule = need.clause.rule
-        if spike.born + need.max_age < self.now:
+        if spike.born + need.max_age <= self.now and need.max_age:
             return False
         if not need.detached:
             if spike.refused is not None and rule.index in spike.refused:

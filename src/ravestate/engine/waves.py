@@ -11,6 +11,7 @@ end in this instant has ended.
 
 from __future__ import annotations
 
+import heapq
 from typing import Any
 
 from ravestate.engine import trace
@@ -28,12 +29,18 @@ from ravestate.policy.policy import Policy
 __all__ = ["Waves"]
 
 
+ASKABLE = (State.READY, State.WAITING)
+
+
 class Waves(Slots):
     """The pool and its slots, and who of the ready may run."""
 
     def __init__(self, policy: Policy, patience: float) -> None:
         super().__init__(policy)
         self.patience = patience
+        self._line: list[
+            tuple[int, float, int, int, Activation]
+        ] = []  # who is asked in this instant, best first
         self.ran: dict[int, float] = {}
         """When rules with a cooldown ran last."""
         self._activity = policy.slot_of["core:activity"]
@@ -49,7 +56,7 @@ class Waves(Slots):
                 self._change(self._activity, True, (), None)
             elif self._free:
                 self._start_free()
-            elif self._asking or self._dirty or self._stirred:
+            elif self._line or self._asking or self._dirty or self._stirred:
                 self._consent_round()
             elif not self._settle_flags():
                 break
@@ -117,35 +124,67 @@ class Waves(Slots):
         return True
 
     def _consent_round(self) -> None:
-        asking = dict(self._asking)
-        for group in self._dirty:
-            asking.update(group.interested)
-        if self._stirred:
-            asking.update((a, None) for a in self.waiting if a.speculative)
+        """Ask the ready, older causes first and of one cause the best first, until one would read what another, just started, is about to write.
+
+        That one is asked in the next wave: as long as rules do not wait, none overwrites what another wrote.
+        """
+        line = self._line
+        for activation in self._asking:
+            heapq.heappush(line, (*self._turn(activation), activation))
         self._asking.clear()
+        again: dict[Activation, None] = {}
+        for group in self._dirty:
+            again.update(group.interested)
         self._dirty.clear()
-        self._stirred = False
-        for activation in sorted(asking, key=self.order) if len(asking) > 1 else asking:
-            if activation.state not in (State.READY, State.WAITING) or not self._guarded(activation):
+        if self._stirred:
+            again.update((a, None) for a in self.waiting if a.speculative)
+            self._stirred = False
+        for activation in again:
+            heapq.heappush(line, (*self._turn(activation), activation))
+        written: set[int] = set()
+        while line:
+            entry = heapq.heappop(line)
+            activation = entry[4]
+            if activation.state not in ASKABLE or not self._guarded(activation):
                 continue
-            if not activation.clause.rule.slots:
-                if self._claimed(activation) is None:
-                    self._start(activation)
+            turn = self._turn(activation)
+            if turn > entry[:4]:  # its rule has run meanwhile, and recovers
+                heapq.heappush(line, (*turn, activation))
                 continue
-            refusal = ask(self, activation)
-            if not refusal:
-                self._start(activation)
-                continue
-            for group, rival, member in refusal.pressed:
-                self._press(group, rival, member, activation)
-            self._refuse(activation, refusal)
-            activation.recheck = refusal.recheck
-            if refusal.recheck != NEVER:
-                self._deadlines.add(refusal.recheck, Kind.RECHECK, activation)
-        if self.waiting and not self._out and not self._free:
+            rule = activation.clause.rule
+            if written and not rule.readable.isdisjoint(written):
+                heapq.heappush(line, entry)
+                break
+            if self._ask(activation):
+                written.update(rule.slots)
+        if self.waiting and not line and not self._out and not self._free:
             best = stalemate(self)
             if best is not None:
                 self._start(best)
+
+    def _turn(self, activation: Activation) -> tuple[int, float, int, int]:
+        """When it is asked: what was caused earlier is answered earlier; of one cause the best goes first."""
+        cause = min(group.id for group in activation.firm_groups())
+        return (cause, *self.order(activation))
+
+    def _ask(self, activation: Activation) -> bool:
+        """Start an activation if it has consent, else let it wait; whether it has started."""
+        if not activation.clause.rule.slots:
+            free = self._claimed(activation) is None
+            if free:
+                self._start(activation)
+            return free
+        refusal = ask(self, activation)
+        if not refusal:
+            self._start(activation)
+            return True
+        for group, rival, member in refusal.pressed:
+            self._press(group, rival, member, activation)
+        self._refuse(activation, refusal)
+        activation.recheck = refusal.recheck
+        if refusal.recheck != NEVER:
+            self._deadlines.add(refusal.recheck, Kind.RECHECK, activation)
+        return False
 
     def _refuse(self, activation: Activation, refusal: Refusal) -> None:
         activation.step(Step.REFUSE)

@@ -1,0 +1,27 @@
+"""interloc: who comes and goes is signalled with key and name."""
+
+import ravestate as rs
+from ravestate.modules import interloc
+from ravestate.testing import simulate
+
+host = rs.Module("host", requires=[interloc])
+seen = host.slot("seen", ())
+
+
+@host.rule(when=interloc.users.added, writes=seen)
+async def came(ctx: rs.RuleContext) -> None:
+    key, name = ctx.payload(interloc.users.added)
+    ctx[seen] = (*ctx[seen], ("came", key, name))
+
+
+@host.rule(when=interloc.users.removed, writes=seen)
+async def went(ctx: rs.RuleContext) -> None:
+    key, name = ctx.payload(interloc.users.removed)
+    ctx[seen] = (*ctx[seen], ("went", key, name))
+
+
+def test_who_comes_and_goes_is_signalled() -> None:
+    with simulate(host) as sim:
+        sim.put(interloc.users, {"a": "Ada"})
+        sim.put(interloc.users, {"b": None})
+        assert sim.read(seen) == (("came", "a", "Ada"), ("went", "a", "Ada"), ("came", "b", None))

@@ -1,0 +1,31 @@
+"""rawio: each utterance counts, and anybody may say one."""
+
+import asyncio
+
+import ravestate as rs
+from ravestate.modules import rawio
+from ravestate.testing import simulate
+
+echo = rs.Module("echo", requires=[rawio])
+
+
+@echo.rule(when=rawio.input.changed, writes=rawio.output)
+async def repeat(ctx: rs.RuleContext) -> None:
+    ctx[rawio.output] = ctx.payload(rawio.input.changed)
+
+
+def test_the_same_words_said_twice_are_two_utterances() -> None:
+    with simulate(echo) as sim:
+        sim.say("yes")
+        sim.say("yes")
+        assert sim.said == ["yes", "yes"]
+
+
+def test_say_from_another_thread_is_heard() -> None:
+    async def main() -> str:
+        async with rs.Context(echo) as context:
+            waiting = asyncio.ensure_future(context.next(rawio.output.changed, timeout=30))
+            await asyncio.to_thread(rawio.say, context, "from afar")
+            return await waiting
+
+    assert asyncio.run(main()) == "from afar"

@@ -1,0 +1,70 @@
+"""hibye greets and bids farewell, once each, and leaves everything else to others."""
+
+import pytest
+
+import ravestate as rs
+from ravestate.modules import hibye, interloc, rawio
+from ravestate.modules.meta.verbaliser import PhraseBook
+from ravestate.testing import Simulation, simulate
+
+PHRASES = PhraseBook.load([hibye.__path__[0] + "/phrases.yaml"])
+
+chatter = rs.Module("chatter", requires=[rawio])
+
+
+@chatter.rule(when=rawio.input.changed, writes=rawio.output)
+async def talk(ctx: rs.RuleContext) -> None:
+    ctx[rawio.output] = "chatter"
+
+
+def phrases(intent: str, **parameters: str) -> set[str]:
+    templates = [t for t in PHRASES.templates(intent) if t.parameters <= parameters.keys()]
+    return {template.text.format(**parameters) for template in templates}
+
+
+def only(sim: Simulation) -> str:
+    [said] = sim.said
+    return said
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_who_comes_is_greeted_and_who_leaves_is_bidden_farewell(seed: int) -> None:
+    with simulate(hibye, seed=seed) as sim:
+        sim.put(interloc.users, {"door": None})
+        assert only(sim) in phrases("greeting")
+        sim.said.clear()
+        sim.put(interloc.users, {})
+        assert only(sim) in phrases("farewell")
+
+
+def test_a_name_that_is_known_may_be_said() -> None:
+    said: set[str] = set()
+    for seed in range(20):
+        with simulate(hibye, seed=seed) as sim:
+            sim.put(interloc.users, {"door": "Ada"})
+            said.add(only(sim))
+    assert said <= phrases("greeting", name="Ada")
+    assert any("Ada" in text for text in said)
+
+
+def test_hello_and_goodbye_are_answered_before_anybody_else_talks() -> None:
+    with simulate(hibye, chatter) as sim:
+        sim.say("Hello!")
+        assert only(sim) in phrases("hello")
+        sim.say("see you later")
+        assert sim.said[1] in phrases("goodbye")
+        sim.say("The weather is fine.")
+        assert sim.said[2:] == ["chatter"]
+
+
+def test_two_users_are_greeted_each() -> None:
+    with simulate(hibye) as sim:
+        sim.put(interloc.users, {"one": None, "two": None})
+        assert len(sim.said) == 2
+
+
+def test_it_speaks_the_language_of_the_context() -> None:
+    german = PhraseBook.load([hibye.__path__[0] + "/phrases.yaml"], "de")
+    with simulate(hibye, settings={"verbaliser": {"language": "de-AT"}}) as sim:
+        sim.say("Hallo")
+        assert only(sim) in {template.text for template in german.templates("hello")}

@@ -1,0 +1,39 @@
+"""What counts as nothing but a greeting or a farewell."""
+
+import pytest
+
+from ravestate.modules.skill.hibye.words import is_farewell, is_greeting
+
+
+@pytest.mark.parametrize(
+    "text", ["hi", "Hello!", "  hey there", "HELLO my dear robot", "good morning", "Hallo", "hiii", "Guten Tag!"]
+)
+def test_a_greeting_greets_and_does_not_take_leave(text: str) -> None:
+    assert is_greeting(text)
+    assert not is_farewell(text)
+
+
+@pytest.mark.parametrize("text", ["bye", "Goodbye!", "see you later", "bye-bye", "Good night", "I have to go", "Tschüss"])
+def test_a_farewell_takes_leave_and_does_not_greet(text: str) -> None:
+    assert is_farewell(text)
+    assert not is_greeting(text)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "",
+        "hello, can you tell me what time it is",
+        "hi, how are you?",
+        "history is fun",
+        "highway",
+        "say hello to your mother",
+        "byebug is a debugger, I think so",
+        "I said goodbye",
+        "🙂",
+        "شكرا",
+    ],
+)
+def test_what_says_more_is_left_to_others(text: str) -> None:
+    assert not is_greeting(text)
+    assert not is_farewell(text)
