@@ -7,10 +7,10 @@ from pathlib import Path
 import ravestate as rs
 from ravestate.modules import rawio
 
-from .intent import Intent
+from .intents import Intent
 from .phrases import PhraseBook
 
-__all__ = ["Intent", "PhraseBook", "Settings", "intent", "last", "module"]
+__all__ = ["Intent", "PhraseBook", "Settings", "intent", "last", "module", "rules"]
 
 
 class Settings(rs.Settings):
@@ -18,16 +18,16 @@ class Settings(rs.Settings):
 
     language: str = "en"
     """As in ``de`` or ``de-AT``; an intent without phrases in it is worded in English."""
-    files: tuple[Path, ...] = ()
-    """YAML files of phrases, read after those of the modules: their phrases replace, or add to, the modules' own."""
+    phrases: tuple[Path, ...] = ()
+    """Files of phrases of one's own, read after those of the modules; they replace their phrases, or add to them."""
 
 
 module = rs.Module("verbaliser", requires=[rawio], settings=Settings)
 
-intent: rs.Slot[Intent | str | None] = module.slot("intent", None, always=True)
-"""What is to be said: an `Intent`, or the name of one that stands in the files of the settings."""
+intent: rs.Slot[str | Intent | None] = module.slot("intent", None, always=True)
+"""What the agent means to say: the name of an intent, or an `Intent` with parameters. It is worded at once."""
 
-last: rs.Slot[dict[str, str]] = module.slot("last", {})
-"""The phrase that was used last for each intent, so that it is not used twice running."""
+last: rs.Collection[str] = module.collection("last")
+"""For each intent the phrase that was chosen last, before its parameters were filled in."""
 
-from . import rules as rules  # noqa: E402  # they use what is declared above
+from . import rules  # noqa: E402  # they use what is declared above

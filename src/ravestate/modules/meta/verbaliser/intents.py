@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
 
 __all__ = ["Intent"]
 
@@ -14,7 +15,7 @@ class Intent:
 
     Example:
         >>> Intent("greet", {"name": "Ada"})
-        Intent(name='greet', parameters={'name': 'Ada'}, package=None)
+        Intent(name='greet', parameters={'name': 'Ada'}, package=None, file=None)
     """
 
     name: str
@@ -22,5 +23,6 @@ class Intent:
     parameters: Mapping[str, object] = field(default_factory=dict[str, object])
     """Values for the braces in phrases; None counts as not given."""
     package: str | None = None
-    """The package whose file ``phrases.yaml`` has the phrases, mostly ``__package__`` of the rule that means it.
-    None: the verbaliser's own, or the user's."""
+    """The package whose file ``phrases.yaml`` has the phrases, mostly ``__package__`` of the rule that means it."""
+    file: Path | None = None
+    """A file that has the phrases, for a rule that stands in no package."""

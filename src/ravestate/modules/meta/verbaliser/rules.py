@@ -3,36 +3,59 @@
 from __future__ import annotations
 
 from functools import lru_cache
+from importlib.resources import files
 from pathlib import Path
 
 import ravestate as rs
+from ravestate.errors import RuleError
 from ravestate.modules import rawio
 
-from . import Settings, intent, last, module
-from .intent import Intent
+from . import intent, last, module
+from .intents import Intent
 from .phrases import PhraseBook
 
 HERE = "ravestate.modules.meta.verbaliser"
 
 
 @module.rule(when=intent.changed, writes=(rawio.output, last))
-async def word(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Choose a phrase, never the same twice running, and say it."""
-    meant = ctx.payload(intent.changed)
-    if not meant:
-        return rs.Resign("nothing is meant")
-    if isinstance(meant, str):
-        meant = Intent(meant)
-    settings: Settings = ctx.settings
-    own = () if meant.phrases is None else (meant.phrases,)
-    book = _book((*own, *settings.files), settings.language)
+async def verbalise(ctx: rs.RuleContext) -> None:
+    """Choose a phrase for the intent, never the same twice running, and say it."""
+    meant = as_intent(ctx.payload(intent.changed))
+    settings = ctx.settings
+    own = settings.phrases if meant.file is None else (meant.file, *settings.phrases)
+    book = phrase_book(meant.package, own, settings.language)
     phrase = book.choose(meant.name, meant.parameters, ctx.random, ctx[last].get(meant.name))
-    ctx[last] = {**ctx[last], meant.name: phrase.template}
     ctx[rawio.output] = phrase.text
-    return None
+    ctx[last].add(meant.name, phrase.template)
+
+
+def as_intent(value: object) -> Intent:
+    """Return what was written to the slot as an `Intent`.
+
+    Raises:
+        RuleError: It is none.
+    """
+    if isinstance(value, Intent):
+        return value
+    if isinstance(value, str) and value:
+        return Intent(value)
+    raise RuleError(
+        f"verbaliser.intent was set to {value!r}: write the name of an intent, or "
+        "verbaliser.Intent('greet', {'name': 'Ada'})"
+    )
 
 
 @lru_cache(maxsize=256)
-def _book(files: tuple[Path, ...], language: str) -> PhraseBook:
-    """Books are read once per process: contexts share them, and never change them."""
-    return PhraseBook.load(files, language)
+def phrase_book(package: str | None, own: tuple[Path, ...], language: str) -> PhraseBook:
+    """Read the verbaliser's phrases, those of `package`, and the user's `own`, in this order.
+
+    Files are read once per process: contexts share a book, and never change it.
+    """
+    packages = (HERE,) if package in (None, HERE) else (HERE, package)
+    try:
+        inside = [files(name) / "phrases.yaml" for name in packages]
+    except ImportError as error:
+        raise RuleError(
+            f"verbaliser.Intent: there is no package {package!r}; write package=__package__"
+        ) from error
+    return PhraseBook.load([*inside, *(path.expanduser() for path in own)], language)

@@ -27,10 +27,10 @@ async def bid_farewell_to_who_leaves(ctx: rs.RuleContext) -> None:
 @module.rule(when=rawio.input.changed.where(is_greeting), writes=verbaliser.intent)
 async def answer_hello(ctx: rs.RuleContext) -> None:
     """The user says hello."""
-    ctx[verbaliser.intent] = Intent("hello", phrases=__package__)
+    ctx[verbaliser.intent] = Intent("hello", package=__package__)
 
 
 @module.rule(when=rawio.input.changed.where(is_farewell), writes=verbaliser.intent)
 async def answer_goodbye(ctx: rs.RuleContext) -> None:
     """The user says goodbye."""
-    ctx[verbaliser.intent] = Intent("goodbye", phrases=__package__)
+    ctx[verbaliser.intent] = Intent("goodbye", package=__package__)

@@ -108,7 +108,9 @@ class LlamaBackend:
             async for piece in pieces:
                 yield piece
         except PlatformError as error:
-            if obituary := await asyncio.to_thread(process.obituary):
+            # A connection that broke is the first sign of an end that takes some milliseconds.
+            grace = 0.5 if error.__cause__ is not None else 0.0
+            if obituary := await asyncio.to_thread(process.obituary, grace):
                 raise PlatformError(
                     f"wildtalk: the language model's process ended ({obituary}). It is started anew for "
                     f"the next answer"

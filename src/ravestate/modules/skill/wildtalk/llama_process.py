@@ -75,10 +75,17 @@ class LlamaProcess:
         """The process's number, if it runs."""
         return self._process.pid if self._process is not None and self.alive else None
 
-    def obituary(self) -> str:
-        """Say how the process ended and what it last said; empty while it runs."""
+    def obituary(self, grace: float = 0.0) -> str:
+        """Say how the process ended and what it last said; empty while it runs.
+
+        A process that is about to end is waited for, for `grace` seconds.
+        """
         process = self._process
-        if process is None or (code := process.poll()) is None:
+        if process is None:
+            return ""
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            process.wait(grace)
+        if (code := process.poll()) is None:
             return ""
         how = f"killed by signal {-code}" if code < 0 else f"exit code {code}"
         if code == -9:
