@@ -10,7 +10,7 @@ from ravestate.declare.module import Module
 from ravestate.declare.rule import Rule
 from ravestate.declare.signal import Signal
 from ravestate.declare.slot import Slot
-from ravestate.errors import DeclarationError, nearest
+from ravestate.errors import DeclarationError, DeclarationErrors, nearest
 from ravestate.policy.causes import Causes
 from ravestate.policy.plan import Clause, RulePlan, SignalPlan, SlotPlan
 
@@ -144,19 +144,31 @@ class Policy:
         assert policy is not None  # build raises when it is given no list for the faults
         return policy
 
-    def with_rule(self, rule: Rule[Any, Any]) -> Policy:
+    def with_rule(self, rule: Rule[Any, Any], settings: Mapping[str, Any] | None = None) -> Policy:
         """This policy and one more rule, over the signals and slots that it has.
+
+        Args:
+            rule: The rule.
+            settings: What the settings that it names are; by default what `with_settings` was given.
 
         Raises:
             DeclarationErrors: The rule does not fit.
         """
         from ravestate.policy.compile import build
 
-        if rule.name in self.rules:
-            raise DeclarationError(
-                f"rule {rule.name} ({rule.origin}) is in the policy already; give the new one another name=..."
+        if not isinstance(rule, Rule):  # pyright: ignore[reportUnnecessaryIsInstance]  # users may not type-check
+            raise DeclarationErrors(
+                [DeclarationError(f"{rule!r} is no rule: write @module.rule(when=...) above the function")]
             )
-        policy = build(self.modules, (*self.declared, rule), self.settings)
+        if rule.name in self.rules:
+            raise DeclarationErrors(
+                [
+                    DeclarationError(
+                        f"rule {rule.name} ({rule.origin}) is in the policy already; give the new one another name=..."
+                    )
+                ]
+            )
+        policy = build(self.modules, (*self.declared, rule), self.settings if settings is None else settings)
         assert policy is not None  # as above
         return policy
 

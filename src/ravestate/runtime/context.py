@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
+import math
 from collections import deque
 from collections.abc import Callable, Mapping
 from types import ModuleType
@@ -18,9 +20,10 @@ from ravestate.engine.events import AddRule, Emit, Event, Start, Stop, Wipe, Wri
 from ravestate.engine.explain import Explanation, explain
 from ravestate.engine.snapshot import snapshot
 from ravestate.engine.trace import Record
-from ravestate.errors import EngineError, UndeclaredError, nearest
+from ravestate.errors import DeclarationError, EngineError, UndeclaredError, nearest
 from ravestate.policy.compile import compile_policy
 from ravestate.policy.policy import Policy
+from ravestate.runtime.journal import Taken
 from ravestate.runtime.runner import Runner
 from ravestate.settings import load_settings
 
@@ -41,10 +44,11 @@ class Context:
         seed: Of all random choices that rules make through ``ctx.random``; different every time by default.
         patience: Seconds that a rival under pressure has, unless its rule says otherwise (L16).
         trace: Whether to keep what happens, for ``trace`` and ``explain``; or a function to be told.
-        journal: Told of every event with its time, e.g. a `Journal`.
+        journal: Told of every event with its time, and of when effects were taken; e.g. a `Journal`.
 
     Raises:
         DeclarationErrors: The modules, or the settings, do not fit.
+        DeclarationError: The patience is no number of seconds.
 
     Example:
         >>> import asyncio, ravestate as rs
@@ -68,11 +72,12 @@ class Context:
         seed: int | None = None,
         patience: float = DEFAULT_PATIENCE,
         trace: bool | Callable[[Record], None] = False,
-        journal: Callable[[Event, float], None] | None = None,
+        journal: Callable[[Event | Taken, float], None] | None = None,
     ) -> None:
         policy = (
             modules[0] if len(modules) == 1 and isinstance(modules[0], Policy) else compile_policy(*modules)  # type: ignore[arg-type]  # a policy among modules is refused there
         )
+        _check_seconds(patience)
         self.settings = load_settings(policy.modules, settings)
         self.trace: deque[Record] = deque(maxlen=TRACE_LIMIT)
         """What has happened lately, if it is kept."""
@@ -84,6 +89,8 @@ class Context:
         self._runner: Runner | None = None
         self._stopping: asyncio.Event | None = None
         self._on_ended: Callable[[Ended], None] | None = None
+        self._on_failed: Callable[[str, BaseException], None] | None = None
+        self._listeners: dict[str, Callable[[Any], None]] = {}
 
     # ------------------------------------------------------------------------------------ life
 
@@ -97,6 +104,9 @@ class Context:
         self._runner = Runner(engine, loop, self.settings, self._seed, self.ask_to_stop)
         self._runner.on_event = self._journal
         self._runner.on_ended = self._on_ended
+        self._runner.on_failed = self._on_failed
+        for signal, listener in self._listeners.items():
+            self._runner.listen(signal, listener)
         self._runner.receive(Start())
         return self
 
@@ -115,9 +125,10 @@ class Context:
         await runner.close()
 
     def ask_to_stop(self) -> None:
-        """Let `until_stopped` return; the context goes on until it is left."""
-        if self._stopping is not None:
-            self._stopping.set()
+        """Let `until_stopped` return; the context goes on until it is left. From any thread."""
+        if self._runner is not None and self._stopping is not None:
+            with contextlib.suppress(RuntimeError):  # the loop is closed: it has ended already
+                self._runner.loop.call_soon_threadsafe(self._stopping.set)
 
     async def until_stopped(self) -> None:
         """Wait until a rule (``ctx.stop()``) or somebody outside has asked the context to end."""
@@ -132,7 +143,7 @@ class Context:
     # ------------------------------------------------------------------------------------ acting from outside
 
     def put(self, slot: Slot[T], value: T) -> None:
-        """Write a slot from outside; from any thread.
+        """Write a slot from outside; from any thread. Once the context has ended, nothing happens.
 
         Raises:
             UndeclaredError: The policy does not have the slot.
@@ -141,7 +152,7 @@ class Context:
         self._running().receive(Write(slot.name, value))
 
     def emit(self, signal: Signal[T], payload: T | None = None) -> None:
-        """Raise a signal from outside; from any thread.
+        """Raise a signal from outside; from any thread. Once the context has ended, nothing happens.
 
         Raises:
             UndeclaredError: The policy does not have the signal.
@@ -160,7 +171,7 @@ class Context:
         Raises:
             DeclarationErrors: The rule does not fit.
         """
-        self._running().receive(AddRule(self.policy.with_rule(rule)))
+        self._running().receive(AddRule(self.policy.with_rule(rule, self.settings)))
 
     async def next(self, signal: Signal[T], timeout: float | None = None) -> T:  # noqa: ASYNC109  # the public name
         """The payload of the next spike of a signal.
@@ -171,10 +182,13 @@ class Context:
 
         Raises:
             TimeoutError: There was none in time.
+            EngineError: The context ended before there was one.
             UndeclaredError: The policy does not have the signal.
         """
         self._known(signal, self.policy.signals, "signal")
         runner = self._running()
+        if runner.closed:
+            raise EngineError(f"the context has ended: there will be no {signal.name}")
         future: asyncio.Future[Any] = runner.loop.create_future()
         runner.futures.setdefault(signal.name, []).append(future)
         runner.engine.watched[signal.name] = 1
@@ -240,3 +254,8 @@ class Context:
             elif isinstance(name, str):
                 hint = nearest(name, names) or f"; add module {name.split(':')[0]} to the context"
             raise UndeclaredError(f"this context has no {what} {thing!r}{hint}")
+
+
+def _check_seconds(patience: object) -> None:
+    if isinstance(patience, bool) or not isinstance(patience, (int, float)) or not 0 <= patience < math.inf:
+        raise DeclarationError(f"patience={patience!r} must be 0 s or more, e.g. patience=1.0")

@@ -9,15 +9,21 @@ from ravestate.engine.effects import Effect
 from ravestate.engine.engine import Engine
 from ravestate.engine.events import Event
 
-__all__ = ["Entry", "Journal", "replay"]
+__all__ = ["Entry", "Journal", "Taken", "replay"]
+
+
+@dataclass(slots=True)
+class Taken:
+    """The runner took the engine's effects. It belongs into the journal because an engine decides only then: of two
+    events, what is between them matters."""
 
 
 @dataclass(frozen=True, slots=True)
 class Entry:
-    """An event, and when it was received (seconds since the context began)."""
+    """An event, or that effects were taken, and when (seconds since the context began)."""
 
     time: float
-    event: Event
+    event: Event | Taken
 
 
 class Journal:
@@ -26,22 +32,17 @@ class Journal:
     def __init__(self) -> None:
         self.entries: list[Entry] = []
 
-    def __call__(self, event: Event, time: float) -> None:
+    def __call__(self, event: Event | Taken, time: float) -> None:
         self.entries.append(Entry(time, replace(event)))
 
 
 def replay(engine: Engine, entries: Iterable[Entry]) -> list[list[Effect]]:
-    """Feed a journal to an engine, and return what it asked for between the events; no rule function is called."""
+    """Feed a journal to an engine, and return what it asked for each time; no rule function is called."""
     done: list[list[Effect]] = []
     for entry in entries:
-        engine.advance(entry.time)
-        effects = list(_drain(engine))
-        engine.receive(entry.event, entry.time)
-        done.append(effects)
-    done.append(list(_drain(engine)))
+        if isinstance(entry.event, Taken):
+            engine.advance(entry.time)
+            done.append(engine.effects())
+        else:
+            engine.receive(entry.event, entry.time)
     return done
-
-
-def _drain(engine: Engine) -> Iterable[Effect]:
-    while effects := engine.effects():
-        yield from effects

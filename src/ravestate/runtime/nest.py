@@ -2,13 +2,14 @@
 
 Making a task and having the loop switch to it costs more than most rules take. So the first step of a
 coroutine is driven by hand, while a spare task counts as the current one (`asyncio.current_task`,
-`asyncio.timeout` and the like work as they should). If the coroutine ends in its first step, the spare is kept
-for the next; if it suspends, the spare adopts it.
+`asyncio.timeout`, context variables and the like work as they should). If the coroutine ends in its first step,
+the spare is kept for the next; if it suspends, the spare adopts it.
 """
 
 from __future__ import annotations
 
 import asyncio
+import contextvars
 import types
 from collections.abc import Callable, Coroutine, Generator
 from time import perf_counter
@@ -25,7 +26,9 @@ class Nest:
         blocked: Called with the owner of the coroutine and the seconds that a single step of it took.
     """
 
-    __slots__ = ("_blocked", "_coroutine", "_first", "_loop", "_owner", "_wake", "task")
+    __slots__ = (
+        "_abandoned", "_blocked", "_clean", "_context", "_coroutine", "_first", "_loop", "_owner", "_wake", "task",
+    )  # fmt: skip
 
     def __init__(self, loop: asyncio.AbstractEventLoop, blocked: Callable[[Any, float], None]) -> None:
         self._loop = loop
@@ -33,19 +36,24 @@ class Nest:
         self._owner: Any = None
         self._coroutine: Coroutine[Any, Any, Any] | None = None
         self._first: Any = None
+        self._abandoned = False
         self._wake: asyncio.Future[None] = loop.create_future()
-        self.task: asyncio.Task[Any] = loop.create_task(self._host())  # type: ignore[arg-type]  # a generator-based coroutine
+        self._context = contextvars.copy_context()
+        self._clean = self._context.copy()
+        host = self._main()
+        host.send(None)  # so that the host meets a cancellation that comes before the task's first step
+        self.task: asyncio.Task[Any] = loop.create_task(host, context=self._context)
 
     def first_step(self, coroutine: Coroutine[Any, Any, Any], owner: Any) -> None:
         """Drive a coroutine to its end or to its first suspension, where the task adopts it.
 
         Raises:
-            StopIteration: It has ended; the nest is as good as new.
-            BaseException: What it raised; the nest is as good as new.
+            StopIteration: It has ended; the nest is free for another, unless it is `spoilt`.
+            BaseException: What it raised; likewise.
         """
         asyncio.tasks._enter_task(self._loop, self.task)  # pyright: ignore[reportPrivateUsage]  # documented for task implementations
         try:
-            self._first = coroutine.send(None)
+            self._first = self._context.run(coroutine.send, None)
         finally:
             asyncio.tasks._leave_task(self._loop, self.task)  # pyright: ignore[reportPrivateUsage]
         self._coroutine = coroutine
@@ -53,24 +61,40 @@ class Nest:
         if not self._wake.done():
             self._wake.set_result(None)
 
+    @property
+    def spoilt(self) -> bool:
+        """Whether the last coroutine has left traces: it cancelled its task, or set a context variable."""
+        return self.task.cancelling() > 0 or self._context != self._clean
+
     def close(self) -> None:
         """End the spare task, if it has adopted nothing."""
         if self._coroutine is None:
             self.task.cancel()
 
+    def abandon(self) -> None:
+        """End the task although its coroutine refuses to: it is closed where it stands."""
+        self._abandoned = True
+        self.task.cancel()
+
+    async def _main(self) -> Any:
+        return await self._host()  # a task wants a coroutine, and the host wants to yield what it likes
+
     @types.coroutine
     def _host(self) -> Generator[Any, Any, Any]:
         error: BaseException | None = None
-        while self._coroutine is None:
-            try:
+        try:
+            yield  # until the task's first step
+            if self._coroutine is None:
                 yield from self._wake
-            except asyncio.CancelledError as cancelled:
-                if self._coroutine is None:
-                    return None
-                error = cancelled
+        except asyncio.CancelledError as cancelled:
+            error = cancelled
+        if self._coroutine is None:
+            return None
         coroutine = self._coroutine
         pending = self._first
         self._first = None
+        if error is not None and pending is not None and pending.cancel():
+            error = None  # it comes back from what was waited for, as in any task
         while True:
             value = None
             if error is None:
@@ -81,6 +105,9 @@ class Nest:
                     raise
                 except BaseException as thrown:  # handed on to the coroutine
                     error = thrown
+            if self._abandoned:
+                coroutine.close()
+                return None
             began = perf_counter()
             try:
                 if error is None:
@@ -90,5 +117,7 @@ class Nest:
                     pending = coroutine.throw(thrown)
             except StopIteration as stop:
                 return stop.value
+            except SystemExit as exit:  # would end the loop, and all other rules with it
+                return exit
             finally:
                 self._blocked(self._owner, perf_counter() - began)

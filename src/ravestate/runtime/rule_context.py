@@ -7,13 +7,14 @@ import logging
 import random
 from collections.abc import Iterator, Mapping
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, Generic, NoReturn, TypeVar, overload
+from typing import TYPE_CHECKING, Any, Generic, NoReturn, TypeVar, cast, overload
 
+from ravestate.declare.module import title_of
 from ravestate.declare.rule import Rule
 from ravestate.declare.signal import Signal
 from ravestate.declare.slot import Collection, Slot
 from ravestate.engine.events import AddRule, Discard, Emit, Store, Wipe, Write
-from ravestate.errors import RunEnded, UndeclaredError, nearest
+from ravestate.errors import RuleError, RunEnded, UndeclaredError, nearest
 
 if TYPE_CHECKING:
     from ravestate.engine.effects import Run
@@ -74,7 +75,12 @@ class RuleContext:
             self._refuse("wrote", "writes", slot, self.rule.writes)
         self._alive()
         if slot.kind == "collection":
-            value = MappingProxyType(dict(value))  # type: ignore[call-overload]  # its kind says so
+            if not isinstance(value, Mapping):
+                raise RuleError(
+                    f"rule {self.rule.name} ({self.rule.origin}) wrote {type(value).__name__} to the collection "
+                    f"{slot.name}: write a mapping of keys to items, or ctx[{title_of(slot)}].add(key, item)"
+                )
+            value = MappingProxyType(dict(value))  # type: ignore[assignment]  # its kind says so
         self._values[slot.name] = value
         self._runner.receive(Write(slot.name, value, self._run))
 
@@ -125,7 +131,8 @@ class RuleContext:
             DeclarationErrors: The rule does not fit.
         """
         self._alive()
-        self._runner.receive(AddRule(self._runner.engine.policy.with_rule(rule)))
+        runner = self._runner
+        runner.receive(AddRule(runner.engine.policy.with_rule(rule, runner.settings)))
 
     async def sleep(self, seconds: float) -> None:
         """Wait on the context's clock."""
@@ -165,6 +172,15 @@ class RuleContext:
 
     def _refuse(self, did: str, what: str, value: Any, declared: tuple[Any, ...]) -> NoReturn:
         name = str(getattr(value, "name", repr(value)))
+        if what == "emits" and isinstance(value, Slot):
+            raise UndeclaredError(
+                f"rule {self.rule.name} ({self.rule.origin}) emitted {name}, which is a slot: write "
+                f"ctx[{title_of(cast('Slot[Any]', value))}] = value, which signals, or ctx.emit(signal)"
+            )
+        if what != "emits" and not isinstance(value, Slot):
+            raise UndeclaredError(
+                f"rule {self.rule.name} ({self.rule.origin}) {did} {name}, which is no slot: write ctx[slot]"
+            )
         short = name.replace(":", ".")
         raise UndeclaredError(
             f"rule {self.rule.name} ({self.rule.origin}) {did} {name} without declaring it: add {what}={short} to "

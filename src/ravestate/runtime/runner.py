@@ -8,7 +8,7 @@ import functools
 import logging
 import random
 import threading
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Coroutine, Mapping
 from time import perf_counter
 from typing import Any, cast
 
@@ -17,7 +17,8 @@ from ravestate.declare.rule import Rule
 from ravestate.engine.effects import Cancel, Effect, Ended, Failed, Run, Spiked
 from ravestate.engine.engine import Engine
 from ravestate.engine.events import Event, Finish
-from ravestate.errors import RuleError
+from ravestate.errors import EngineError, RuleError
+from ravestate.runtime.journal import Taken
 from ravestate.runtime.nest import Nest
 from ravestate.runtime.rule_context import RuleContext
 from ravestate.runtime.workers import Workers
@@ -60,8 +61,8 @@ class Runner:
         self.settings = settings
         self.random = random.Random(seed)
         self.ask_to_stop = stop
-        self.on_event: Callable[[Event, float], None] | None = None
-        """Told of every event before the engine is: the journal."""
+        self.on_event: Callable[[Event | Taken, float], None] | None = None
+        """Told of every event before the engine is, and of when its effects are taken: the journal."""
         self.on_ended: Callable[[Ended], None] | None = None
         self.on_failed: Callable[[str, BaseException], None] | None = None
         self.listeners: dict[str, Callable[[Any], None]] = {}
@@ -69,8 +70,8 @@ class Runner:
         self.futures: dict[str, list[asyncio.Future[Any]]] = {}
         """Who waits for the next spike of a signal, by name."""
         self.workers = Workers()
-        self.threads = 0
-        """Plain functions that are running now."""
+        self.threads: dict[int, Rule[Any, Any]] = {}
+        """The runs of plain functions that are waited for, and their rules."""
         self._thread = threading.get_ident()
         self._origin = loop.time()
         self._scheduled = False
@@ -78,11 +79,11 @@ class Runner:
         self._timer: asyncio.TimerHandle | None = None
         self._timer_due = 0.0
         self._contexts: dict[int, RuleContext] = {}
-        self._tasks: dict[int, asyncio.Task[Any]] = {}
+        self._nests: dict[int, Nest] = {}
         self._spare: Nest | None = None
         self._is_async: dict[Rule[Any, Any], bool] = {}
         self._quiet: list[asyncio.Future[None]] = []
-        self._closed = False
+        self.closed = False
 
     # ------------------------------------------------------------------------------------ events in
 
@@ -93,9 +94,10 @@ class Runner:
     def receive(self, event: Event) -> None:
         """Give the engine an event; from any thread."""
         if threading.get_ident() != self._thread:
-            self.loop.call_soon_threadsafe(self._receive_late, event)
+            with contextlib.suppress(RuntimeError):  # the loop is closed: the context has ended
+                self.loop.call_soon_threadsafe(self._receive_late, event)
             return
-        if self._closed:
+        if self.closed:
             return
         now = self.now()
         if self.on_event is not None:
@@ -112,18 +114,20 @@ class Runner:
             try:
                 self.receive(event)
             except Exception:  # nobody stands above us: the designer must see it all the same
-                log.exception("an event from another thread was refused: %s", event)
+                log.exception("what another thread asked for was refused: %s", _short(event))
 
     # ------------------------------------------------------------------------------------ effects out
 
     def _pump(self) -> None:
         self._scheduled = False
-        if self._closed:
+        if self.closed:
             return
         engine = self.engine
         self._pumping = True
         try:
             for _ in range(BATCH):
+                if self.on_event is not None:
+                    self.on_event(Taken(), engine.now)
                 effects = engine.effects()
                 if not effects:
                     break
@@ -153,7 +157,7 @@ class Runner:
 
     def _wake(self) -> None:
         self._timer = None
-        if not self._closed:
+        if not self.closed:
             self.engine.advance(max(self.now(), self._timer_due))
             self._pump()
 
@@ -198,7 +202,7 @@ class Runner:
         if is_async is None:
             is_async = self._is_async[rule] = _is_async(rule.function)
         if not is_async:
-            self.threads += 1
+            self.threads[effect.run] = rule
             self.workers.submit(functools.partial(self._work, effect.run, rule, ctx))
             return
         nest = self._spare
@@ -211,16 +215,19 @@ class Runner:
             self._finish(effect.run, rule, stop.value, None)
         except BaseException as exception:  # a rule may raise anything
             self._finish(effect.run, rule, None, exception)
-            if isinstance(exception, (KeyboardInterrupt, SystemExit)):
+            if isinstance(exception, KeyboardInterrupt):
                 raise
         else:
             self._spare = None
-            self._tasks[effect.run] = nest.task
+            self._nests[effect.run] = nest
             nest.task.add_done_callback(functools.partial(self._task_done, effect.run, rule))
         self._blocked(rule, perf_counter() - began)
+        if nest.spoilt and nest is self._spare:
+            nest.close()
+            self._spare = None
 
     def _task_done(self, run: int, rule: Rule[Any, Any], task: asyncio.Task[Any]) -> None:
-        self._tasks.pop(run, None)
+        self._nests.pop(run, None)
         if task.cancelled():
             self._finish(run, rule, None, asyncio.CancelledError())
         else:
@@ -242,13 +249,13 @@ class Runner:
     def _work_done(
         self, run: int, rule: Rule[Any, Any], result: Any, exception: BaseException | None
     ) -> None:
-        self.threads -= 1
+        self.threads.pop(run, None)
         self._finish(run, rule, result, exception)
 
     def _finish(self, run: int, rule: Rule[Any, Any], result: Any, exception: BaseException | None) -> None:
         """Report how a run has ended (L18)."""
         ctx = self._contexts.pop(run, None)
-        if ctx is None or self._closed:
+        if ctx is None or self.closed:
             return  # given up before
         cancelled = bool(ctx.told)
         ctx.ended = ctx.ended or "the function has returned"
@@ -259,37 +266,48 @@ class Runner:
             event = Finish(run, "resigned", told.reason)
         elif isinstance(told, Retire):
             event = Finish(run, "retired", told.reason)
-        elif exception is None:
-            nonsense = RuleError(
-                f"rule {rule.name} ({rule.origin}) returned {_short(result)}; a rule returns nothing, rs.Resign(reason) or "
-                "rs.Retire(); write its result to a slot"
-            )
-            event = Finish(run, "failed", str(nonsense), nonsense)
         else:
-            event = Finish(run, "failed", repr(exception), exception)
+            failure = told if exception is not None else _nonsense(rule, told)
+            if isinstance(told, SystemExit):
+                failure = RuleError(
+                    f"rule {rule.name} ({rule.origin}) called sys.exit: a rule does not end the process; write ctx.stop() "
+                    "to end the agent"
+                )
+                failure.__cause__ = told
+            event = Finish(run, "failed", _short(failure), failure)
         self.receive(event)
 
     def _cancel(self, effect: Cancel) -> None:
         ctx = self._contexts.get(effect.run)
         if ctx is None:
             return
-        task = self._tasks.get(effect.run)
-        if task is None:  # a thread cannot be stopped: its run ends now, and it may not act any more
+        nest = self._nests.get(effect.run)
+        if nest is None:  # a thread cannot be stopped: its run ends now, and it may not act any more
             ctx.ended = effect.reason
             del self._contexts[effect.run]
+            self.threads.pop(effect.run, None)
             self.receive(Finish(effect.run, "done", effect.reason))
             return
         ctx.told = effect.reason
-        task.cancel()
+        nest.task.cancel()
         self.loop.call_later(GRACE, self._give_up, effect.run)
 
     def _give_up(self, run: int) -> None:
         """A cancelled rule did not end in time."""
         ctx = self._contexts.pop(run, None)
-        if ctx is not None and not self._closed:
+        if ctx is not None and not self.closed:
             ctx.ended = "it did not end in time"
-            log.warning("rule %s did not end within %g s of being cancelled", ctx.rule.name, GRACE)
+            self._warn_of(ctx.rule)
             self.receive(Finish(run, "done", ctx.ended))
+
+    def _warn_of(self, rule: Rule[Any, Any]) -> None:
+        log.warning(
+            "rule %s (%s) did not end within %g s of being cancelled: let asyncio.CancelledError through, and clean up "
+            "quickly",
+            rule.name,
+            rule.origin,
+            GRACE,
+        )
 
     def _blocked(self, rule: Rule[Any, Any], seconds: float) -> None:
         if seconds > BLOCKING:
@@ -321,33 +339,44 @@ class Runner:
         """Wait, for some seconds at most, for the runs with a number above `since`."""
         end = self.loop.time() + seconds
         while any(run > since for run in self._contexts) and self.loop.time() < end:
-            tasks = [task for run, task in self._tasks.items() if run > since]
+            tasks = [nest.task for run, nest in self._nests.items() if run > since]
             if tasks:
                 await asyncio.wait(tasks, timeout=end - self.loop.time())
             else:
                 await asyncio.sleep(0.005)
 
     async def close(self) -> None:
-        """Cancel whatever runs, and let it clean up."""
-        for run, task in list(self._tasks.items()):
+        """Cancel whatever runs, and let it clean up; what refuses to end is given up."""
+        for run, nest in self._nests.items():
             ctx = self._contexts.get(run)
             if ctx is not None:
                 ctx.told = "the context has ended"
-            task.cancel()
-        if self._tasks:
-            await asyncio.wait(list(self._tasks.values()), timeout=GRACE)
-        self._closed = True
+            nest.task.cancel()
+        if self._nests:
+            await asyncio.wait([nest.task for nest in self._nests.values()], timeout=GRACE)
+        self.closed = True
+        for run, nest in self._nests.items():
+            ctx = self._contexts.get(run)
+            if ctx is not None:
+                self._warn_of(ctx.rule)
+            nest.abandon()
         for ctx in self._contexts.values():
             ctx.ended = "the context has ended"
         self._contexts.clear()
+        self.threads.clear()
         if self._timer is not None:
             self._timer.cancel()
         if self._spare is not None:
             self._spare.close()
-        for futures in self.futures.values():
+        for signal, futures in self.futures.items():
             for future in futures:
-                future.cancel()
+                if not future.done():
+                    future.set_exception(EngineError(f"the context ended before there was a {signal}"))
+        for future in self._quiet:
+            if not future.done():
+                future.set_result(None)
         self.workers.close()
+        await asyncio.sleep(0)  # the tasks end
 
 
 def _is_async(function: Callable[..., Any]) -> bool:
@@ -357,6 +386,19 @@ def _is_async(function: Callable[..., Any]) -> bool:
         function = cast("functools.partial[Any]", function).func
     return inspect.iscoroutinefunction(function) or inspect.iscoroutinefunction(
         vars(type(function)).get("__call__")  # an object with an async call
+    )
+
+
+def _nonsense(rule: Rule[Any, Any], result: Any) -> RuleError:
+    if isinstance(result, Coroutine):
+        cast("Coroutine[Any, Any, Any]", result).close()
+        return RuleError(
+            f"rule {rule.name} ({rule.origin}) is a plain function that returned a coroutine: write async def, also for "
+            "what a decorator puts around it"
+        )
+    return RuleError(
+        f"rule {rule.name} ({rule.origin}) returned {_short(result)}; a rule returns nothing, rs.Resign(reason) or "
+        "rs.Retire(); write its result to a slot"
     )
 
 
