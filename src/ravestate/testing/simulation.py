@@ -55,15 +55,20 @@ class Simulation:
                 "simulate runs a loop of its own: use it in a plain function, not in an async one"
             )
         loop = self._loop = VirtualLoop()
-        self.context._on_ended = self._ended  # pyright: ignore[reportPrivateUsage]  # a friend of the context
-        loop.run_until_complete(self.context.__aenter__())
-        runner = self.context._runner  # pyright: ignore[reportPrivateUsage]
-        assert runner is not None  # entering makes it
-        runner.on_failed = lambda rule, exception: self.failures.append((rule, exception))
-        if OUTPUT in self.context.policy.signals:
-            runner.listen(OUTPUT, self.said.append)
-        loop.busy = lambda: runner.threads > 0
-        self.settle()
+        context = self.context
+        context._on_ended = self._ended  # pyright: ignore[reportPrivateUsage]  # a friend of the context
+        context._on_failed = self._failed  # pyright: ignore[reportPrivateUsage]
+        if OUTPUT in context.policy.signals:
+            context._listeners[OUTPUT] = self.said.append  # pyright: ignore[reportPrivateUsage]
+        try:
+            loop.run_until_complete(context.__aenter__())
+            runner = context._runner  # pyright: ignore[reportPrivateUsage]
+            assert runner is not None  # entering makes it
+            loop.busy = lambda: [rule.name for rule in runner.threads.values()]
+            self.settle()
+        except BaseException:
+            loop.close()
+            raise
         return self
 
     def __exit__(
@@ -140,6 +145,9 @@ class Simulation:
     def _ended(self, ended: Ended) -> None:
         if ended.fired:
             self.fired.append(ended.rule)
+
+    def _failed(self, rule: str, exception: BaseException) -> None:
+        self.failures.append((rule, exception))
 
     def _running(self) -> VirtualLoop:
         if self._loop is None:

@@ -15,14 +15,14 @@ REAL_LIMIT = 30.0
 class VirtualLoop(asyncio.SelectorEventLoop):
     """Runs as fast as it can, until nothing is left to do before `goal`.
 
-    Plain functions in worker threads take no virtual time: while `busy()` is true, the loop waits for them.
+    Plain functions in worker threads take no virtual time: while `busy()` names some, the loop waits for them.
     """
 
     def __init__(self) -> None:
         self._virtual = 0.0
         self.goal: float | None = None
         """Virtual time at which `run_to` stops."""
-        self.busy: Callable[[], bool] = bool
+        self.busy: Callable[[], list[str]] = list
         super().__init__(_Selector(self))
 
     def time(self) -> float:
@@ -60,11 +60,14 @@ class _Selector(selectors.DefaultSelector):  # type: ignore[misc,valid-type]  # 
         events = super().select(0)
         if events or (timeout is not None and timeout <= 0):
             return events
-        if self._loop.busy():
+        busy = self._loop.busy()
+        if busy:
             events = super().select(REAL_LIMIT)
             if not events:
+                self._loop.busy = list  # nobody waits for it a second time
                 raise TimeoutError(
-                    f"a plain function has kept virtual time waiting for {REAL_LIMIT:g} real seconds"
+                    f"{' and '.join(busy)} kept virtual time waiting for {REAL_LIMIT:g} real seconds: a plain function "
+                    "takes real time; to wait in virtual time write async def and await ctx.sleep(seconds)"
                 )
             return events
         self._loop.nothing_ready()
