@@ -134,8 +134,6 @@ class _Compilation:
         self.number_names()
         for rule in self.declared:
             self.number_rule(rule)
-        if self.faults:
-            return None
         self.connect()
         causes = Causes(self.signals, self.rules)
         self.check_reachable(causes)
@@ -183,7 +181,9 @@ class _Compilation:
         return plan
 
     def twice(self, what: str, name: str, first: str, second: str) -> None:
-        if name.split(":")[0] in {m.name for m in self.modules} and first != second:
+        if [m.name for m in self.modules].count(
+            name.split(":")[0]
+        ) < 2:  # else the modules' names are the fault
             self.faults.append(
                 DeclarationError(f"two {what}s are named {name!r}: {first} and {second}; rename one")
             )

@@ -19,7 +19,9 @@ class Conflict:
         slots: The slots that both write.
         causes: The signals that lie on pathways of both.
         winner: The name of the rule that goes first when both are ready and recovered.
-        margin: By how many nats of effective utility (utility x weight) it wins; 0 for a tie.
+        margin: By how many nats of effective utility (utility x weight) it wins. 0 where neither carries
+            information, even if a weight decides.
+        tie: Whether only the order of declaration decides.
     """
 
     first: str
@@ -28,11 +30,7 @@ class Conflict:
     causes: tuple[str, ...]
     winner: str
     margin: float
-
-    @property
-    def tie(self) -> bool:
-        """Whether only the order of declaration decides."""
-        return self.margin == 0.0
+    tie: bool
 
     @property
     def rules(self) -> tuple[str, str]:
@@ -59,6 +57,7 @@ def find_conflicts(policy: Policy) -> tuple[Conflict, ...]:
                         tuple(s for s in policy.signals if s in causes),
                         first.name if a.base >= b.base else second.name,
                         round(abs(a.utility * first.weight - b.utility * second.weight), 12),
+                        a.base == b.base,
                     )
                 )
     return tuple(found)
