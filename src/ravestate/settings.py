@@ -17,7 +17,7 @@ from ravestate.declare.module import Module
 from ravestate.declare.settings import SettingRef
 from ravestate.errors import DeclarationError, DeclarationErrors, nearest
 
-__all__ = ["Settings", "load_settings"]
+__all__ = ["Settings", "load_settings", "variable_of"]
 
 
 class _SettingsMeta(ModelMetaclass):
@@ -27,7 +27,15 @@ class _SettingsMeta(ModelMetaclass):
         # Only once the class is complete: pydantic itself looks for defaults while it builds one.
         if cls.__dict__.get("__pydantic_complete__") and item in cls.__pydantic_fields__:  # type: ignore[attr-defined]  # pydantic's own
             return SettingRef(item, cls)
-        return super().__getattr__(item)  # type: ignore[misc]  # hidden from type checkers by pydantic
+        try:
+            return super().__getattr__(item)  # type: ignore[misc]  # hidden from type checkers by pydantic
+        except AttributeError:
+            if item.startswith("_"):
+                raise
+            fields: Iterable[str] = cls.__dict__.get("__pydantic_fields__", ())
+            raise AttributeError(
+                f"{cls.__name__} has no setting {item!r}{nearest(item, fields)}", name=item
+            ) from None
 
 
 class Settings(pydantic.BaseModel, metaclass=_SettingsMeta):
@@ -81,6 +89,12 @@ def load_settings(
         values = given.get(name, {})
         if isinstance(values, pydantic.BaseModel):
             found[name] = values
+            if not isinstance(values, model):
+                faults.append(
+                    DeclarationError(
+                        f"settings for {name!r} must be of its class {model.__name__}, not {type(values).__name__}"
+                    )
+                )
             continue
         if not isinstance(values, Mapping):  # pyright: ignore[reportUnnecessaryIsInstance]  # it comes from a file
             faults.append(
@@ -96,12 +110,17 @@ def load_settings(
     return found
 
 
+def variable_of(module: str, field: str) -> str:
+    """The name of the environment's variable for a setting: ``RAVESTATE_<MODULE>_<FIELD>``."""
+    return f"RAVESTATE_{module}_{field}".upper().replace("-", "_")
+
+
 def _from_environment(
     name: str, model: type[pydantic.BaseModel], variables: Mapping[str, str]
 ) -> dict[str, Any]:
     found: dict[str, Any] = {}
     for field in model.model_fields:
-        text = variables.get(f"RAVESTATE_{name}_{field}".upper().replace("-", "_"))
+        text = variables.get(variable_of(name, field))
         if text is not None:
             try:
                 found[field] = json.loads(text)
@@ -117,12 +136,24 @@ def _faults(
 ) -> Iterable[DeclarationError]:
     for detail in error.errors():
         field = ".".join(str(part) for part in detail["loc"])
+        top = str(detail["loc"][0]) if detail["loc"] else ""
+        where = f"setting {name}.{field}" if field else f"settings of {name}"
         if detail["type"] == "extra_forbidden":
             yield DeclarationError(
-                f"setting {name}.{field}: module {name!r} has no such setting{nearest(field, model.model_fields)}"
+                f"{where}: module {name!r} has no such setting{nearest(field, model.model_fields)}"
+            )
+        elif detail["type"] == "missing":
+            yield DeclarationError(
+                f"{where} is missing: write --set {name}.{field}=..., settings={{{name!r}: {{{field!r}: ...}}}}, or set "
+                f"{variable_of(name, top)}"
             )
         else:
             # The value itself may be a secret: it is shown only when the field is not one.
-            annotation = str(model.model_fields[field].annotation) if field in model.model_fields else ""
-            value = "" if "Secret" in annotation else f" = {detail['input']!r}"
-            yield DeclarationError(f"setting {name}.{field}{value}: {detail['msg']}")
+            secret = top not in model.model_fields or "Secret" in str(model.model_fields[top].annotation)
+            value = "" if secret else f" = {_short(detail['input'])}"
+            yield DeclarationError(f"{where}{value}: {detail['msg']}")
+
+
+def _short(value: object) -> str:
+    text = repr(value)
+    return text if len(text) <= 60 else text[:57] + "..."

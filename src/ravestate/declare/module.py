@@ -57,16 +57,24 @@ class Module:
         _check_name(name, "Module")
         self.name = name
         self.origin = _caller()
-        if isinstance(requires, (Module, ModuleType)):
-            requires = (requires,)
-        self.requires: list[Module] = [as_module(required) for required in requires]
+        if isinstance(requires, (Module, ModuleType, str)):
+            requires = (requires,)  # type: ignore[assignment]  # a text is refused below, whole
+        self.requires: list[Module] = []
+        for required in requires:
+            try:
+                self.requires.append(as_module(required))
+            except DeclarationError as fault:
+                raise DeclarationError(f"module {name} ({self.origin}): requires: {fault}") from None
         self.settings = settings
         self.signals: list[Signal[Any]] = []
         self.slots: list[Slot[Any]] = []
         self.rules: list[Rule[Any, Any]] = []
-        if settings is not None and not isinstance(cast("object", settings), type):
+        if settings is not None and not (
+            isinstance(cast("object", settings), type) and hasattr(settings, "model_fields")
+        ):
             raise DeclarationError(
-                f"module {name}: settings={settings!r} must be a class derived from rs.Settings, not a value"
+                f"module {name} ({self.origin}): settings={settings!r} must be a class derived from rs.Settings: write "
+                "class Settings(rs.Settings): ..."
             )
 
     @overload
@@ -228,8 +236,15 @@ class Module:
         def decorate(function: Callable[P, R]) -> Rule[P, R]:
             title = name or getattr(function, "__name__", "")
             whole = f"{self.name}:{title}"
+            if isinstance(function, Rule):
+                raise DeclarationError(
+                    f"{function.name} ({function.origin}) is a rule already: write its second condition behind |, or give "
+                    "the second rule a function of its own"
+                )
             if not callable(function):
                 raise DeclarationError(f"@{self.name}.rule(...) stands above a function, not {function!r}")
+            if name is None and not title.isidentifier():  # a lambda, a partial, an object
+                raise DeclarationError(f"the rule at {origin} has no name of its own: write name='...'")
             code = cast("CodeType | None", getattr(function, "__code__", None))
             if code is not None and code.co_flags & GENERATOR_FLAGS:
                 raise DeclarationError(
@@ -321,7 +336,7 @@ def _float(number: Number) -> Number:
 
 
 def _check_name(name: object, what: str) -> None:
-    if not isinstance(name, str) or not name or not name.replace("-", "_").replace(".", "_").isidentifier():
+    if not isinstance(name, str) or not name.replace("-", "_").isidentifier():
         raise DeclarationError(
             f"{what}: {name!r} is no name: use letters, digits, '_' and '-', beginning with a letter"
         )
@@ -343,5 +358,10 @@ def _many(values: Any, kind: type[T], what: str) -> tuple[T, ...]:
         found = (values,)
     for value in found:
         if not isinstance(value, kind):
-            raise DeclarationError(f"{what}={value!r} is no {kind.__name__.lower()}")
+            hint = ""
+            if isinstance(value, Signal):
+                hint = ": reads and writes name slots, emits names signals"
+            elif isinstance(value, Slot):
+                hint = f": writing it signals; write writes={title_of(cast('Slot[Any]', value))}"
+            raise DeclarationError(f"{what}={value!r} is no {kind.__name__.lower()}{hint}")
     return tuple(dict.fromkeys(found))
