@@ -18,6 +18,7 @@ from ravestate.cli import UsageError
 from ravestate.declare.module import Module, as_module
 from ravestate.errors import DeclarationError, RavestateError, nearest
 from ravestate.modules import BUILT_IN
+from ravestate.settings import variable_of
 
 __all__ = ["Agent", "add_arguments", "load_agent", "load_module"]
 
@@ -48,7 +49,9 @@ def add_arguments(parser: argparse.ArgumentParser, *, modules: str = "+") -> Non
         help="a built-in name (hibye), an installed entry point, a dotted path (pkg.mod or pkg.mod:module), a file "
         "(./hello.py), or an agent file (agent.yaml)",
     )
-    parser.add_argument("-f", "--file", metavar="FILE", help="an agent file: modules, settings, seed, patience")
+    parser.add_argument(
+        "-f", "--file", metavar="FILE", help="an agent file: modules, settings, seed, patience"
+    )
     parser.add_argument(
         "--set",
         dest="sets",
@@ -103,8 +106,17 @@ def load_module(name: str, folder: Path = Path()) -> Module:
         return as_module(import_module(f"ravestate.modules.{BUILT_IN[name]}.{name}"))
     installed = {point.name: point for point in entry_points(group="ravestate.modules")}
     if name in installed:
-        return _as_module(name, installed[name].load())
-    if "." in name or ":" in name or importlib.util.find_spec(name) is not None:
+        try:
+            return _as_module(name, installed[name].load())
+        except RavestateError:
+            raise
+        except Exception as error:
+            raise UsageError(
+                f"entry point {name!r} ({installed[name].value}) fails: {_where(error)}"
+            ) from error
+    if "/" in name or Path(name).is_dir():
+        raise UsageError(f"{name!r} is no module: name a file (./hello.py), or a dotted path (pkg.mod)")
+    if "." in name or ":" in name or (name.isidentifier() and importlib.util.find_spec(name) is not None):
         path, _, attribute = name.partition(":")
         if str(Path.cwd()) not in sys.path:
             sys.path.insert(0, str(Path.cwd()))
@@ -118,7 +130,7 @@ def load_module(name: str, folder: Path = Path()) -> Module:
             raise UsageError(f"module {name!r} fails when it is imported: {_where(error)}") from error
         if attribute:
             if not hasattr(value, attribute):
-                raise UsageError(f"{path} has no {attribute!r}{nearest(attribute, vars(value))}")
+                raise UsageError(f"{path} has no {attribute!r}{nearest(attribute, dir(value))}")
             value = getattr(value, attribute)
         return _as_module(name, value)
     raise UsageError(
@@ -191,7 +203,11 @@ def _read_file(agent: Agent, path: Path) -> list[tuple[str, Path]]:
     for module, values in cast("Mapping[str, Any]", settings).items():
         if not isinstance(values, Mapping):
             raise UsageError(f"{path}: settings of {module} must be keys and values, not {values!r}")
-        agent.settings.setdefault(str(module), {}).update(cast("Mapping[str, Any]", values))
+        agent.settings.setdefault(str(module), {}).update(
+            (key, value)
+            for key, value in cast("Mapping[str, Any]", values).items()
+            if variable_of(str(module), str(key)) not in os.environ  # which goes before a file
+        )
     for key, kind in (("seed", int), ("patience", (int, float))):
         if key in said:
             if not isinstance(said[key], kind) or isinstance(said[key], bool):
@@ -205,9 +221,12 @@ def _filled(value: Any, path: Path) -> Any:
     if isinstance(value, str):
 
         def fill(match: re.Match[str]) -> str:
-            found = os.environ.get(match[1], match[2])
+            default: str | None = match[2]  # None where none is written
+            found = os.environ.get(match[1], default)
             if found is None:
-                raise UsageError(f"{path}: the environment has no {match[1]}; set it, or write ${{{match[1]}:-default}}")
+                raise UsageError(
+                    f"{path}: the environment has no {match[1]}; set it, or write ${{{match[1]}:-default}}"
+                )
             return found
 
         return VARIABLE.sub(fill, value)

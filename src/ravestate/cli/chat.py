@@ -16,7 +16,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The command's options."""
     agent.add_arguments(parser, modules="*")
     parser.add_argument(
-        "--without", action="append", default=[], metavar="MODULE", help="leave a module out (may be repeated)"
+        "--without",
+        action="append",
+        default=[],
+        metavar="MODULE",
+        help="leave a module out (may be repeated)",
     )
 
 

@@ -13,7 +13,9 @@ __all__ = ["add_arguments", "run"]
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The command's options."""
     agent.add_arguments(parser, modules="*")
-    parser.add_argument("--utilities", action="store_true", help="list every rule with its utility in nats as well")
+    parser.add_argument(
+        "--utilities", action="store_true", help="list every rule with its utility in nats as well"
+    )
 
 
 def run(options: argparse.Namespace) -> int:

@@ -4,20 +4,31 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
+from typing import Literal
 
 from ravestate.cli import agent
 
 __all__ = ["add_arguments", "run"]
 
-FORMATS = {".svg": "svg", ".dot": "dot", ".gv": "dot", ".mmd": "mermaid", ".mermaid": "mermaid"}
+FORMATS: dict[str, Literal["svg", "dot", "mermaid"]] = {
+    ".svg": "svg",
+    ".dot": "dot",
+    ".gv": "dot",
+    ".mmd": "mermaid",
+    ".mermaid": "mermaid",
+}
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The command's options."""
     agent.add_arguments(parser, modules="*")
-    parser.add_argument("-o", "--output", metavar="FILE", help="where to write it; standard output by default")
     parser.add_argument(
-        "--format", choices=["svg", "dot", "mermaid"], help="by default what the output's name ends in, else svg"
+        "-o", "--output", metavar="FILE", help="where to write it; standard output by default"
+    )
+    parser.add_argument(
+        "--format",
+        choices=["svg", "dot", "mermaid"],
+        help="by default what the output's name ends in, else svg",
     )
 
 
@@ -26,7 +37,13 @@ def run(options: argparse.Namespace) -> int:
     from ravestate.policy.compile import compile_policy
 
     chosen = agent.load_agent(options)
-    format = options.format or FORMATS.get(Path(options.output or ".svg").suffix, "svg")
+    format: Literal["svg", "dot", "mermaid"] | None = options.format
+    if format is None:
+        format = FORMATS.get(Path(options.output).suffix) if options.output else "svg"
+    if format is None:
+        raise agent.UsageError(
+            f"cannot tell the format of {options.output}: end its name in {', '.join(FORMATS)}, or write --format svg"
+        )
     text = compile_policy(*chosen.modules).diagram(format)
     if options.output is None:
         print(text)

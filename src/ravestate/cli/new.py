@@ -5,10 +5,12 @@ from __future__ import annotations
 import argparse
 import keyword
 import re
+import sys
 from importlib.resources import files
 from pathlib import Path
 
 from ravestate.cli import UsageError
+from ravestate.modules import BUILT_IN
 
 __all__ = ["add_arguments", "run"]
 
@@ -33,7 +35,11 @@ def run(options: argparse.Namespace) -> int:
     name = folder.name
     package = name.replace("-", "_").lower()
     if not re.fullmatch(r"[A-Za-z][A-Za-z0-9_-]*", name) or keyword.iskeyword(package):
-        raise UsageError(f"{name!r} is no name for a project: use letters, digits, '-' and '_', e.g. my-agent")
+        raise UsageError(
+            f"{name!r} is no name for a project: use letters, digits, '-' and '_', e.g. my-agent"
+        )
+    if package in sys.stdlib_module_names or package in ("core", "ravestate", *BUILT_IN):
+        raise UsageError(f"a module named {package!r} exists already: choose another name, e.g. my-{name}")
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         raise UsageError(f"{folder} exists already, and is not empty")
     templates = files("ravestate.cli") / "template"
