@@ -66,7 +66,7 @@ def ask(bench: Bench) -> Iterable[Figure]:
         lived: list[float] = []
         slow: list[float] = []
         live: list[float] = []
-        for _ in bench.rounds(3, 2):
+        for _ in bench.rounds(5, 2):
             live.append(statistics.median(ours.ask("answer", k=k, inputs=inputs)["answered"]))
             times = clips.ask("answer", k=k, inputs=inputs, style="raise", before=LIVED_IN)
             lived.append(statistics.median(times["answered"]))
