@@ -1,0 +1,105 @@
+"""The algebra of conditions: it builds values, and refuses what would silently mean something else."""
+
+import pytest
+
+import ravestate as rs
+from ravestate.declare.condition import AllOf, AnyOf, Holds
+
+demo = rs.Module("demo")
+a, b, c = (demo.signal(name) for name in "abc")
+mood = demo.slot("mood", "calm")
+
+
+def cheerful(value: object) -> bool:
+    return value == "cheerful"
+
+
+def test_and_and_or_build_flat_trees_in_order() -> None:
+    assert a & b & c == AllOf((a, b, c))
+    assert a & (b & c) == AllOf((a, b, c))
+    assert a | b | c == AnyOf((a, b, c))
+    assert a & b | c == AnyOf((AllOf((a, b)), c))
+    assert a & (b | c) == AllOf((a, AnyOf((b, c))))
+
+
+@pytest.mark.parametrize(
+    ("condition", "text"),
+    [
+        (a, "demo:a"),
+        (a & b | c, "demo:a & demo:b | demo:c"),
+        (a & (b | c), "demo:a & (demo:b | demo:c)"),
+        (a.min_age(2), "demo:a.min_age(2.0)"),
+        (a.min_age(0).max_age(5), "demo:a"),
+        (a.max_age(None).detached(), "demo:a.max_age(None).detached()"),
+        (a.max_age(rs.setting("late")), "demo:a.max_age(setting('late'))"),
+        (a.where(cheerful), "demo:a.where(cheerful)"),
+        (a & mood.holds(cheerful), "demo:a & demo:mood.holds(cheerful)"),
+    ],
+)
+def test_a_condition_reads_as_it_was_written(condition: rs.Condition, text: str) -> None:
+    assert repr(condition) == text
+
+
+def test_chaining_makes_new_constraints_and_leaves_the_old_ones() -> None:
+    young = a.min_age(1)
+    old = young.min_age(3).max_age(None).detached()
+    assert (young.min_age_, young.max_age_, young.is_detached) == (1.0, 5.0, False)
+    assert (old.min_age_, old.max_age_, old.is_detached) == (3.0, None, True)
+    twice = a.where(cheerful).where(bool)
+    assert twice.predicates == (cheerful, bool)
+
+
+def test_slot_predicates_are_conditions() -> None:
+    holds = mood.holds(cheerful)
+    assert isinstance(holds, Holds) and holds.slot is mood
+    assert (a & holds).parts == (a, holds)
+
+
+def test_and_or_not_and_comparison_are_refused() -> None:
+    with pytest.raises(
+        rs.DeclarationError, match=r"write demo:a & other instead of 'and', \| instead of 'or'"
+    ):
+        _ = a and b
+    with pytest.raises(rs.DeclarationError, match="has no truth value"):
+        _ = a or b
+    with pytest.raises(rs.DeclarationError, match="has no truth value"):
+        _ = not (a & b)
+    with pytest.raises(rs.DeclarationError, match=r"and \.where\(predicate\) instead of a comparison"):
+        _ = 1 if a.where(cheerful) else 2
+
+
+@pytest.mark.parametrize("other", [True, None, "demo:b", 3, cheerful])
+def test_only_conditions_can_be_combined(other: object) -> None:
+    with pytest.raises(rs.DeclarationError, match=r"cannot combine a condition with .* by &"):
+        _ = a & other
+    with pytest.raises(rs.DeclarationError, match=r"cannot combine a condition with .* by \|"):
+        _ = a | other
+
+
+def test_a_slot_beside_a_condition_is_told_of_its_signal() -> None:
+    with pytest.raises(rs.DeclarationError, match=r"a slot is no signal: write & mood\.changed"):
+        _ = a & mood
+    with pytest.raises(rs.DeclarationError, match=r"a slot is no signal: write \| mood\.changed"):
+        _ = a | mood
+
+
+@pytest.mark.parametrize("age", ["2", None, True, object()])
+def test_ages_are_numbers_or_settings(age: object) -> None:
+    with pytest.raises(
+        rs.DeclarationError, match=r"min_age\(.*\): expected seconds as a number, or a setting"
+    ):
+        a.min_age(age)
+    if age is not None:
+        with pytest.raises(rs.DeclarationError, match=r"write|max_age\(rs\.setting\('name'\)\)"):
+            a.max_age(age)
+
+
+def test_predicates_are_functions() -> None:
+    with pytest.raises(
+        rs.DeclarationError, match=r"demo:a\.where\('yes'\): expected a function of the payload"
+    ):
+        a.where("yes")
+    with pytest.raises(
+        rs.DeclarationError, match=r"demo:mood\.holds\('calm'\): expected a function of the value"
+    ):
+        mood.holds("calm")

@@ -1,0 +1,231 @@
+"""Modules are values; every mistake in a declaration says what to write instead."""
+
+import functools
+import re
+import types
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+import ravestate as rs
+from ravestate.declare.module import as_module
+
+HERE = re.escape(__file__)
+
+
+class Options(rs.Settings):
+    late: float = 2.0
+
+
+def refused(text: str, declare: Callable[[], object]) -> str:
+    """Check that a declaration is refused with these words, and return the whole message."""
+    with pytest.raises(rs.DeclarationError) as caught:
+        declare()
+    message = str(caught.value)
+    assert text in message, message
+    return message
+
+
+@pytest.fixture
+def demo() -> rs.Module:
+    return rs.Module("demo")
+
+
+def do(ctx: object) -> None:
+    pass
+
+
+# ---------------------------------------------------------------------------------------- what a module holds
+
+
+def test_a_module_holds_what_is_declared_with_it_and_nothing_else(demo: rs.Module) -> None:
+    go, mood, lit, people = demo.signal("go"), demo.slot("mood"), demo.flag("lit"), demo.collection("people")
+    rule = demo.rule(when=go)(do)
+    assert (demo.signals, demo.slots, demo.rules) == ([go], [mood, lit, people], [rule])
+    assert rs.Module("demo").rules == []
+    assert repr(demo) == "<module demo>"
+
+
+def test_everything_says_where_it_was_declared(demo: rs.Module) -> None:
+    for thing in (demo, demo.signal("a"), demo.slot("b"), demo.flag("c"), demo.collection("d")):
+        assert re.fullmatch(f"{HERE}:[0-9]+", thing.origin)
+    rule = demo.rule(when=demo.signal("go"))(do)
+    assert re.fullmatch(f"{HERE}:[0-9]+", rule.origin)
+
+
+def test_a_rule_takes_one_or_many_slots_and_signals(demo: rs.Module) -> None:
+    a, b, x = demo.slot("a"), demo.slot("b"), demo.signal("x")
+    rule = demo.rule(when=x, reads=a, writes=[a, b, a], emits=x)(do)
+    assert (rule.reads, rule.writes, rule.emits) == ((a,), (a, b), (x,))
+
+
+def test_a_rule_may_be_named(demo: rs.Module) -> None:
+    go = demo.signal("go")
+    assert demo.rule(when=go)(do).name == "demo:do"
+    assert demo.rule(when=go, name="other")(do).name == "demo:other"
+    assert demo.rule(when=go, name="small")(lambda ctx: None).name == "demo:small"
+
+
+def test_numbers_become_floats_and_settings_stay(demo: rs.Module) -> None:
+    rule = demo.rule(when=demo.signal("go"), weight=2, cooldown=Options.late, patience=0, timeout=1)(do)
+    assert (rule.weight, rule.cooldown, rule.patience, rule.timeout) == (2.0, Options.late, 0.0, 1.0)
+    assert type(rule.weight) is float and type(rule.timeout) is float
+
+
+# ---------------------------------------------------------------------------------------- Python modules
+
+
+def python_module(**contents: object) -> types.ModuleType:
+    found = types.ModuleType("pkg")
+    vars(found).update(contents)
+    return found
+
+
+def test_a_python_module_stands_for_the_module_that_it_holds(demo: rs.Module) -> None:
+    other = rs.Module("other")
+    assert as_module(python_module(module=demo, other=other)) is demo
+    assert as_module(python_module(demo=demo, again=demo)) is demo
+    assert rs.Module("user", requires=[python_module(module=demo)]).requires == [demo]
+    assert rs.Module("user", requires=python_module(module=demo)).requires == [demo]
+    assert rs.Module("user", requires=demo).requires == [demo]
+
+
+def test_a_python_module_without_a_module_or_with_two_is_refused(demo: rs.Module) -> None:
+    refused("pkg holds no rs.Module: write module = rs.Module('name')", lambda: as_module(python_module()))
+    two = python_module(a=demo, b=rs.Module("b"))
+    refused("pkg holds 2 rs.Modules: name the one you mean `module`", lambda: as_module(two))
+    refused(
+        "expected an rs.Module (or a Python module that holds one), not 'demo'", lambda: as_module("demo")
+    )
+
+
+def test_wrong_requirements_name_the_module_that_requires_them() -> None:
+    message = refused("not 'rawio'", lambda: rs.Module("user", requires="rawio"))
+    assert re.match(rf"module user \({HERE}:\d+\): requires: expected an rs.Module", message)
+    refused("requires: expected an rs.Module", lambda: rs.Module("user", requires=[None]))
+
+
+# ---------------------------------------------------------------------------------------- refusals: modules, names
+
+
+@pytest.mark.parametrize("name", ["", "two words", "a:b", "1st", "a.b", None, 3])
+def test_names_are_words(name: Any, demo: rs.Module) -> None:
+    for declare in (
+        lambda: rs.Module(name),
+        lambda: demo.signal(name),
+        lambda: demo.slot(name),
+        lambda: demo.flag(name),
+        lambda: demo.collection(name),
+    ):
+        refused(f"{name!r} is no name: use letters, digits, '_' and '-'", declare)
+
+
+@pytest.mark.parametrize("name", ["a", "my-agent", "_x1", "gefühl"])
+def test_words_are_names(name: str) -> None:
+    assert rs.Module(name).signal(name).name == f"{name}:{name}"
+
+
+@pytest.mark.parametrize("settings", [Options(), {"late": 1}, dict, "Options"])
+def test_settings_are_a_class_derived_from_settings(settings: Any) -> None:
+    refused("write class Settings(rs.Settings): ...", lambda: rs.Module("m", settings=settings))
+    assert rs.Module("m", settings=Options).settings is Options
+
+
+@pytest.mark.parametrize("declare", ["signal", "slot", "flag", "collection"])
+def test_what_is_kept_is_checked(declare: str, demo: rs.Module) -> None:
+    make = getattr(demo, declare)
+    refused("demo:x: keep='last': write keep='all' or keep='latest'", lambda: make("x", keep="last"))
+    refused("demo:x: limit=0: write a whole number of at least 1", lambda: make("x", limit=0))
+    refused("demo:x: limit=1.5: write a whole number", lambda: make("x", limit=1.5))
+
+
+# ---------------------------------------------------------------------------------------- refusals: rules
+
+
+def test_generators_are_refused(demo: rs.Module) -> None:
+    def yields(ctx: object) -> Any:
+        yield 1
+
+    async def yields_later(ctx: object) -> Any:
+        yield 1
+
+    for function in (yields, yields_later):
+        message = refused(
+            "is a generator: a rule returns once; write with ctx[slot] = value instead of yield",
+            lambda function=function: demo.rule(when=demo.signal("go"))(function),
+        )
+        assert re.match(rf"rule demo:{function.__name__} \({HERE}:\d+\)", message)
+
+
+def test_a_function_without_an_argument_is_refused(demo: rs.Module) -> None:
+    def forgets() -> None:
+        pass
+
+    refused("takes no argument: write def forgets(ctx)", lambda: demo.rule(when=demo.signal("go"))(forgets))
+
+    def takes_any(*arguments: object) -> None:
+        pass
+
+    assert demo.rule(when=demo.signal("ok"))(takes_any).name == "demo:takes_any"
+
+
+def test_what_is_no_function_is_refused(demo: rs.Module) -> None:
+    go = demo.signal("go")
+    refused("@demo.rule(...) stands above a function, not 3", lambda: demo.rule(when=go)(3))
+    rule = demo.rule(when=go)(do)
+    refused("is a rule already: write its second condition behind |", lambda: demo.rule(when=go)(rule))
+    assert demo.rules == [rule]
+
+
+@pytest.mark.parametrize("function", [lambda ctx: None, functools.partial(do)])
+def test_a_function_without_a_name_wants_one(function: Any, demo: rs.Module) -> None:
+    refused("has no name of its own: write name='...'", lambda: demo.rule(when=demo.signal("go"))(function))
+    assert demo.rule(when=demo.signal("go2"), name="named")(function).name == "demo:named"
+
+
+@pytest.mark.parametrize("when", [True, None, "go", do, 3])
+def test_a_condition_is_wanted(when: Any, demo: rs.Module) -> None:
+    refused(f"when={when!r} is no condition: combine signals with & and |", lambda: demo.rule(when=when)(do))
+    if when is not None:
+        refused(f"until={when!r} is no condition", lambda: demo.rule(when=demo.signal("go"), until=when)(do))
+
+
+def test_a_slot_as_condition_is_told_of_its_signal(demo: rs.Module) -> None:
+    mood = demo.slot("mood")
+    refused(
+        "when=demo:mood is a slot: write when=mood.changed",
+        lambda: demo.rule(when=mood)(do),
+    )
+
+
+@pytest.mark.parametrize("what", ["weight", "cooldown", "patience", "timeout"])
+@pytest.mark.parametrize("number", ["2", True, [1]])
+def test_numbers_are_numbers(what: str, number: Any, demo: rs.Module) -> None:
+    options: dict[str, Any] = {what: number}
+    refused(
+        f"{what}={number!r} is no number; write {what}=1.0 or a setting",
+        lambda: demo.rule(when=demo.signal("go"), **options)(do),
+    )
+
+
+def test_reads_and_writes_name_slots_and_emits_names_signals(demo: rs.Module) -> None:
+    go, mood = demo.signal("go"), demo.slot("mood")
+    for what in ("reads", "writes"):
+        refused(
+            f"{what}=demo:go is no slot: reads and writes name slots, emits names signals",
+            lambda what=what: demo.rule(when=go, **{what: go})(do),
+        )
+        refused(f"{what}='mood' is no slot", lambda what=what: demo.rule(when=go, **{what: ["mood"]})(do))
+        refused(f"{what}=None is no slot", lambda what=what: demo.rule(when=go, **{what: None})(do))
+    refused(
+        "emits=demo:mood is no signal: writing it signals; write writes=mood",
+        lambda: demo.rule(when=go, emits=mood)(do),
+    )
+    message = refused("emits=5 is no signal", lambda: demo.rule(when=go, emits=5)(do))
+    assert re.match(rf"rule demo:do \({HERE}:\d+\): emits=5", message)
+
+
+def test_a_refused_rule_is_not_in_the_module(demo: rs.Module) -> None:
+    refused("is no condition", lambda: demo.rule(when=None)(do))
+    assert demo.rules == []

@@ -1,0 +1,41 @@
+"""A rule stays the function that it was made of."""
+
+import asyncio
+import inspect
+
+import ravestate as rs
+
+demo = rs.Module("demo")
+go = demo.signal("go")
+
+
+@demo.rule(when=go)
+def double(ctx: int) -> int:
+    """Twice as much."""
+    return 2 * ctx
+
+
+@demo.rule(when=go)
+async def triple(ctx: int) -> int:
+    return 3 * ctx
+
+
+def test_calling_a_rule_calls_its_function() -> None:
+    assert double(4) == 8
+    assert asyncio.run(triple(4)) == 12
+
+
+def test_a_rule_looks_like_its_function() -> None:
+    assert inspect.unwrap(double) is double.function
+    assert inspect.getdoc(double) == "Twice as much."
+    assert list(inspect.signature(double).parameters) == ["ctx"]
+
+
+def test_a_rule_is_shown_by_its_name() -> None:
+    assert repr(double) == "<rule demo:double>"
+
+
+def test_the_defaults_are_those_of_the_laws() -> None:
+    assert (double.weight, double.cooldown, double.patience, double.timeout) == (1.0, 0.0, None, None)
+    assert (double.until, double.detached, double.background) == (None, False, False)
+    assert (double.reads, double.writes, double.emits) == ((), (), ())

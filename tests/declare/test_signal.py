@@ -1,0 +1,40 @@
+"""Signals are values: compared by identity, or with their names."""
+
+import ravestate as rs
+from ravestate.declare.condition import Constraint
+from ravestate.declare.signal import DEFAULT_LIMIT
+
+demo = rs.Module("demo")
+
+
+def test_a_signal_knows_what_was_declared() -> None:
+    word = demo.signal("word", payload=str, input=True, keep="latest", limit=3)
+    assert (word.name, word.payload, word.input, word.keep, word.limit) == (
+        "demo:word",
+        str,
+        True,
+        "latest",
+        3,
+    )
+    assert word.origin.rsplit(":", 1)[0] == __file__
+    plain = demo.signal("plain")
+    assert (plain.payload, plain.input, plain.keep, plain.limit) == (None, False, "all", DEFAULT_LIMIT)
+
+
+def test_signals_of_one_name_are_different_signals() -> None:
+    one, other = rs.Module("twin").signal("s"), rs.Module("twin").signal("s")
+    assert one != other and one == one
+    assert one == "twin:s" and one != "twin:t"
+    assert {one: 1}[one] == 1 and "twin:s" in {one}
+
+
+def test_every_constraint_can_begin_at_the_signal() -> None:
+    signal = demo.signal("start")
+    assert signal.min_age(1) == Constraint(signal, min_age_=1.0)
+    assert signal.max_age(None) == Constraint(signal, max_age_=None)
+    assert signal.detached() == Constraint(signal, is_detached=True)
+    assert signal.where(bool) == Constraint(signal, predicates=(bool,))
+
+
+def test_a_signal_is_shown_by_its_name() -> None:
+    assert repr(demo.signal("shown")) == str(demo.signal("shown")) == "demo:shown"

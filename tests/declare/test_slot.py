@@ -1,0 +1,82 @@
+"""Slots and their signals (L2), and what is said when a slot is taken for a signal."""
+
+import copy
+
+import pytest
+
+import ravestate as rs
+from ravestate.declare.slot import NOTHING
+
+demo = rs.Module("demo")
+mood = demo.slot("mood", "calm", always=True, input=True, keep="latest", limit=7)
+lit = demo.flag("lit")
+people = demo.collection("people")
+
+
+def test_each_kind_of_slot_has_signals_of_its_own() -> None:
+    assert [s.name for s in mood.signals] == ["demo:mood:changed"]
+    assert [s.name for s in lit.signals] == ["demo:lit:changed", "demo:lit:true", "demo:lit:false"]
+    assert [s.name for s in people.signals] == [
+        "demo:people:changed", "demo:people:added", "demo:people:removed",
+    ]  # fmt: skip
+    assert (lit.true.name, lit.false.name) == ("demo:lit:true", "demo:lit:false")
+    assert (people.added.name, people.removed.name) == ("demo:people:added", "demo:people:removed")
+    assert [slot.kind for slot in (mood, lit, people)] == ["value", "flag", "collection"]
+
+
+def test_the_signals_keep_what_the_slot_says() -> None:
+    changed = mood.changed
+    assert (mood.always, changed.input, changed.keep, changed.limit) == (True, True, "latest", 7)
+    assert changed.origin == mood.origin and mood.origin.rsplit(":", 1)[0] == __file__
+
+
+def test_defaults() -> None:
+    assert (mood.default, lit.default, people.default) == ("calm", False, NOTHING)
+    assert demo.slot("nothing").default is None
+    assert demo.slot("typed", type=int).default is None
+    with pytest.raises(TypeError):
+        NOTHING["key"] = 1
+
+
+@pytest.mark.parametrize(
+    ("slot", "attribute", "text"),
+    [
+        (
+            mood,
+            "change",
+            "value slot demo:mood has no 'change': its signals are changed; did you mean 'changed'?",
+        ),
+        (
+            lit,
+            "tru",
+            "flag slot demo:lit has no 'tru': its signals are changed, true, false; did you mean 'true'?",
+        ),
+        (people, "add", "collection slot demo:people has no 'add': .* did you mean 'added'?"),
+        (mood, "true", "value slot demo:mood has no 'true': its signals are changed"),
+        (mood, "hold", "did you mean 'holds'?"),
+    ],
+)
+def test_a_misspelt_signal_of_a_slot_is_met_by_the_right_one(
+    slot: rs.Slot[object], attribute: str, text: str
+) -> None:
+    with pytest.raises(AttributeError, match=text.replace("?", r"\?")):
+        getattr(slot, attribute)
+
+
+def test_a_slot_is_no_condition() -> None:
+    signal = demo.signal("go")
+    for combine in (lambda: mood & signal, lambda: mood | signal, lambda: mood & lit, lambda: True & mood):
+        with pytest.raises(
+            rs.DeclarationError, match=r"write \.changed \(its signal\) or \.holds\(predicate\)"
+        ):
+            combine()
+
+
+def test_a_slot_can_be_copied_and_shown() -> None:
+    assert copy.copy(lit).true is lit.true
+    assert repr(mood) == "demo:mood"
+
+
+def test_an_entry_is_a_key_and_an_item() -> None:
+    key, item = rs.Entry("k", 1)
+    assert (key, item) == ("k", 1)

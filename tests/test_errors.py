@@ -1,0 +1,74 @@
+"""The exception tree, and the hint "did you mean"."""
+
+import pytest
+
+import ravestate as rs
+from ravestate.errors import nearest
+
+
+@pytest.mark.parametrize(
+    ("error", "builtin"),
+    [
+        (rs.DeclarationError, ValueError),
+        (rs.DeclarationErrors, ExceptionGroup),
+        (rs.RuleError, RuntimeError),
+        (rs.UndeclaredError, LookupError),
+        (rs.RuleTimeout, TimeoutError),
+        (rs.RunEnded, rs.RuleError),
+        (rs.EngineError, RuntimeError),
+        (rs.PlatformError, RuntimeError),
+        (rs.Resign, rs.RavestateError),
+    ],
+)
+def test_each_error_is_one_of_ours_and_of_its_builtin_kind(
+    error: type[Exception], builtin: type[Exception]
+) -> None:
+    assert issubclass(error, rs.RavestateError)
+    assert issubclass(error, builtin)
+
+
+def test_all_faults_are_told_in_one_text() -> None:
+    faults = rs.DeclarationErrors([rs.DeclarationError("one"), rs.DeclarationError("two")])
+    assert str(faults) == "2 faults in the declarations:\n  - one\n  - two"
+    assert str(rs.DeclarationErrors([rs.DeclarationError("one")])).startswith("1 fault in the declarations:")
+
+
+def test_faults_can_be_picked_out_of_the_group() -> None:
+    group = rs.DeclarationErrors([rs.DeclarationError("one"), rs.DeclarationError("two")])
+    matching, rest = group.split(lambda error: str(error) == "one")
+    assert isinstance(matching, rs.DeclarationErrors) and "1 fault" in str(matching)
+    assert isinstance(rest, rs.DeclarationErrors) and "two" in str(rest)
+    caught: list[Exception] = []
+    try:
+        raise group
+    except* rs.DeclarationError as found:
+        caught += found.exceptions
+    assert [str(error) for error in caught] == ["one", "two"]
+
+
+def test_the_text_of_a_lookup_error_is_not_quoted() -> None:
+    assert str(rs.UndeclaredError("add reads=mood")) == "add reads=mood"
+    assert str(rs.UndeclaredError()) == ""
+
+
+@pytest.mark.parametrize(
+    ("name", "known", "hint"),
+    [
+        ("rawio:inptu", ["rawio:input", "rawio:output"], "; did you mean 'rawio:input'?"),
+        (
+            "x:output_of_the_agent",
+            ["rawio:output_of_the_agent"],
+            "; did you mean 'rawio:output_of_the_agent'?",
+        ),
+        ("a_long_module_name:go", ["b:go"], "; did you mean 'b:go'?"),
+        ("xyz", ["rawio:input"], ""),
+        ("anything", [], ""),
+    ],
+)
+def test_the_nearest_name_is_offered(name: str, known: list[str], hint: str) -> None:
+    assert nearest(name, known) == hint
+
+
+def test_a_misspelt_name_of_the_package_is_met_by_the_right_one() -> None:
+    with pytest.raises(AttributeError, match="ravestate has no 'Modul'; did you mean 'Module'"):
+        _ = rs.Modul
