@@ -30,7 +30,25 @@ if TYPE_CHECKING:
     from ravestate.engine.spike import Spike
     from ravestate.policy.plan import Clause
 
-__all__ = ["NEVER", "TRANSITIONS", "Activation", "State", "Step"]
+__all__ = [
+    "CANCEL",
+    "CANCELLING",
+    "COMPLETE",
+    "END",
+    "ENDED",
+    "GATHERING",
+    "GRANT",
+    "LOSE",
+    "NEVER",
+    "READY",
+    "REFUSE",
+    "RUNNING",
+    "TRANSITIONS",
+    "WAITING",
+    "Activation",
+    "State",
+    "Step",
+]
 
 
 NEVER = float("inf")
@@ -59,7 +77,7 @@ class Step(enum.IntEnum):
     END = 5  # finished, or gave up its last spike
 
 
-_G, _R, _W, _X, _C, _E = State
+_G, _R, _W, _X, _C, _E = State  # so that the table is one
 TRANSITIONS: dict[tuple[State, Step], State] = {
     (_G, Step.COMPLETE): _R,
     (_G, Step.LOSE): _G,
@@ -78,6 +96,10 @@ TRANSITIONS: dict[tuple[State, Step], State] = {
 }
 
 _TABLE = tuple(tuple(TRANSITIONS.get((state, step)) for step in Step) for state in State)
+
+# An attribute of an enumeration costs more than what is done with it.
+GATHERING, READY, WAITING, RUNNING, CANCELLING, ENDED = State
+COMPLETE, LOSE, REFUSE, GRANT, CANCEL, END = Step
 
 
 class Activation:
@@ -120,7 +142,7 @@ class Activation:
     def __init__(self, id: int, clause: Clause) -> None:
         self.id = id
         self.clause = clause
-        self.state = State.GATHERING
+        self.state = GATHERING
         self.spikes: list[Spike | None] = [None] * len(clause.needs)
         self.missing = clause.all_bits
 
@@ -146,6 +168,9 @@ class Activation:
 
     def firm_groups(self) -> list[Group]:
         """The causal groups of its non-detached spikes, as they are now, each once."""
+        if len(self.spikes) == 1 and self.clause.firm_bits:
+            only = self.spikes[0]
+            return [] if only is None else [only.group if only.group.into is None else only.group.root()]
         found: list[Group] = []
         for need in self.clause.needs:
             spike = self.spikes[need.index]

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from ravestate.engine.activation import NEVER, Activation, State
+from ravestate.engine.activation import NEVER, RUNNING, Activation
 from ravestate.engine.horizon import FIRM, NO, Horizon
 from ravestate.policy.plan import Clause, RulePlan
 
@@ -106,7 +106,7 @@ def _rivals(
     for member in group.members:
         theirs = member.clause
         rules[theirs.rule] = None
-        if theirs is clause or theirs.rule.slotset.isdisjoint(slots) or member.state >= State.RUNNING:
+        if theirs is clause or theirs.rule.slotset.isdisjoint(slots) or member.state >= RUNNING:
             continue
         if _beats(engine, theirs, clause, worth):
             yield theirs, member

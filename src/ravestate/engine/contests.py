@@ -35,9 +35,8 @@ class Contests(Holdings):
 
     def _contest(self, signal: SignalPlan, spike: Spike) -> None:
         """Offer a spike to the contests of its signal."""
-        taken = spike.group.taken
         for clauses in signal.contests:
-            if taken and any(slot in taken and taken[slot] is None for slot in clauses[0].rule.slots):
+            if spike.group.finished(clauses[0].rule.slots):
                 continue  # consumed for all of them
             if self.retired:
                 clauses = tuple(c for c in clauses if c.rule.index not in self.retired)

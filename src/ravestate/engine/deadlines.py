@@ -7,7 +7,19 @@ import heapq
 from collections.abc import Callable
 from typing import Any
 
-__all__ = ["Deadlines", "Kind"]
+__all__ = [
+    "EXPIRE",
+    "FORGET",
+    "PATIENCE",
+    "RECHECK",
+    "RIPEN",
+    "STANDBY",
+    "TIMEOUT",
+    "WATCH",
+    "Deadlines",
+    "Entry",
+    "Kind",
+]
 
 
 class Kind(enum.IntEnum):
@@ -22,6 +34,9 @@ class Kind(enum.IntEnum):
     TIMEOUT = 6  # a run has taken too long
     WATCH = 7  # the spikes of an `until` are old enough
 
+
+# An attribute of an enumeration costs more than what is done with it.
+RIPEN, RECHECK, PATIENCE, STANDBY, EXPIRE, FORGET, TIMEOUT, WATCH = Kind
 
 Entry = tuple[float, Kind, int, Any]
 

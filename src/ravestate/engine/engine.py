@@ -13,8 +13,8 @@ from collections.abc import Iterable
 from typing import Any
 
 from ravestate.engine import events, trace
-from ravestate.engine.activation import NEVER, Activation, State
-from ravestate.engine.deadlines import Entry, Kind
+from ravestate.engine.activation import NEVER, RUNNING, WAITING, Activation
+from ravestate.engine.deadlines import EXPIRE, PATIENCE, RECHECK, RIPEN, STANDBY, TIMEOUT, WATCH, Entry
 from ravestate.engine.effects import Ended
 from ravestate.engine.events import Event
 from ravestate.engine.group import Group
@@ -94,12 +94,12 @@ class Engine(Waves):
     def on_write(self, event: events.Write) -> None:
         slot = self._slot(event.slot)
         run = self._run(event.run)
-        if slot.slot.kind == "collection":
+        if slot.is_collection:
             self._replace(slot, event.value, run)
             return
         self._mark_write(slot, run)
         old = self.read(slot.index)
-        if not slot.slot.always and equal(old, event.value):
+        if not slot.always and equal(old, event.value):
             return
         self._change(slot, event.value, self._parents(run), run)
 
@@ -136,7 +136,7 @@ class Engine(Waves):
         )
         for spike in doomed:
             for holder in list(spike.holders):
-                if holder.state == State.RUNNING and holder is not wiper and holder.clause.rule.interruptible:
+                if holder.state == RUNNING and holder is not wiper and holder.clause.rule.interruptible:
                     self._cancel(holder, "wiped")
             self._kill(spike, "wiped")
 
@@ -198,7 +198,9 @@ class Engine(Waves):
             self.tracer(trace.Settled(self.now, run.id, rule.name, outcome, text, fired))
         if self.report_ends:
             self._out.append(Ended(run.id, rule.name, outcome, fired))
-        on_error = any(s is not None and s.signal.name == "core:error" for s in run.spikes)
+        on_error = event.kind == "failed" and any(
+            spike is not None and spike.signal.name == "core:error" for spike in run.spikes
+        )
         self._end(run)
         if event.kind == "retired":
             self._retire(rule)
@@ -233,11 +235,11 @@ class Engine(Waves):
         if rule.slots:
             for group in _roots(run):
                 for slot in rule.slots:
-                    group.taken[slot] = None
+                    group.take(slot, None)
                 for other in list(group.members):
                     if (
                         other is not run
-                        and other.state < State.RUNNING
+                        and other.state < RUNNING
                         and not other.clause.rule.slotset.isdisjoint(rule.slotset)
                     ):
                         self._lose(other, self._of_group(other, group), "consumed")
@@ -249,8 +251,7 @@ class Engine(Waves):
         """Resigned, or failed before a write: the slots are free again, the rule gives up these spikes (L18)."""
         for group in _roots(run):
             for slot in run.clause.rule.slots:
-                if group.taken.get(slot) is run:
-                    del group.taken[slot]
+                group.free(slot, run)
             self._dirty[group] = None
         self._give_up(run, spikes, "resigned")
 
@@ -262,7 +263,7 @@ class Engine(Waves):
                 spike.claims[rule.index] = None
             if len(spike.holders) > 1:
                 for other in list(spike.holders):
-                    if other is not run and other.clause.rule is rule and other.state < State.RUNNING:
+                    if other is not run and other.clause.rule is rule and other.state < RUNNING:
                         self._lose(other, self._of_spike(other, spike), reason)
             spike.refuse(rule.index)
 
@@ -270,7 +271,7 @@ class Engine(Waves):
         self.unfold_all()
         self.retired.add(rule.index)
         for activation in list(self.active.get(rule.index, ())):
-            if activation.state < State.RUNNING:
+            if activation.state < RUNNING:
                 self._end(activation, "retired")
         self._stirred = True
 
@@ -278,12 +279,12 @@ class Engine(Waves):
 
     def _due(self, entry: Entry) -> None:
         time, kind, _, owner = entry
-        if kind is Kind.EXPIRE:
+        if kind is EXPIRE:
             self._expire(owner, time)
-        elif kind is Kind.RIPEN:
+        elif kind is RIPEN:
             owner.ripens = NEVER
             self._update(owner)
-        elif kind is Kind.PATIENCE:
+        elif kind is PATIENCE:
             owner.pressed = NEVER
             self._dirty.update(dict.fromkeys(owner.firm_groups()))
             if self._pressed_for_nothing(owner):
@@ -293,7 +294,7 @@ class Engine(Waves):
                 if spike is not None and not need.detached:
                     spike.refuse(owner.clause.rule.index)
             self._end(owner, "eliminated")
-        elif kind is Kind.STANDBY:
+        elif kind is STANDBY:
             group, clause, _ = owner
             group = group.root()
             del group.pressed[clause]
@@ -301,13 +302,13 @@ class Engine(Waves):
             if Horizon(self).viable(rival, None, group, rival.rule.slotset) != FIRM:
                 group.eliminate(clause)
             self._dirty[group] = None
-        elif kind is Kind.RECHECK:
+        elif kind is RECHECK:
             owner.recheck = NEVER
-            if owner.state == State.WAITING:
+            if owner.state == WAITING:
                 self._asking[owner] = None
-        elif kind is Kind.TIMEOUT:
+        elif kind is TIMEOUT:
             self._cancel(owner, "timeout")
-        elif kind is Kind.WATCH:
+        elif kind is WATCH:
             owner.due = NEVER
             self._judge(owner)
         else:

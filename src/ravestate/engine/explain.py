@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from ravestate.engine.activation import NEVER, Activation, State
+from ravestate.engine.activation import GATHERING, NEVER, WAITING, Activation
 from ravestate.engine.trace import GaveUp, Held, Pressed, Record, Settled, Started, Waits
 from ravestate.policy.plan import Clause, RulePlan
 
@@ -124,20 +124,20 @@ def _clause(engine: Engine, clause: Clause) -> ClauseState:
 def _activation(engine: Engine, activation: Activation) -> ActivationState:
     clause = activation.clause
     state = activation.state.name.lower()
-    if activation.state is State.GATHERING and not activation.missing:
+    if activation.state is GATHERING and not activation.missing:
         state = "gated" if activation in engine.gated else "ripening"
     waits: list[tuple[str, float]] = []
-    if activation.state is State.WAITING:
+    if activation.state is WAITING:
         mine = engine.effective(clause)
         for name in activation.waits_for:
             theirs = max(engine.effective(c) for c in engine.policy.rule_plan(name).clauses)
             waits.append((name, max(0.0, theirs - mine)))
     bounds = [activation.ripens, activation.pressed, activation.deadline]
-    if activation.state is State.GATHERING:
+    if activation.state is GATHERING:
         held = zip(activation.spikes, clause.needs, strict=True)
         bounds += [spike.born + need.max_age for spike, need in held if spike is not None]
     until = min(bounds)
-    if activation.state is State.WAITING:
+    if activation.state is WAITING:
         latest = engine.patience_of_rivals(activation)
         until = NEVER if latest is None or activation.blockers else latest
     return ActivationState(

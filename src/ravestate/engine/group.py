@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from ravestate.engine.activation import Activation
 
 __all__ = ["Group"]
+
+NOTHING: Any = MappingProxyType({})
 
 
 class Group:
@@ -26,9 +30,10 @@ class Group:
     def __init__(self, id: int) -> None:
         self.id = id
         self.into: Group | None = None  # the group that this one has merged into
-        self.taken: dict[int, Activation | None] = {}
         self.members: dict[Activation, int] = {}
-        self.interested: dict[Activation, None] = {}
+        # Most groups never need the following: they are made when they do.
+        self.taken: Mapping[int, Activation | None] = NOTHING
+        self.interested: Mapping[Activation, None] = NOTHING
         self.pressed: dict[int, float] | None = None
         self.eliminated: set[int] | None = None
 
@@ -38,6 +43,35 @@ class Group:
         while group.into is not None:
             group = group.into
         return group
+
+    def take(self, slot: int, holder: Activation | None) -> None:
+        """A slot is taken by a run, or (None) for good."""
+        if self.taken is NOTHING:
+            self.taken = {slot: holder}
+        else:
+            self.taken[slot] = holder  # type: ignore[index]  # it is a dictionary from then on
+
+    def free(self, slot: int, holder: Activation) -> None:
+        """A run gives a slot back, if it has it."""
+        if self.taken.get(slot) is holder:
+            self.taken = {s: h for s, h in self.taken.items() if s != slot} or NOTHING
+
+    def finished(self, slots: tuple[int, ...]) -> bool:
+        """Whether one of the slots is taken for good."""
+        taken = self.taken
+        return bool(taken) and any(slot in taken and taken[slot] is None for slot in slots)
+
+    def concern(self, activation: Activation) -> None:
+        """Ask a waiting activation again when something ends here."""
+        if self.interested is NOTHING:
+            self.interested = {activation: None}
+        else:
+            self.interested[activation] = None  # type: ignore[index]  # as above
+
+    def forget(self, activation: Activation) -> None:
+        """An activation waits no longer."""
+        if activation in self.interested:
+            self.interested.pop(activation)  # type: ignore[attr-defined]  # as above
 
     def eliminate(self, clause: int) -> None:
         """The patience of a stand-by rival has run out."""
@@ -50,17 +84,17 @@ class Group:
         other.into = self
         for slot, holder in other.taken.items():
             if slot not in self.taken or holder is None:
-                self.taken[slot] = holder
+                self.take(slot, holder)
         for activation, count in other.members.items():
             self.members[activation] = self.members.get(activation, 0) + count
-        self.interested.update(other.interested)
+        for activation in other.interested:
+            self.concern(activation)
         if other.pressed:
             self.pressed = {**other.pressed, **(self.pressed or {})}
         if other.eliminated:
             self.eliminated = other.eliminated | (self.eliminated or set())
         other.members = {}
-        other.interested = {}
-        other.taken = {}
+        other.taken = other.interested = NOTHING
 
     def __repr__(self) -> str:
         return f"group {self.id}"

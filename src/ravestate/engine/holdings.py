@@ -14,8 +14,28 @@ from typing import Any
 from ravestate.declare.condition import Holds
 from ravestate.declare.core import RuleFailure
 from ravestate.engine import trace
-from ravestate.engine.activation import NEVER, Activation, State, Step
-from ravestate.engine.deadlines import Deadlines, Entry, Kind
+from ravestate.engine.activation import (
+    COMPLETE,
+    END,
+    GATHERING,
+    LOSE,
+    NEVER,
+    READY,
+    RUNNING,
+    WAITING,
+    Activation,
+)
+from ravestate.engine.deadlines import (
+    EXPIRE,
+    PATIENCE,
+    RECHECK,
+    RIPEN,
+    STANDBY,
+    TIMEOUT,
+    WATCH,
+    Deadlines,
+    Entry,
+)
 from ravestate.engine.effects import Effect, Failed
 from ravestate.engine.group import Group
 from ravestate.engine.spike import Spike
@@ -88,22 +108,22 @@ class Holdings:
     def _stands(self, entry: Entry) -> bool:
         """Whether a deadline still counts."""
         time, kind, _, owner = entry
-        if kind is Kind.EXPIRE:
+        if kind is EXPIRE:
             return bool(owner.holders)
-        if kind is Kind.RIPEN:
+        if kind is RIPEN:
             return owner.ripens == time
-        if kind is Kind.PATIENCE:
+        if kind is PATIENCE:
             return owner.pressed == time
-        if kind is Kind.STANDBY:
+        if kind is STANDBY:
             group, clause, until = owner
             pressed = group.root().pressed
             return pressed is not None and pressed.get(clause) == until
-        if kind is Kind.RECHECK:
+        if kind is RECHECK:
             return owner.recheck == time
-        if kind is Kind.TIMEOUT:
+        if kind is TIMEOUT:
             return owner.deadline == time
-        if kind is Kind.WATCH:
-            return owner.due == time and owner.run.state == State.RUNNING
+        if kind is WATCH:
+            return owner.due == time and owner.run.state == RUNNING
         return owner in self.live.get(owner.signal.index, ())
 
     def read(self, slot: int) -> Any:
@@ -132,8 +152,7 @@ class Holdings:
                 return False
             if spike.claims is not None and rule.index in spike.claims:
                 return False
-            taken = spike.group.root().taken
-            if any(slot in taken and taken[slot] is None for slot in rule.slots):
+            if spike.group.root().finished(rule.slots):
                 return False
             if need.clause.cyclic and spike.descends_from(rule.index):
                 return False
@@ -233,7 +252,7 @@ class Holdings:
                 self.gated[activation] = None
             elif activation.ripens != ripens:
                 activation.ripens = ripens
-                self._deadlines.add(ripens, Kind.RIPEN, activation)
+                self._deadlines.add(ripens, RIPEN, activation)
         for need in clause.needs:
             spike = activation.spikes[need.index]
             if spike is not None and need.max_age != NEVER:
@@ -241,15 +260,13 @@ class Holdings:
 
     def _let_expire(self, spike: Spike, due: float) -> None:
         """Holders that are still incomplete at a time (seconds) give the spike up then (L14)."""
-        if spike.expiring is None:
-            spike.expiring = set()
         if due <= self.now or due not in spike.expiring:
-            spike.expiring.add(due)
-            self._deadlines.add(due, Kind.EXPIRE, spike)
+            spike.expiring = (*spike.expiring, due)
+            self._deadlines.add(due, EXPIRE, spike)
 
     def _expire(self, spike: Spike, time: float) -> None:
         for holder in list(spike.holders):
-            if holder.state is State.GATHERING:
+            if holder.state is GATHERING:
                 old = [need for need in self._of_spike(holder, spike) if spike.born + need.max_age <= time]
                 self._lose(holder, old, "age")
 
@@ -257,7 +274,7 @@ class Holdings:
         """It is ready: a writer asks for consent, others just start."""
         if activation.pressed != NEVER:
             activation.pressed = NEVER
-        activation.step(Step.COMPLETE)
+        activation.step(COMPLETE)
         clause = activation.clause
         if clause.rule.slots and clause.firm_bits:
             self._asking[activation] = None
@@ -314,7 +331,7 @@ class Holdings:
         self._update(activation)
 
     def _unready(self, activation: Activation) -> None:
-        activation.step(Step.LOSE)
+        activation.step(LOSE)
         activation.ripens = NEVER
         if activation.interests:
             self._lose_interest(activation)
@@ -324,7 +341,7 @@ class Holdings:
     def _end(self, activation: Activation, reason: str = "") -> None:
         """An activation is no more: nothing of it is left. With a reason, what it held counts as given up."""
         before = activation.state
-        activation.step(Step.END)
+        activation.step(END)
         clause = activation.clause
         missing = activation.missing
         for need in clause.needs:
@@ -335,15 +352,15 @@ class Holdings:
                     del self.lacking[need]
             else:
                 self._release(activation, need, reason)
-        if before is State.GATHERING:
+        if before is GATHERING:
             self.gated.pop(activation, None)
             if activation.ripens != NEVER:
                 activation.ripens = NEVER
             if activation.pressed != NEVER:
                 activation.pressed = NEVER
-        elif before is State.READY:
+        elif before is READY:
             self._asking.pop(activation, None)
-        elif before is State.WAITING:
+        elif before is WAITING:
             self._asking.pop(activation, None)
             self._lose_interest(activation)
             activation.recheck = NEVER
@@ -356,7 +373,7 @@ class Holdings:
         del active[activation]
         if not active:
             del self.active[clause.rule.index]
-            self._stirred = True
+            self._stirred = bool(self.waiting)
         if not clause.rule.background:
             self._busy -= 1
 
@@ -364,7 +381,7 @@ class Holdings:
         """It waits no longer: what happens in those groups does not concern it."""
         self.waiting.pop(activation, None)
         for group in activation.interests:
-            group.root().interested.pop(activation, None)
+            group.root().forget(activation)
         activation.interests = ()
 
     def _forget(self, spike: Spike) -> None:
@@ -390,7 +407,7 @@ class Holdings:
             if not live:
                 del self.live[spike.signal.index]
         for holder in list(spike.holders):
-            if holder.state < State.RUNNING:
+            if holder.state < RUNNING:
                 self._lose(holder, self._of_spike(holder, spike), "withdrawn")
 
     def _withdraw(self, signal: SignalPlan, reason: str) -> None:

@@ -20,7 +20,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ravestate.engine.activation import Activation, State
+from ravestate.engine.activation import RUNNING, Activation
 from ravestate.policy.plan import Clause, Need
 
 if TYPE_CHECKING:
@@ -72,9 +72,8 @@ class Horizon:
         stake = activation is not None
         if activation is None:
             missing = clause.all_bits
-            for slot in rule.slots:
-                if slot in group.taken and group.taken[slot] is None:
-                    return NO  # finished there
+            if group.finished(rule.slots):
+                return NO
         else:
             missing = activation.missing
             if not missing:
@@ -164,7 +163,7 @@ class Horizon:
                 continue
             inner = slots | rule.slotset
             for activation in by_rule.get(rule.index, ()):
-                if activation.state >= State.RUNNING:
+                if activation.state >= RUNNING:
                     self.roots.append(activation)
                     return FIRM
                 best = max(best, self.viable(activation.clause, activation, group, inner, path))

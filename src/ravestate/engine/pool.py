@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 from ravestate.engine import trace
-from ravestate.engine.activation import NEVER, Activation, State, Step
+from ravestate.engine.activation import CANCEL, NEVER, RUNNING, Activation
 from ravestate.engine.contests import Contests
-from ravestate.engine.deadlines import Kind
+from ravestate.engine.deadlines import FORGET, WATCH
 from ravestate.engine.effects import Cancel, CancelReason, Spiked
 from ravestate.engine.group import Group
 from ravestate.engine.spike import Spike
@@ -49,7 +49,7 @@ class Pool(Contests):
             self.tracer(trace.Merged(self.now, merged.id, root.id))
         done = {slot for slot, holder in root.taken.items() if holder is None}
         for activation in list(root.members):
-            if activation.state < State.RUNNING and not activation.clause.rule.slotset.isdisjoint(done):
+            if activation.state < RUNNING and not activation.clause.rule.slotset.isdisjoint(done):
                 self._lose(activation, self._of_group(activation, root), "consumed")
         self._dirty.pop(merged, None)
         self._dirty[root] = None
@@ -89,7 +89,7 @@ class Pool(Contests):
         if signal.contests:
             self._contest(signal, spike)
         if signal.retain >= 0 and signal.retain != NEVER:
-            self._deadlines.add(self.now + signal.retain, Kind.FORGET, spike)
+            self._deadlines.add(self.now + signal.retain, FORGET, spike)
         if not spike.holders:
             self._forget(spike)
 
@@ -105,11 +105,8 @@ class Pool(Contests):
         if not need.detached:
             if clause.cyclic and spike.descends_from(rule.index):
                 return
-            taken = spike.group.taken
-            if taken:
-                for slot in rule.slots:
-                    if slot in taken and taken[slot] is None:
-                        return
+            if spike.group.taken and spike.group.finished(rule.slots):
+                return
         lacking = self.lacking.get(need)
         if lacking:
             for activation in sorted(lacking, key=_age) if len(lacking) > 1 else tuple(lacking):
@@ -142,7 +139,7 @@ class Pool(Contests):
         """Show a new spike to the `until` conditions of runs (L21)."""
         for need in spike.signal.watchers:
             for run, watch in list(self._watches.get(need.clause, {}).items()):
-                if run.state == State.RUNNING and all(
+                if run.state == RUNNING and all(
                     self._test(p, spike.payload, run.clause.rule) for p in need.predicates
                 ):
                     watch.spikes[need.index] = spike
@@ -150,16 +147,16 @@ class Pool(Contests):
 
     def _judge(self, watch: Watch) -> None:
         due = watch.met_at(self.now)
-        if due is None or watch.run.state != State.RUNNING:
+        if due is None or watch.run.state != RUNNING:
             return
         if due > self.now:
             watch.due = due
-            self._deadlines.add(due, Kind.WATCH, watch)
+            self._deadlines.add(due, WATCH, watch)
         elif all(self.holds(s, g, watch.clause.rule) for s, g in watch.clause.guards):
             self._cancel(watch.run, "interrupted")
 
     def _cancel(self, run: Activation, reason: CancelReason) -> None:
-        run.step(Step.CANCEL)
+        run.step(CANCEL)
         run.told = reason
         run.deadline = NEVER
         if self.tracer is not None:

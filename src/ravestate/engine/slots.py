@@ -34,20 +34,18 @@ class Slots(Pool):
         self.values[slot.index] = value
         if self.tracer is not None:
             self.tracer(trace.Set(self.now, slot.name, value, 0 if run is None else run.id))
-        if slot.signals[0].keep_latest:
-            for signal in slot.signals:
-                self._withdraw(signal, "superseded")
-        raised = slot.signals
-        if slot.slot.kind == "flag":
-            raised = (slot.signals[0], slot.signals[1] if value else slot.signals[2])
-        if (
-            any(s.listeners or s.watchers or s.name in self.watched for s in raised)
-            or self.tracer is not None
-        ):
+        if slot.heard or self.tracer is not None or (self.watched and self._watched(slot)):
+            if slot.keep_latest:
+                for signal in slot.signals:
+                    self._withdraw(signal, "superseded")
+            raised = slot.signals
+            if slot.is_flag:
+                raised = (slot.signals[0], slot.signals[1] if value else slot.signals[2])
             group = self._group_of(parents)
             for signal in raised:
                 self._birth(signal, value, parents, group, run)
-        self._regate()
+        if self.policy.guarded:
+            self._regate()
 
     def _change_item(
         self,
@@ -79,7 +77,8 @@ class Slots(Pool):
             if signal.keep_latest:
                 self._withdraw(signal, "superseded")
             self._birth(signal, entry, origin[0], origin[1], run)
-        self._regate()
+        if self.policy.guarded:
+            self._regate()
 
     def _replace(self, slot: SlotPlan, value: Any, run: Activation | None) -> None:
         """Give a collection all its items at once: as if each difference had been written."""
@@ -91,15 +90,19 @@ class Slots(Pool):
         for key in [*(k for k in old if k not in items), *items]:
             self._change_item(slot, key, items.get(key, ABSENT), run, self._origin(run))
 
+    def _watched(self, slot: SlotPlan) -> bool:
+        return any(signal.name in self.watched for signal in slot.signals)
+
     def _regate(self) -> None:
         """A slot has changed: predicates on slots may have become true, or false."""
-        if self.gated:
-            for activation in list(self.gated):
-                del self.gated[activation]
-                self._update(activation)
-        if self.waiting:
-            for activation in self.waiting if self.policy.guarded else ():
-                self._asking[activation] = None
+        for activation in list(self.gated):
+            del self.gated[activation]
+            self._update(activation)
+        for activation in self.waiting:
+            self._asking[activation] = None
+        for clause, watches in list(self._watches.items()):
+            for watch in list(watches.values()) if clause.guards else ():
+                self._judge(watch)
 
 
 class _Absent:

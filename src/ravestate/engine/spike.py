@@ -59,7 +59,7 @@ class Spike:
         self.source = source
         self.rule = rule  # index of the rule that raised it, -1 from outside
         self.holders: dict[Activation, None] = {}
-        self.expiring: set[float] | None = None
+        self.expiring: tuple[float, ...] = ()
         self.refused: set[int] | None = None
         self.claims: dict[int, Activation | None] | None = None
 

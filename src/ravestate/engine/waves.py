@@ -15,9 +15,9 @@ import heapq
 from typing import Any
 
 from ravestate.engine import trace
-from ravestate.engine.activation import NEVER, Activation, State, Step
+from ravestate.engine.activation import GRANT, NEVER, READY, REFUSE, WAITING, Activation
 from ravestate.engine.consent import Refusal, ask, stalemate
-from ravestate.engine.deadlines import Kind
+from ravestate.engine.deadlines import PATIENCE, RECHECK, STANDBY, TIMEOUT
 from ravestate.engine.effects import Effect, Run
 from ravestate.engine.group import Group
 from ravestate.engine.horizon import FIRM, Horizon
@@ -29,7 +29,7 @@ from ravestate.policy.policy import Policy
 __all__ = ["Waves"]
 
 
-ASKABLE = (State.READY, State.WAITING)
+ASKABLE = (READY, WAITING)
 
 
 class Waves(Slots):
@@ -94,7 +94,7 @@ class Waves(Slots):
         free = self._free
         self._free = []
         for activation in free:
-            if activation.state != State.READY:
+            if activation.state != READY:
                 continue
             if not self._guarded(activation):
                 continue
@@ -132,26 +132,26 @@ class Waves(Slots):
         for activation in self._asking:
             heapq.heappush(line, (*self._turn(activation), activation))
         self._asking.clear()
-        again: dict[Activation, None] = {}
-        for group in self._dirty:
-            again.update(group.interested)
-        self._dirty.clear()
-        if self._stirred:
-            again.update((a, None) for a in self.waiting if a.speculative)
-            self._stirred = False
-        for activation in again:
-            heapq.heappush(line, (*self._turn(activation), activation))
+        if self._dirty or self._stirred:
+            again: dict[Activation, None] = {}
+            for group in self._dirty:
+                again.update(group.interested)
+            self._dirty.clear()
+            if self._stirred:
+                again.update((a, None) for a in self.waiting if a.speculative)
+                self._stirred = False
+            for activation in again:
+                heapq.heappush(line, (*self._turn(activation), activation))
         written: set[int] = set()
         while line:
             entry = heapq.heappop(line)
             activation = entry[4]
             if activation.state not in ASKABLE or not self._guarded(activation):
                 continue
-            turn = self._turn(activation)
-            if turn > entry[:4]:  # its rule has run meanwhile, and recovers
-                heapq.heappush(line, (*turn, activation))
-                continue
             rule = activation.clause.rule
+            if rule.cooldown and (turn := self._turn(activation)) > entry[:4]:
+                heapq.heappush(line, (*turn, activation))  # it has run meanwhile, and recovers
+                continue
             if written and not rule.readable.isdisjoint(written):
                 heapq.heappush(line, entry)
                 break
@@ -164,7 +164,8 @@ class Waves(Slots):
 
     def _turn(self, activation: Activation) -> tuple[int, float, int, int]:
         """When it is asked: what was caused earlier is answered earlier; of one cause the best goes first."""
-        cause = min(group.id for group in activation.firm_groups())
+        groups = activation.firm_groups()
+        cause = groups[0].id if len(groups) == 1 else min(group.id for group in groups)
         return (cause, *self.order(activation))
 
     def _ask(self, activation: Activation) -> bool:
@@ -183,11 +184,11 @@ class Waves(Slots):
         self._refuse(activation, refusal)
         activation.recheck = refusal.recheck
         if refusal.recheck != NEVER:
-            self._deadlines.add(refusal.recheck, Kind.RECHECK, activation)
+            self._deadlines.add(refusal.recheck, RECHECK, activation)
         return False
 
     def _refuse(self, activation: Activation, refusal: Refusal) -> None:
-        activation.step(Step.REFUSE)
+        activation.step(REFUSE)
         self._lose_interest(activation)
         self.waiting[activation] = None
         names = tuple(refusal.names)
@@ -197,7 +198,7 @@ class Waves(Slots):
         activation.speculative = bool(refusal.pressed)
         activation.interests = tuple(refusal.interests)
         for group in activation.interests:
-            group.interested[activation] = None
+            group.concern(activation)
         if changed and self.tracer is not None:
             until = None if activation.blockers else self.patience_of_rivals(activation)
             self.tracer(trace.Waits(self.now, activation.id, activation.clause.rule.name, names, until))
@@ -219,14 +220,14 @@ class Waves(Slots):
             if member.pressed != NEVER:
                 return
             member.pressed = until
-            self._deadlines.add(until, Kind.PATIENCE, member)
+            self._deadlines.add(until, PATIENCE, member)
         else:
             if group.pressed is None:
                 group.pressed = {}
             if rival.index in group.pressed:
                 return
             group.pressed[rival.index] = until
-            self._deadlines.add(until, Kind.STANDBY, (group, rival.index, until))
+            self._deadlines.add(until, STANDBY, (group, rival.index, until))
         if self.tracer is not None:
             missing = rival.all_bits if member is None else member.missing
             lacks = tuple(n.signal.name for n in rival.needs if n.bit & missing)
@@ -240,7 +241,7 @@ class Waves(Slots):
             rival.clause.rule.name in waiter.waits_for and not waiter.clause.rule.slotset.isdisjoint(slots)
             for group in groups
             for waiter in group.members
-            if waiter.state == State.WAITING
+            if waiter.state == WAITING
         )
         if not waited:
             return True
@@ -248,7 +249,7 @@ class Waves(Slots):
 
     def _start(self, activation: Activation) -> None:
         """It takes its slots in its groups, and its function runs (L17)."""
-        activation.step(Step.GRANT)
+        activation.step(GRANT)
         clause = activation.clause
         rule = clause.rule
         if activation.interests:
@@ -260,7 +261,7 @@ class Waves(Slots):
             activation.groups = tuple(activation.firm_groups())
             for group in activation.groups:
                 for slot in rule.slots:
-                    group.taken[slot] = activation
+                    group.take(slot, activation)
         elif len(clause.needs) > 1 or len(rule.clauses) > 1:
             for spike in stands_on:
                 if spike.claims is None:
@@ -269,7 +270,7 @@ class Waves(Slots):
         self.running[activation.id] = activation
         if rule.timeout is not None:
             activation.deadline = self.now + rule.timeout
-            self._deadlines.add(activation.deadline, Kind.TIMEOUT, activation)
+            self._deadlines.add(activation.deadline, TIMEOUT, activation)
         for until in rule.until:
             self._watches.setdefault(until, {})[activation] = Watch(activation, until)
         payloads = {spike.signal.name: spike.payload for spike in activation.spikes if spike is not None}

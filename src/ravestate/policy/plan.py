@@ -61,15 +61,30 @@ class SignalPlan:
 
 
 class SlotPlan:
-    """A slot, and the numbers of its signals."""
+    """A slot, and its signals."""
 
-    __slots__ = ("index", "name", "signals", "slot")
+    __slots__ = (
+        "always",
+        "heard",
+        "index",
+        "is_collection",
+        "is_flag",
+        "keep_latest",
+        "name",
+        "signals",
+        "slot",
+    )
 
     def __init__(self, index: int, slot: Slot[Any], signals: tuple[SignalPlan, ...]) -> None:
         self.index = index
         self.slot = slot
         self.name = slot.name
         self.signals = signals  # as in slot.signals: changed first
+        self.always = slot.always
+        self.is_flag = slot.kind == "flag"
+        self.is_collection = slot.kind == "collection"
+        self.keep_latest = slot.changed.keep == "latest"
+        self.heard = False  # whether any rule hears one of its signals
 
     def __repr__(self) -> str:
         return self.name
