@@ -387,6 +387,8 @@ class _Compilation:
             signal.listeners = tuple(listeners[signal.index])
             signal.watchers = tuple(watchers[signal.index])
             signal.input = signal.input or signal.index not in raised
+        for slot in self.slots:
+            slot.heard = any(signal.listeners or signal.watchers for signal in slot.signals)
         self.find_kin()
 
     def find_kin(self) -> None:
