@@ -1,0 +1,64 @@
+"""Commands that the documentation shows print what it says they print.
+
+In a `console` block a line that begins with `$ ` is a command, and what follows is what it prints; `...` stands for
+anything. Run are the commands of Ravestate and Python, in a folder with the files that the page has shown so far: a
+block titled `hello.py` makes a file, one titled `hello.py, continued` adds to it.
+"""
+
+import doctest
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from repo.snippets import Block, blocks_in
+
+ROOT = Path(__file__).parents[2]
+PAGES = [
+    file
+    for file in [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
+    if any(block.language == "console" for block in blocks_in(file))
+]
+COMMAND = re.compile(r"(?:printf '[^']*' \| )?(?:\w+=\S+ )*(?:ravestate|python) .*")
+
+
+def shown(block: Block) -> list[tuple[str, str]]:
+    """Each command of a block, and what is shown below it."""
+    found: list[tuple[str, str]] = []
+    for line in block.code.splitlines():
+        if line.startswith("$ "):
+            found.append((line[2:], ""))
+        elif found:
+            found[-1] = (found[-1][0], found[-1][1] + line + "\n")
+    return found
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_commands_print_what_is_shown(page: Path, tmp_path: Path) -> None:
+    path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
+    environment = {
+        **os.environ,
+        "PATH": path,
+        "XDG_STATE_HOME": str(tmp_path),
+        "PYTEST_ADDOPTS": "-p no:cacheprovider",
+    }
+    same = doctest.OutputChecker().check_output
+    for block in blocks_in(page):
+        if block.title and (name := re.fullmatch(r"([\w./-]+)(, continued)?", block.title)):
+            (tmp_path / name[1]).parent.mkdir(parents=True, exist_ok=True)
+            with open(tmp_path / name[1], "a" if name[2] else "w", encoding="utf-8") as file:
+                file.write("\n\n" + block.code if name[2] else block.code)
+        if block.language != "console" or block.not_run:
+            continue
+        for command, expected in shown(block):
+            assert COMMAND.fullmatch(command), f"{block}: show other commands in a `bash` block: {command}"
+            run = subprocess.run(
+                command, shell=True, cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=60
+            )
+            flags = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
+            assert same(expected, run.stdout + run.stderr, flags), (
+                f"{block}: {command}\nexpected:\n{expected}\ngot:\n{run.stdout}{run.stderr}"
+            )

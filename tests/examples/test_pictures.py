@@ -1,0 +1,34 @@
+"""The pictures of the documentation are what the code beside them gives."""
+
+import importlib.util
+import sys
+from pathlib import Path
+from types import ModuleType
+from xml.etree import ElementTree
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+
+
+@pytest.fixture
+def pictures(monkeypatch: pytest.MonkeyPatch) -> ModuleType:
+    spec = importlib.util.spec_from_file_location("pictures", ROOT / "tools" / "pictures.py")
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    monkeypatch.setitem(sys.modules, "pictures", module)  # dataclasses look there
+    spec.loader.exec_module(module)
+    return module
+
+
+def test_they_are_current(pictures: ModuleType) -> None:
+    assert pictures.stale() == [], "run: .venv/bin/python tools/pictures.py"
+
+
+def test_each_is_shown_somewhere_and_says_what_it_is(pictures: ModuleType) -> None:
+    pages = [ROOT / "README.md", *(ROOT / "docs").rglob("*.md")]
+    text = "\n".join(page.read_text(encoding="utf-8") for page in pages)
+    for name, picture in pictures.pictures().items():
+        assert f"pictures/{name})" in text
+        assert ElementTree.fromstring(picture).find("{http://www.w3.org/2000/svg}title") is not None
