@@ -6,9 +6,9 @@ from collections.abc import Callable
 from typing import Any
 
 import pytest
-from scenarios.driver import Driver
 
 from ravestate.testing import simulate
+from scenarios.driver import Driver
 
 
 @pytest.fixture(params=[Driver, simulate], ids=["engine", "runtime"])

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 import ravestate as rs
-from ravestate.engine.trace import Born, Dropped, GaveUp, Set, Settled, Started
+from ravestate.engine.trace import Born, Dropped, GaveUp, Pressed, Set, Settled, Started
 
 
 def output(module: rs.Module, name: str = "out") -> rs.Slot[str]:
@@ -104,6 +104,15 @@ def given_up(sim: Any, rule: str) -> list[tuple[float, str, str]]:
         (round(r.time, 6), r.signal.split(":", 1)[1], r.reason)
         for r in sim.trace
         if isinstance(r, GaveUp) and r.rule.endswith(f":{rule}")
+    ]
+
+
+def pressed(sim: Any) -> list[tuple[float, str, tuple[str, ...], float]]:
+    """When (seconds) which rule came under pressure, what it lacked, and until when it had patience."""
+    return [
+        (round(r.time, 6), r.rule.split(":")[1], r.lacks, round(r.until, 6))
+        for r in sim.trace
+        if isinstance(r, Pressed)
     ]
 
 

@@ -3,9 +3,9 @@
 from typing import Any
 
 import pytest
-from laws.short import at_rest, births, hearer
 
 import ravestate as rs
+from laws.short import at_rest, births, hearer
 
 
 def test_a_signal_is_named_by_its_module() -> None:

@@ -3,9 +3,9 @@
 from typing import Any
 
 import pytest
-from laws.short import hearer
 
 import ravestate as rs
+from laws.short import hearer
 from ravestate.testing import simulate
 
 

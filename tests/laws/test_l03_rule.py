@@ -4,9 +4,9 @@ import inspect
 from typing import Any
 
 import pytest
-from laws.short import hearer, output, writer
 
 import ravestate as rs
+from laws.short import hearer, output, writer
 from ravestate.testing import Simulation, simulate
 
 

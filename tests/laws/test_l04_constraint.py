@@ -3,9 +3,9 @@
 from typing import Any
 
 import pytest
-from laws.short import at_rest, given_up, hearer, moments, output, started, writer
 
 import ravestate as rs
+from laws.short import at_rest, given_up, hearer, moments, output, started, writer
 from ravestate.testing import simulate
 
 
@@ -56,7 +56,7 @@ def test_max_age_none_lets_a_spike_count_for_ever(play: Any) -> None:
 
 
 def test_min_age_lets_a_spike_count_from_that_very_moment(play: Any) -> None:
-    m, a, b, out = pair(lambda a, b: a.min_age(2.0))
+    m, a, _, out = pair(lambda a, b: a.min_age(2.0))
     with play(m) as sim:
         sim.advance(0.5)
         sim.emit(a)

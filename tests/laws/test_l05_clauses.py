@@ -3,9 +3,8 @@
 from itertools import pairwise
 from typing import Any
 
-from laws.short import emitter, hearer, output, started, written
-
 import ravestate as rs
+from laws.short import emitter, hearer, output, started, written
 
 
 def signals(m: rs.Module, names: str) -> list[rs.Signal[Any]]:

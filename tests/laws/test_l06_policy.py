@@ -4,9 +4,9 @@ from collections.abc import Callable
 from typing import Any
 
 import pytest
-from laws.short import emitter, hearer, output, writer
 
 import ravestate as rs
+from laws.short import emitter, hearer, output, writer
 
 Fault = Callable[[], tuple[list[rs.Module], list[str]]]
 

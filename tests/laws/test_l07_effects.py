@@ -1,8 +1,7 @@
 """L7: what a rule may cause, and what that is caused by."""
 
-from laws.short import emitter, hearer, pathways, writer
-
 import ravestate as rs
+from laws.short import emitter, hearer, pathways, writer
 
 
 def test_a_rule_may_cause_what_it_emits() -> None:

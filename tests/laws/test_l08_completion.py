@@ -1,8 +1,7 @@
 """L8: the causal pathway of a clause: the clause and, recursively, the causes of its non-detached constraints."""
 
-from laws.short import emitter, hearer, pathways, writer
-
 import ravestate as rs
+from laws.short import emitter, hearer, pathways, writer
 
 
 def test_a_clause_of_inputs_is_its_own_pathway() -> None:

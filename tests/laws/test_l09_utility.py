@@ -4,9 +4,9 @@ from math import log
 from typing import Any
 
 import pytest
-from laws.short import emitter, hearer, moments, output, writer
 
 import ravestate as rs
+from laws.short import emitter, hearer, moments, output, writer
 
 
 def effective(sim: Any, rule: str) -> float:

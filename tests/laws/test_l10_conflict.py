@@ -2,9 +2,8 @@
 
 from typing import Any
 
-from laws.short import emitter, hearer, output, started, writer, written
-
 import ravestate as rs
+from laws.short import emitter, hearer, output, started, writer, written
 
 
 def conflicting(m: rs.Module) -> list[tuple[str, str]]:

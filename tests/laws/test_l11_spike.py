@@ -2,9 +2,8 @@
 
 from typing import Any
 
-from laws.short import births, emitter, hearer, output, writer, written
-
 import ravestate as rs
+from laws.short import births, emitter, hearer, output, writer, written
 from ravestate.engine.trace import Merged
 
 

@@ -3,9 +3,9 @@
 from typing import Any
 
 import pytest
-from laws.short import emitter, hearer, moments, output, started, writer, written
 
 import ravestate as rs
+from laws.short import emitter, hearer, moments, output, started, writer, written
 
 
 def test_a_signal_that_arrives_while_the_rule_is_busy_starts_another_instance(play: Any) -> None:

@@ -2,9 +2,8 @@
 
 from typing import Any
 
-from laws.short import hearer, moments, output, writer
-
 import ravestate as rs
+from laws.short import hearer, moments, output, writer
 
 
 def test_a_rule_sees_slots_as_they_stood_when_it_started(play: Any) -> None:

@@ -2,9 +2,8 @@
 
 from typing import Any
 
-from laws.short import emitter, moments, output, resigner, started, writer, written
-
 import ravestate as rs
+from laws.short import emitter, moments, output, resigner, started, writer, written
 
 
 def test_without_a_rival_a_ready_rule_runs_at_once(play: Any) -> None:

@@ -1,0 +1,378 @@
+"""L16: a rival stands while what it lacks may still come, and nobody waits longer than that."""
+
+from typing import Any
+
+import pytest
+
+import ravestate as rs
+from laws.short import emitter, given_up, moments, output, pressed, resigner, started, writer, written
+
+
+def no(ctx: Any) -> bool:
+    return False
+
+
+# ---------------------------------------------------------------------------- (i) live spikes
+
+
+def test_a_spike_still_too_young_keeps_a_rival_viable(play: Any) -> None:
+    m = rs.Module("m")
+    i, j, out = m.signal("i"), m.signal("j"), output(m)
+    writer(m, "specific", i & j.min_age(3.0), out)
+    writer(m, "general", i, out)
+    with play(m) as sim:
+        sim.emit(j)
+        sim.emit(i)
+        sim.advance(10.0)
+        assert moments(sim, out) == [(3.0, "specific")]  # three times the patience: nobody was pressed
+        assert pressed(sim) == []
+
+
+def test_a_rival_that_ripens_is_waited_for_though_it_lies_in_another_group(play: Any) -> None:
+    m = rs.Module("m")
+    i, j, out = m.signal("i"), m.signal("j"), output(m)
+    writer(m, "specific", i.min_age(3.0) & j, out)
+    writer(m, "general", j, out)
+    with play(m) as sim:
+        sim.emit(i)
+        sim.advance(1.0)
+        sim.emit(j)
+        sim.advance(10.0)
+        assert moments(sim, out) == [(3.0, "specific")]
+
+
+# ---------------------------------------------------------------------------- (ii) the horizon
+
+
+def classified(after: float, **options: Any) -> tuple[rs.Module, rs.Signal[Any], rs.Slot[str]]:
+    """A classifier that takes its time, a rule for what it may find, and one for everything."""
+    m = rs.Module("m")
+    i, x, out = m.signal("i"), m.signal("x"), output(m)
+    emitter(m, "classify", i, x, after=after, **options)
+    writer(m, "specific", x, out)
+    writer(m, "general", i, out)
+    return m, i, out
+
+
+@pytest.mark.parametrize("after", [0.0, 0.7, 60.0])
+def test_what_a_running_rule_may_yet_cause_is_waited_for_without_patience(play: Any, after: float) -> None:
+    m, i, out = classified(after)
+    with play(m) as sim:
+        sim.emit(i)
+        sim.advance(100.0)
+        assert moments(sim, out) == [(after, "specific")]
+        assert pressed(sim) == []
+
+
+@pytest.mark.parametrize("after", [0.0, 0.7, 60.0])
+def test_whoever_waited_is_reconsidered_when_a_rule_ends_without_its_signal(play: Any, after: float) -> None:
+    m, i, out = classified(after, only_if=no)
+    with play(m) as sim:
+        sim.emit(i)
+        sim.advance(100.0)
+        assert moments(sim, out) == [(after, "general")]
+        assert pressed(sim) == []
+
+
+def chain(stops_at: int) -> tuple[rs.Module, rs.Signal[Any], rs.Slot[str]]:
+    """Three links of 10 s each, of which one may end without its signal."""
+    m = rs.Module("m")
+    signals = [m.signal(f"s{number}") for number in range(4)]
+    for number in range(3):
+        emitter(
+            m, f"link_{number}", signals[number], signals[number + 1], after=10.0,
+            only_if=no if number == stops_at else lambda ctx: True,
+        )  # fmt: skip
+    out = output(m)
+    writer(m, "specific", signals[3], out)
+    writer(m, "general", signals[0], out)
+    return m, signals[0], out
+
+
+@pytest.mark.parametrize("stops_at", [0, 1, 2])
+def test_the_horizon_shrinks_at_the_very_moment_a_link_breaks(play: Any, stops_at: int) -> None:
+    m, begin, out = chain(stops_at)
+    with play(m) as sim:
+        sim.emit(begin)
+        sim.advance(100.0)
+        assert moments(sim, out) == [(10.0 * (stops_at + 1), "general")]
+
+
+def test_the_horizon_reaches_over_rules_that_are_still_viable(play: Any) -> None:
+    m, begin, out = chain(stops_at=-1)
+    with play(m) as sim:
+        sim.emit(begin)
+        sim.advance(100.0)
+        assert moments(sim, out) == [(30.0, "specific")]
+
+
+def test_a_rule_that_may_not_fire_any_more_is_not_in_the_horizon(play: Any) -> None:
+    m = rs.Module("m")
+    i, x, y, z, out = m.signal("i"), m.signal("x"), m.signal("y"), m.signal("z"), output(m)
+    emitter(m, "one", i, x, after=2.0, only_if=no)
+    emitter(m, "two", i, y, after=9.0)
+    emitter(m, "join", x & y, z)
+    writer(m, "specific", z, out)
+    writer(m, "general", i, out)
+    with play(m) as sim:
+        sim.emit(i)
+        sim.advance(20.0)
+        assert moments(sim, out) == [(2.0, "general")]  # without x no z, whatever `two` still finds
+
+
+def test_alternatives_keep_a_rival_viable(play: Any) -> None:
+    m = rs.Module("m")
+    i, x, out = m.signal("i"), m.signal("x"), output(m)
+    emitter(m, "fast", i, x, after=1.0, only_if=no)
+    emitter(m, "slow", i, x, after=5.0)
+    writer(m, "specific", x, out)
+    writer(m, "general", i, out)
+    with play(m) as sim:
+        sim.emit(i)
+        sim.advance(20.0)
+        assert moments(sim, out) == [(5.0, "specific")]
+
+
+def test_a_rule_that_resigns_leaves_the_horizon_too(play: Any) -> None:
+    m = rs.Module("m")
+    i, x, out = m.signal("i"), m.signal("x"), output(m)
+    resigner(m, "classify", i, after=2.0, emits=x)
+    writer(m, "specific", x, out)
+    writer(m, "general", i, out)
+    with play(m) as sim:
+        sim.emit(i)
+        sim.advance(20.0)
+        assert moments(sim, out) == [(2.0, "general")]
+
+
+def test_a_rule_that_fails_leaves_the_horizon_too(play: Any) -> None:
+    m = rs.Module("m")
+    i, x, out = m.signal("i"), m.signal("x"), output(m)
+
+    @m.rule(when=i, emits=x)
+    async def classify(ctx: Any) -> None:
+        await ctx.sleep(2.0)
+        raise ValueError("no idea")
+
+    writer(m, "specific", x, out)
+    writer(m, "general", i, out)
+    with play(m) as sim:
+        sim.emit(i)
+        sim.advance(20.0)
+        assert moments(sim, out) == [(2.0, "general")]
+
+
+def test_the_horizon_of_another_group_is_not_waited_for(play: Any) -> None:
+    m, i, out = classified(after=10.0)
+    with play(m) as sim:
+        sim.emit(i)
+        sim.advance(9.0)
+        sim.emit(i)
+        sim.advance(30.0)
+        assert moments(sim, out) == [(10.0, "specific"), (19.0, "specific")]
+
+
+# ---------------------------------------------------------------------------- (iii) inputs, and patience
+
+
+def fusion(**options: Any) -> tuple[rs.Module, rs.Signal[Any], rs.Signal[Any], rs.Slot[str]]:
+    m = rs.Module("m")
+    point, speech, out = m.signal("point"), m.signal("speech"), output(m)
+    writer(m, "fused", point & speech, out, **options)
+    writer(m, "plain", speech, out)
+    return m, point, speech, out
+
+
+def test_an_input_is_waited_for_with_a_patience_of_one_second(play: Any) -> None:
+    m, _, speech, out = fusion()
+    with play(m) as sim:
+        sim.advance(2.0)
+        sim.emit(speech)
+        sim.advance(10.0)
+        assert moments(sim, out) == [(3.0, "plain")]
+        assert pressed(sim) == [(2.0, "fused", ("m:point",), 3.0)]
+
+
+def test_an_input_that_comes_in_time_makes_the_rival_ready(play: Any) -> None:
+    m, point, speech, out = fusion()
+    with play(m) as sim:
+        sim.emit(speech)
+        sim.advance(0.999)
+        sim.emit(point)
+        assert moments(sim, out) == [(0.999, "fused")]
+
+
+@pytest.mark.parametrize(
+    ("context", "rule", "waited"), [(4.0, None, 4.0), (4.0, 0.25, 0.25), (0.25, 4.0, 4.0), (0.0, None, 0.0)]
+)
+def test_patience_is_the_contexts_or_the_rules_own(
+    play: Any, context: float, rule: float | None, waited: float
+) -> None:
+    m, _, speech, out = fusion(patience=rule)
+    with play(m, patience=context) as sim:
+        sim.emit(speech)
+        sim.advance(10.0)
+        assert moments(sim, out) == [(waited, "plain")]
+
+
+def test_patience_counts_from_the_moment_of_pressure(play: Any) -> None:
+    m = rs.Module("m")
+    point, speech, out = m.signal("point"), m.signal("speech"), output(m)
+    writer(m, "fused", point & speech, out)
+    writer(m, "plain", speech.min_age(2.5), out)
+    with play(m) as sim:
+        sim.emit(speech)
+        sim.advance(10.0)
+        assert moments(sim, out) == [(3.5, "plain")]
+
+
+def test_without_pressure_nobody_loses_patience(play: Any) -> None:
+    m, point, speech, out = fusion()
+    with play(m) as sim:
+        sim.emit(point)
+        sim.advance(4.0)
+        sim.emit(speech)
+        assert moments(sim, out) == [(4.0, "fused")]
+
+
+def test_a_rival_that_lost_patience_gives_its_spikes_up(play: Any) -> None:
+    m = rs.Module("m")
+    point, speech, out = m.signal("point"), m.signal("speech"), output(m)
+    writer(m, "fused", point & speech, out)
+    resigner(m, "plain", speech, out)
+    with play(m) as sim:
+        sim.emit(speech)
+        sim.advance(2.0)
+        assert given_up(sim, "fused") == [(1.0, "speech", "eliminated")]
+        sim.emit(point)
+        assert written(sim, out) == []
+        sim.emit(speech)  # it stands by as ever
+        assert moments(sim, out) == [(2.0, "fused")]
+
+
+def test_a_rule_that_is_pressed_twice_gets_no_second_patience(play: Any) -> None:
+    m = rs.Module("m")
+    point, speech, out = m.signal("point"), m.signal("speech"), output(m)
+    writer(m, "fused", point & speech, out)
+    writer(m, "plain", speech, out)
+    writer(m, "plainer", speech.min_age(0.5), out)
+    with play(m) as sim:
+        sim.emit(speech)
+        sim.advance(10.0)
+        assert moments(sim, out) == [(1.0, "plain")]
+
+
+# ---------------------------------------------------------------------------- (iii) live rules elsewhere
+
+
+def foreign(after: float, **options: Any) -> tuple[rs.Module, rs.Signal[Any], rs.Signal[Any], rs.Slot[str]]:
+    """The rival lacks `x`, which only `make` raises, for another cause (`kick`)."""
+    m = rs.Module("m")
+    i, kick, x, out = m.signal("i"), m.signal("kick"), m.signal("x"), output(m)
+    emitter(m, "make", kick, x, after=after, **options)
+    writer(m, "specific", i & x, out)
+    writer(m, "general", i, out)
+    return m, i, kick, out
+
+
+def test_nobody_waits_for_what_no_live_rule_could_cause(play: Any) -> None:
+    m, i, _, out = foreign(after=0.0)
+    with play(m) as sim:
+        sim.emit(i)
+        assert moments(sim, out) == [(0.0, "general")]
+
+
+def test_what_a_running_rule_of_another_group_may_cause_is_waited_for_with_patience(play: Any) -> None:
+    m, i, kick, out = foreign(after=10.0)
+    with play(m) as sim:
+        sim.emit(kick)
+        sim.emit(i)
+        sim.advance(20.0)
+        assert moments(sim, out) == [(1.0, "general")]
+
+
+def test_what_a_rule_of_another_group_causes_in_time_makes_the_rival_ready(play: Any) -> None:
+    m, i, kick, out = foreign(after=0.5)
+    with play(m) as sim:
+        sim.emit(kick)
+        sim.emit(i)
+        sim.advance(20.0)
+        assert moments(sim, out) == [(0.5, "specific")]
+
+
+def test_nobody_waits_longer_than_the_live_rule_of_another_group_lives(play: Any) -> None:
+    m, i, kick, out = foreign(after=0.5, only_if=no)
+    with play(m) as sim:
+        sim.emit(kick)
+        sim.emit(i)
+        sim.advance(20.0)
+        assert moments(sim, out) == [(0.5, "general")]
+
+
+def test_a_rule_that_holds_a_spike_is_live(play: Any) -> None:
+    m = rs.Module("m")
+    i, kick, more, x, out = m.signal("i"), m.signal("kick"), m.signal("more"), m.signal("x"), output(m)
+    emitter(m, "make", kick & more, x)
+    writer(m, "specific", i & x, out)
+    writer(m, "general", i, out)
+    with play(m) as sim:
+        sim.emit(kick)
+        sim.emit(i)
+        sim.advance(20.0)
+        sim.emit(i)  # now it holds none
+        assert moments(sim, out) == [(1.0, "general"), (20.0, "general")]
+
+
+def test_what_only_a_detached_rule_raises_is_no_input(play: Any) -> None:
+    m = rs.Module("m")
+    i, kick, x, out = m.signal("i"), m.signal("kick"), m.signal("x"), output(m)
+    emitter(m, "make", kick, x, detached=True)
+    writer(m, "specific", i & x, out)
+    writer(m, "general", i, out)
+    with play(m) as sim:
+        sim.emit(i)
+        assert moments(sim, out) == [(0.0, "general")]
+
+
+def test_what_is_declared_an_input_is_waited_for_though_a_rule_raises_it(play: Any) -> None:
+    m = rs.Module("m")
+    i, kick, x, out = m.signal("i"), m.signal("kick"), m.signal("x", input=True), output(m)
+    emitter(m, "make", kick, x)
+    writer(m, "specific", i & x, out)
+    writer(m, "general", i, out)
+    with play(m) as sim:
+        sim.emit(i)
+        sim.advance(10.0)
+        assert moments(sim, out) == [(1.0, "general")]
+
+
+def test_a_retired_rule_is_nobodys_rival(play: Any) -> None:
+    m = rs.Module("m")
+    point, speech, out = m.signal("point"), m.signal("speech"), output(m)
+
+    @m.rule(when=point & speech, writes=out)
+    async def once(ctx: Any) -> rs.Retire:
+        ctx[out] = "once"
+        return rs.Retire()
+
+    writer(m, "plain", speech, out)
+    with play(m) as sim:
+        sim.emit(point)
+        sim.emit(speech)
+        sim.emit(speech)
+        assert moments(sim, out) == [(0.0, "once"), (0.0, "plain")]
+
+
+def test_a_rival_is_pressed_from_the_moment_at_which_it_lost_a_spike(play: Any) -> None:
+    m = rs.Module("m")
+    i, j, out = m.signal("i"), m.signal("j"), output(m)
+    writer(m, "other", m.signal("k"), output(m, "face"))
+    writer(m, "fuse", i & j, out)
+    writer(m, "busy", j, out, weight=10.0, after=3.0)
+    writer(m, "plain", i, out)
+    with play(m) as sim:
+        sim.emit(j)
+        sim.emit(i)
+        sim.advance(20.0)
+        assert started(sim) == [(0.0, "busy"), (4.0, "plain")]
+        assert set(pressed(sim)) == {(3.0, "fuse", ("m:j",), 4.0)}  # `busy` has consumed the only one
