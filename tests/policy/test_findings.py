@@ -1,0 +1,143 @@
+"""Findings: what compiles but is probably not meant."""
+
+from typing import Any
+
+import pytest
+
+import ravestate as rs
+
+
+async def nothing(ctx: rs.RuleContext) -> None:
+    pass
+
+
+class Scene:
+    """A module with an input and an output, and short ways to declare rules."""
+
+    def __init__(self) -> None:
+        self.module = rs.Module("m")
+        self.heard = self.module.signal("heard")
+        self.out = self.module.slot("out", "")
+
+    def rule(self, name: str, when: rs.Condition, **options: Any) -> None:
+        self.module.rule(when=when, name=name, **options)(nothing)
+
+    def findings(self) -> dict[tuple[str, str], str]:
+        return {(f.kind, f.subject): str(f) for f in rs.compile(self.module).findings()}
+
+
+@pytest.fixture
+def scene() -> Scene:
+    return Scene()
+
+
+def test_a_policy_without_surprises_has_no_findings(scene: Scene) -> None:
+    question = scene.module.signal("question")
+    scene.rule("classify", scene.heard, emits=question)
+    scene.rule("chat", scene.heard, writes=scene.out)
+    scene.rule("answer", question, writes=scene.out)
+    assert scene.findings() == {}
+
+
+def test_a_rule_that_only_writing_from_outside_can_start(scene: Scene) -> None:
+    mood = scene.module.slot("mood")
+    scene.rule("loop", mood.changed, writes=mood, detached=True)
+    scene.rule("fine", scene.heard, writes=scene.out)
+    found = scene.findings()
+    assert list(found) == [("unreachable", "m:loop")]
+    text = found["unreachable", "m:loop"]
+    assert text.startswith("unreachable: rule m:loop runs only if m:mood:changed comes from outside")
+    assert text.endswith("declare it with input=True if it does")
+    scene.module.slots.remove(mood)
+
+
+def test_a_rule_that_waits_for_who_takes_its_slot(scene: Scene) -> None:
+    said = scene.module.signal("said")
+    scene.rule("say", scene.heard, writes=scene.out, emits=said)
+    scene.rule("again", said, writes=scene.out)
+    text = scene.findings()["unreachable", "m:again"]
+    assert "waits for an effect of rules that write m:out before it" in text
+    assert "write .detached() behind that signal, or detached=True at the rule that causes it" in text
+
+
+@pytest.mark.parametrize("way", ["constraint", "rule"])
+def test_a_detached_constraint_or_cause_frees_it(scene: Scene, way: str) -> None:
+    said = scene.module.signal("said")
+    scene.rule("say", scene.heard, writes=scene.out, emits=said, detached=way == "rule")
+    scene.rule("again", said.detached() if way == "constraint" else said, writes=scene.out)
+    assert not [kind for kind, _ in scene.findings() if kind == "unreachable"]
+
+
+def test_a_rule_that_can_never_win(scene: Scene) -> None:
+    scene.rule("first", scene.heard, writes=scene.out, weight=2)
+    scene.rule("second", scene.heard, writes=scene.out)
+    text = scene.findings()["never-wins", "m:second"]
+    assert "rule m:second runs only when m:first resigns" in text
+    assert "give it a further signal, a weight, or the other a cooldown" in text
+
+
+@pytest.mark.parametrize(
+    "first",
+    [
+        {"cooldown": 5.0},
+        {"when": "where"},
+        {"when": "holds"},
+        {"when": "min_age"},
+        {"when": "detached"},
+        {"weight": 0.5},
+    ],
+)
+def test_what_lets_the_other_win_after_all(scene: Scene, first: dict[str, Any]) -> None:
+    ways = {
+        "where": scene.heard.where(bool),
+        "holds": scene.heard & scene.out.holds(bool),
+        "min_age": scene.heard.min_age(1),
+        "detached": scene.heard.detached() & scene.module.signal("other"),
+    }
+    options = dict(first)
+    when = ways[options.pop("when")] if "when" in options else scene.heard
+    scene.rule("first", when, writes=scene.out, **options)
+    scene.rule("second", scene.heard, writes=scene.out)
+    assert ("never-wins", "m:second") not in scene.findings()
+
+
+def test_one_clause_that_may_win_is_enough(scene: Scene) -> None:
+    scene.rule("first", scene.heard, writes=scene.out, weight=2)
+    scene.rule("second", scene.heard | scene.module.signal("other"), writes=scene.out)
+    assert ("never-wins", "m:second") not in scene.findings()
+
+
+def test_ties_are_found_and_say_who_goes_first(scene: Scene) -> None:
+    a, b = scene.module.signal("a"), scene.module.signal("b")
+    scene.rule("left", scene.heard & a, writes=scene.out)
+    scene.rule("right", scene.heard & b, writes=scene.out)
+    found = scene.findings()
+    assert list(found) == [("tie", "m:right")]
+    assert found["tie", "m:right"].endswith(
+        "have the same utility for m:out: m:left goes first because it is declared first; a weight would say so"
+    )
+
+
+def test_a_weight_says_so_also_where_there_is_no_information(scene: Scene) -> None:
+    scene.rule("left", scene.heard, writes=scene.out, cooldown=1.0)
+    scene.rule("right", scene.heard, writes=scene.out, weight=1.2, cooldown=1.0)
+    assert scene.findings() == {}
+
+
+def test_signals_that_nobody_hears(scene: Scene) -> None:
+    lost, watched, free = (scene.module.signal(name) for name in ("lost", "watched", "free"))
+    scene.rule("emit", scene.heard, emits=(lost, watched))
+    scene.rule("watch", scene.heard, writes=scene.out, until=watched)
+    found = scene.findings()
+    assert list(found) == [("unheard", "m:lost")]  # nobody raises `free`, and slots may be read
+    assert found["unheard", "m:lost"] == "unheard: signal m:lost is raised by m:emit, and no rule hears it"
+    assert free.name == "m:free"
+
+
+def test_findings_come_in_order_of_weight(scene: Scene) -> None:
+    lost, mood = scene.module.signal("lost"), scene.module.slot("mood")
+    scene.rule("emit", scene.heard, writes=scene.out, emits=lost)
+    scene.rule("same", scene.heard, writes=scene.out)
+    scene.rule("loop", mood.changed, writes=mood, detached=True)
+    kinds = [kind for kind, _ in scene.findings()]
+    assert kinds == ["unreachable", "never-wins", "tie", "unheard"]

@@ -1,0 +1,160 @@
+"""Settings: typed, from code, environment and defaults; every fault named, no secret shown."""
+
+from typing import Any
+
+import pydantic
+import pytest
+
+import ravestate as rs
+from ravestate.declare.settings import SettingRef
+from ravestate.settings import load_settings, variable_of
+
+
+class Voice(rs.Settings):
+    name: str = "Ada"
+    speed: float = 1.0
+    words: tuple[str, ...] = ()
+    key: pydantic.SecretStr = pydantic.SecretStr("")
+
+
+class Server(rs.Settings):
+    address: str
+    keys: tuple[pydantic.SecretStr, ...] = ()
+
+
+voice = rs.Module("voice", settings=Voice)
+my_server = rs.Module("my-server", settings=Server)
+plain = rs.Module("plain")
+
+
+def faults(modules: list[rs.Module], given: Any, environment: dict[str, str] | None = None) -> list[str]:
+    with pytest.raises(rs.DeclarationErrors) as caught:
+        load_settings(modules, given, environment or {})
+    return [str(fault) for fault in caught.value.exceptions]
+
+
+# ---------------------------------------------------------------------------------------- the class
+
+
+def test_a_field_of_the_class_names_the_setting() -> None:
+    assert Voice.speed == SettingRef("speed", Voice)
+    assert Voice().speed == 1.0
+
+
+def test_an_inherited_field_names_the_setting_too() -> None:
+    class Loud(Voice):
+        volume: int = 3
+
+    assert Loud.speed == SettingRef("speed", Loud)
+    assert Loud.volume == SettingRef("volume", Loud)
+    assert Loud().model_dump()["volume"] == 3
+
+
+def test_a_misspelt_field_is_met_by_the_right_one() -> None:
+    with pytest.raises(AttributeError, match="Voice has no setting 'sped'; did you mean 'speed'"):
+        _ = Voice.sped
+
+
+def test_settings_cannot_be_changed_once_they_are_made() -> None:
+    with pytest.raises(pydantic.ValidationError):
+        Voice().name = "Eve"
+
+
+# ---------------------------------------------------------------------------------------- where values come from
+
+
+def test_given_values_go_before_the_environment_and_that_before_defaults() -> None:
+    environment = {"RAVESTATE_VOICE_NAME": "Eve", "RAVESTATE_VOICE_SPEED": "2.5"}
+    found = load_settings([voice, plain], {"voice": {"name": "Max"}}, environment)
+    assert found["voice"] == Voice(name="Max", speed=2.5)
+    assert load_settings([voice, plain], None, {}) == {"voice": Voice()}
+
+
+def test_the_process_environment_is_the_default(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("RAVESTATE_VOICE_NAME", "Eve")
+    assert load_settings([voice])["voice"].name == "Eve"
+
+
+@pytest.mark.parametrize(
+    ("field", "text", "value"),
+    [
+        ("words", '["a", "b"]', ("a", "b")),
+        ("name", "12", "12"),  # text stays text
+        ("name", '"quoted"', '"quoted"'),
+        ("speed", "0.5", 0.5),
+    ],
+)
+def test_the_environment_holds_json_for_all_but_text(field: str, text: str, value: object) -> None:
+    found = load_settings([voice], None, {variable_of("voice", field): text})
+    assert getattr(found["voice"], field) == value
+
+
+def test_variables_are_named_after_module_and_field() -> None:
+    assert variable_of("my-server", "address") == "RAVESTATE_MY_SERVER_ADDRESS"
+    found = load_settings([my_server], None, {"RAVESTATE_MY_SERVER_ADDRESS": "here"})
+    assert found["my-server"].address == "here"
+
+
+def test_a_ready_value_is_taken_as_it_is() -> None:
+    value = Voice(name="Max")
+    assert load_settings([voice], {"voice": value}, {"RAVESTATE_VOICE_NAME": "Eve"})["voice"] is value
+
+
+# ---------------------------------------------------------------------------------------- faults
+
+
+def test_all_faults_are_told_at_once() -> None:
+    found = faults(
+        [voice, plain],
+        {"voice": {"speed": "fast", "sped": 2}, "plain": {"x": 1}, "voise": {"speed": 2}},
+    )
+    assert len(found) == 4
+    text = "\n".join(found)
+    assert "settings for 'plain': module 'plain' has no settings" in text
+    assert "settings for 'voise': module 'voise' is not part of this agent; did you mean 'voice'?" in text
+    assert "setting voice.speed = 'fast': Input should be a valid number" in text
+    assert "setting voice.sped: module 'voice' has no such setting; did you mean 'speed'?" in text
+
+
+def test_a_missing_setting_says_how_to_give_it() -> None:
+    (fault,) = faults([my_server], {"my-server": {"keys": ["s3cret"]}})
+    assert fault.startswith("setting my-server.address is missing: write --set my-server.address=...")
+    assert "RAVESTATE_MY_SERVER_ADDRESS" in fault
+    assert "s3cret" not in fault
+
+
+def test_no_secret_is_shown() -> None:
+    for module, values in ((voice, {"key": ["s3cret"]}), (my_server, {"address": "", "keys": [["s3cret"]]})):
+        (fault,) = faults([module], {module.name: values})
+        assert "s3cret" not in fault and "Input should be" in fault
+
+
+def test_a_rule_over_several_fields_shows_no_values() -> None:
+    class Range(rs.Settings):
+        low: int = 0
+        secret: str = "s3cret"
+
+        @pydantic.model_validator(mode="after")
+        def ordered(self) -> "Range":
+            if self.low > 3:
+                raise ValueError("low must be at most 3")
+            return self
+
+    (fault,) = faults([rs.Module("range", settings=Range)], {"range": {"low": 5}})
+    assert fault == "settings of range: Value error, low must be at most 3"
+
+
+def test_a_huge_value_is_shortened() -> None:
+    (fault,) = faults([voice], {"voice": {"speed": "x" * 10_000_000}})
+    assert len(fault) < 300
+
+
+@pytest.mark.parametrize("values", [3, "name=Max", ["name"], None])
+def test_what_is_no_mapping_is_refused(values: Any) -> None:
+    (fault,) = faults([voice], {"voice": values})
+    assert fault == f"settings for 'voice' must be fields and values, not {values!r}"
+
+
+def test_a_ready_value_of_another_class_is_refused() -> None:
+    (fault,) = faults([voice], {"voice": Server(address="")})
+    assert fault == "settings for 'voice' must be of its class Voice, not Server"
