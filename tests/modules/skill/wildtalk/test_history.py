@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from ravestate.modules.skill.wildtalk.backend import Message
-from ravestate.modules.skill.wildtalk.history import PERSONA, History
+from ravestate.modules.skill.wildtalk.history import EXAMPLES, PERSONA, History
 
 
 def texts(history: History) -> list[str]:
@@ -21,6 +21,18 @@ def test_the_persona_comes_first_and_has_the_name() -> None:
 def test_the_default_persona_states_no_facts() -> None:
     assert "never state facts" in PERSONA
     assert "{name}" in PERSONA
+
+
+def test_examples_come_between_persona_and_history() -> None:
+    history = History()
+    history.heard("Really?")
+    assert history.prompt("P", "N", [("Hi!", "Hello!")]) == (
+        Message("system", "P"),
+        Message("user", "Hi!"),
+        Message("assistant", "Hello!"),
+        Message("user", "Really?"),
+    )
+    assert all(len(pair) == 2 for pair in EXAMPLES)
 
 
 def test_the_last_turns_are_remembered() -> None:

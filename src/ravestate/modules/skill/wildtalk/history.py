@@ -4,19 +4,25 @@ from __future__ import annotations
 
 import re
 from collections import deque
+from collections.abc import Iterable
 
 from ravestate.modules._text import printable
 
 from .backend import Message
 
-__all__ = ["PERSONA", "History"]
+__all__ = ["EXAMPLES", "PERSONA", "History"]
 
 PERSONA = (
-    "You are {name}, a friendly companion robot, in a casual chat. Answer in one or two short, warm sentences, "
-    "and often ask something back. This is small talk: never state facts about the world, such as names, "
-    "numbers, dates or news. If you are asked for one, say that you do not know, and return to the chat."
+    "You are {name}, a friendly robot. You make small talk in short, simple sentences. You never state facts about the "
+    "world; if you are asked for one, you say that you do not know."
 )
 """The default of the setting `persona`; ``{name}`` stands for the setting `name`."""
+
+EXAMPLES = (
+    ("Hello!", "Hello! It is nice to see you. How are you?"),
+    ("I'm fine, and you?", "I'm doing well, thank you! What would you like to talk about?"),
+)
+"""The default of the setting `examples`."""
 
 # What templates use to mark who speaks. Said by a user it would let him speak as the system.
 _MARKERS = re.compile(
@@ -57,18 +63,38 @@ class History:
 
     def heard(self, text: str) -> None:
         """Remember what the user said."""
-        self._add(Message("user", self._clean(text)))
+        self.add(Message("user", text))
 
     def said(self, text: str) -> None:
         """Remember what the agent said, whoever worded it."""
-        self._add(Message("assistant", self._clean(text)))
+        self.add(Message("assistant", text))
+
+    def add(self, message: Message) -> None:
+        """Remember what somebody said."""
+        message = Message(message.role, self._clean(message.text))
+        if not message.text:
+            return
+        if self._messages and self._messages[-1].role == message.role:
+            # Two in a row are one turn.
+            last = self._messages.pop()
+            message = Message(message.role, f"{last.text} {message.text}"[-2 * self._characters :])
+        self._messages.append(message)
+        while sum(m.role == "user" for m in self._messages) > self._turns:
+            self._messages.popleft()
+            while self._messages and self._messages[0].role != "user":
+                self._messages.popleft()
 
     def forget(self) -> None:
         """Begin anew, for another person."""
         self._messages.clear()
 
-    def prompt(self, persona: str = PERSONA, name: str = "Ravestate") -> tuple[Message, ...]:
-        """Return the persona and what is remembered, oldest first.
+    def prompt(
+        self,
+        persona: str = PERSONA,
+        name: str = "Ravestate",
+        examples: Iterable[tuple[str, str]] = (),
+    ) -> tuple[Message, ...]:
+        """Return the persona, examples of an utterance and its answer, and what is remembered, oldest first.
 
         User and agent take turns strictly in it, and the user begins: several templates demand that.
         """
@@ -85,7 +111,10 @@ class History:
         kept.reverse()
         if kept and kept[0].role == "assistant":
             kept.insert(0, Message("user", "Hello."))
-        return (Message("system", persona.replace("{name}", name)), *kept)
+        shown: list[Message] = []
+        for utterance, answer in examples:
+            shown += Message("user", utterance), Message("assistant", answer)
+        return (Message("system", persona.replace("{name}", name)), *shown, *kept)
 
     # ------------------------------------------------------------------------------- internals
 
@@ -93,16 +122,3 @@ class History:
         # Far more than the budget is not even looked at: somebody may paste a book.
         text = text[: 4 * self._characters]
         return " ".join(_MARKERS.sub(" ", printable(text)).split())
-
-    def _add(self, message: Message) -> None:
-        if not message.text:
-            return
-        if self._messages and self._messages[-1].role == message.role:
-            # Two in a row are one turn.
-            last = self._messages.pop()
-            message = Message(message.role, f"{last.text} {message.text}"[-2 * self._characters :])
-        self._messages.append(message)
-        while sum(m.role == "user" for m in self._messages) > self._turns:
-            self._messages.popleft()
-            while self._messages and self._messages[0].role != "user":
-                self._messages.popleft()

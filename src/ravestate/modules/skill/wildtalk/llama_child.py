@@ -13,6 +13,7 @@ import json
 import os
 import signal
 import sys
+import time
 from typing import Any
 
 _STEP = 4 << 20  # bytes
@@ -31,12 +32,23 @@ def _main() -> None:
     try:
         server = _load(config, say)
     except BaseException as error:
+        if isinstance(error, RuntimeError):
+            _await_reason()
         say(error=f"{type(error).__name__}: {error}")
         os._exit(1)
     say(ready=server.listening_address)
     while os.read(0, 4096):  # nothing comes; it is the end that counts
         pass
     os._exit(0)
+
+
+def _await_reason() -> None:
+    """Let llama.cpp write down why: it logs in a thread, which its end would cut off."""
+    for _ in range(100):
+        before = os.fstat(2).st_size
+        time.sleep(0.02)
+        if before and os.fstat(2).st_size == before:
+            return
 
 
 def _load(config: dict[str, Any], say: Any) -> Any:

@@ -148,7 +148,7 @@ class LlamaProcess:
         process.wait()
         if self._closed:
             raise PlatformError("wildtalk: the model was closed while it was loading")
-        reason = self._reason() or error or self.obituary()
+        reason = (self._reason() or error or self.obituary()).rstrip(".")
         self._end()
         raise PlatformError(
             f"wildtalk: cannot load the model {str(self.key.path)!r}: {reason}. {_remedy(reason, self.key)}"

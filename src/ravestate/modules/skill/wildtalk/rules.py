@@ -1,0 +1,159 @@
+"""When the model talks, and what it is told."""
+
+from __future__ import annotations
+
+import asyncio
+from contextlib import aclosing
+
+import ravestate as rs
+from ravestate.modules import rawio
+
+from . import Settings, history, model, module, unfinished
+from .backend import Backend, Message
+from .facts import asks_for_fact
+from .history import History
+from .progress import ProgressBar
+from .utterance import Utterance
+
+INTERRUPTED = "…"
+"""Stands at the end of an utterance that was interrupted."""
+
+KEPT = 64
+"""Messages that are remembered at most; the settings say how many of them the model is told."""
+
+
+@module.rule(when=rs.startup, writes=model)
+async def choose_model(ctx: rs.RuleContext) -> None:
+    """Make the backend that the settings name. Nothing is loaded before it is needed."""
+    ctx[model] = make_backend(ctx.settings)
+
+
+@module.rule(when=rs.shutdown, reads=model)
+async def let_go(ctx: rs.RuleContext) -> None:
+    """Let go of the model."""
+    backend = ctx[model]
+    if backend is not None:
+        await backend.close()
+
+
+@module.rule(when=rawio.piece.max_age(None).detached(), writes=unfinished, background=True)
+async def overhear(ctx: rs.RuleContext) -> None:
+    """Keep what is being said, in case it is interrupted."""
+    ctx[unfinished] += ctx.payload(rawio.piece)
+
+
+@module.rule(when=rawio.input.changed.max_age(None).detached(), writes=(history, unfinished), background=True)
+async def hear(ctx: rs.RuleContext) -> None:
+    """Remember what the user says, and what he interrupts by it."""
+    past = ctx[history]
+    if ctx[unfinished]:
+        past = remembered(past, Message("assistant", ctx[unfinished] + INTERRUPTED))
+        ctx[unfinished] = ""
+    ctx[history] = remembered(past, Message("user", ctx.payload(rawio.input.changed)))
+
+
+@module.rule(
+    when=rawio.output.changed.max_age(None).detached(), writes=(history, unfinished), background=True
+)
+async def note(ctx: rs.RuleContext) -> None:
+    """Remember what the agent says, whichever rule worded it."""
+    said = Message("assistant", ctx.payload(rawio.output.changed))
+    if not (said.text.endswith(INTERRUPTED) and said in ctx[history][-2:]):  # `hear` was first
+        ctx[history] = remembered(ctx[history], said)
+    ctx[unfinished] = ""
+
+
+@module.rule(
+    when=rawio.input.changed,
+    reads=(history, model),
+    writes=(rawio.output, rawio.speaking),
+    emits=rawio.piece,
+    until=rawio.input.changed,
+)
+async def chat(ctx: rs.RuleContext) -> rs.Resign | None:
+    """Answer with small talk, piece by piece; a new utterance interrupts it."""
+    settings: Settings = ctx.settings
+    heard, backend = ctx.payload(rawio.input.changed), ctx[model]
+    if not heard.strip():
+        return rs.Resign("nothing was said")
+    if backend is None:
+        return rs.Resign("there is no model")
+    if not settings.facts and asks_for_fact(heard):
+        ctx[rawio.output] = settings.no_facts
+        return None
+
+    with ProgressBar("Loading the language model") as bar:
+        await backend.load(bar)
+    past = History(turns=settings.history_turns, characters=settings.history_characters)
+    newest = Message("user", heard)
+    for message in ctx[history] if ctx[history][-1:] == (newest,) else (*ctx[history], newest):
+        past.add(message)
+    utterance = Utterance(settings.name, sentences=settings.sentences)
+    shown = ""
+
+    def show() -> None:
+        nonlocal shown
+        if not utterance.worth_saying() or utterance.text == shown:
+            return
+        if not shown:
+            ctx[rawio.speaking] = True
+        ctx.emit(rawio.piece, utterance.text[len(shown) :])
+        shown = utterance.text
+
+    answer = backend.stream(
+        past.prompt(settings.persona, settings.name, settings.examples),
+        max_tokens=settings.max_tokens,
+        temperature=settings.temperature,
+        seed=ctx.random.getrandbits(31),
+    )
+    try:
+        async with aclosing(answer) as pieces:
+            async for piece in pieces:
+                utterance.feed(piece)
+                show()
+                if utterance.complete:
+                    break
+        utterance.finish()
+        if not utterance.worth_saying():
+            return rs.Resign("the model said nothing")
+        show()
+        ctx[rawio.output] = utterance.text
+        return None
+    except asyncio.CancelledError:
+        if shown:  # what was said was said
+            ctx[rawio.output] = shown + INTERRUPTED
+        raise
+    finally:
+        if shown:
+            ctx[rawio.speaking] = False
+
+
+def remembered(messages: tuple[Message, ...], newest: Message) -> tuple[Message, ...]:
+    """Return `messages` with `newest`, of which an utterance of megabytes is cut."""
+    return (*messages, Message(newest.role, newest.text[:20_000]))[-KEPT:]
+
+
+def make_backend(settings: Settings) -> Backend:
+    """Return the backend that `settings` name.
+
+    Raises:
+        PlatformError: The address of the server is none.
+    """
+    if settings.backend == "openai":
+        from .openai import OpenAIBackend
+
+        return OpenAIBackend(
+            settings.base_url,
+            settings.model,
+            api_key=settings.api_key,
+            connect_timeout=settings.connect_timeout,
+            read_timeout=settings.read_timeout,
+        )
+    from .llama import LlamaBackend
+
+    return LlamaBackend(
+        settings.model_path,
+        context_tokens=settings.context_tokens,
+        threads=settings.threads,
+        read_timeout=settings.read_timeout,
+    )

