@@ -15,7 +15,7 @@ from typing import Any
 from ravestate.engine import events, trace
 from ravestate.engine.activation import NEVER, RUNNING, WAITING, Activation
 from ravestate.engine.deadlines import EXPIRE, PATIENCE, RECHECK, RIPEN, STANDBY, TIMEOUT, WATCH, Entry
-from ravestate.engine.effects import Ended
+from ravestate.engine.effects import Effect, Ended
 from ravestate.engine.events import Event
 from ravestate.engine.group import Group
 from ravestate.engine.horizon import FIRM, Horizon
@@ -82,6 +82,28 @@ class Engine(Waves):
     def next_deadline(self) -> float | None:
         """When to call `advance` next (seconds), if nothing else happens before."""
         return self._deadlines.next()
+
+    def effects(self) -> list[Effect]:
+        """What is to be done now; ask again after doing it, until there is nothing."""
+        # Until there is something to do: what only tells (of spikes, ends, failures) must not change the waves.
+        while not self._acts:
+            if self._deadlines.pending(self.now):
+                self.advance(self.now)
+            elif self._errors:
+                error = self.policy.signal_of["core:error"]
+                self._birth(error, self._errors.pop(0), (), self._new_group(), None)
+            elif self._busy and not self.read(self._activity.index):
+                self._change(self._activity, True, (), None)
+            elif self._free:
+                self._start_free()
+            elif self._line or self._asking or self._dirty or self._stirred:
+                self._consent_round()
+            elif not self._settle_flags():
+                break
+        out = self._out
+        self._out = []
+        self._acts = False
+        return out
 
     # ------------------------------------------------------------------------------------ events
 

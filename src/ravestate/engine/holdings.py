@@ -80,6 +80,7 @@ class Holdings:
         self.watched: dict[str, int] = {}
         """Signals whose spikes are reported."""
         self._out: list[Effect] = []
+        self._acts = False  # whether there is something to do among it
         self._free: list[Activation] = []  # ready, and in need of nobody's consent
         self._asking: dict[Activation, None] = {}  # ready, and to be asked for consent
         self._dirty: dict[Group, None] = {}  # groups in which something ended
@@ -109,7 +110,7 @@ class Holdings:
         """Whether a deadline still counts."""
         time, kind, _, owner = entry
         if kind is EXPIRE:
-            return bool(owner.holders)
+            return bool(owner.holders) or owner in self.live.get(owner.signal.index, ())
         if kind is RIPEN:
             return owner.ripens == time
         if kind is PATIENCE:

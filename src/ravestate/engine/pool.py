@@ -161,6 +161,7 @@ class Pool(Contests):
         run.deadline = NEVER
         if self.tracer is not None:
             self.tracer(trace.Told(self.now, run.id, run.clause.rule.name, reason))
+        self._acts = True
         self._out.append(Cancel(run.id, reason))
 
 

@@ -18,7 +18,7 @@ from ravestate.engine import trace
 from ravestate.engine.activation import GRANT, NEVER, READY, REFUSE, WAITING, Activation
 from ravestate.engine.consent import Refusal, ask, stalemate
 from ravestate.engine.deadlines import PATIENCE, RECHECK, STANDBY, TIMEOUT
-from ravestate.engine.effects import Effect, Run
+from ravestate.engine.effects import Run
 from ravestate.engine.group import Group
 from ravestate.engine.horizon import FIRM, Horizon
 from ravestate.engine.slots import Slots
@@ -46,27 +46,9 @@ class Waves(Slots):
         self._activity = policy.slot_of["core:activity"]
         self._pressure = policy.slot_of["core:pressure"]
 
-    def effects(self) -> list[Effect]:
-        """What is to be done now; ask again after doing it, until there is nothing."""
-        while not self._out:
-            if self._errors:
-                error = self.policy.signal_of["core:error"]
-                self._birth(error, self._errors.pop(0), (), self._new_group(), None)
-            elif self._busy and not self.read(self._activity.index):
-                self._change(self._activity, True, (), None)
-            elif self._free:
-                self._start_free()
-            elif self._line or self._asking or self._dirty or self._stirred:
-                self._consent_round()
-            elif not self._settle_flags():
-                break
-        out = self._out
-        self._out = []
-        return out
-
     def settle(self) -> None:
         """Ask those who are ready and have not been asked, so that whoever looks in sees for whom they wait."""
-        if self._asking and not self._free and not self._out:
+        if self._asking and not self._free and not self._acts:
             self._consent_round()
 
     def effective(self, clause: Clause) -> float:
@@ -157,7 +139,7 @@ class Waves(Slots):
                 break
             if self._ask(activation):
                 written.update(rule.slots)
-        if self.waiting and not line and not self._out and not self._free:
+        if self.waiting and not line and not self._acts and not self._free:
             best = stalemate(self)
             if best is not None:
                 self._start(best)
@@ -280,6 +262,7 @@ class Waves(Slots):
         if self.tracer is not None:
             ids = tuple(spike.id for spike in activation.spikes if spike is not None)
             self.tracer(trace.Started(self.now, activation.id, rule.name, clause.number, ids))
+        self._acts = True
         self._out.append(Run(activation.id, rule.rule, payloads, values))
 
     def _settle_flags(self) -> bool:

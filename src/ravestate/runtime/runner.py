@@ -8,6 +8,7 @@ import functools
 import logging
 import random
 import threading
+from collections import deque
 from collections.abc import Callable, Coroutine, Mapping
 from time import perf_counter
 from typing import Any, cast
@@ -17,7 +18,7 @@ from ravestate.declare.rule import Rule
 from ravestate.engine.effects import Cancel, Effect, Ended, Failed, Run, Spiked
 from ravestate.engine.engine import Engine
 from ravestate.engine.events import Event, Finish
-from ravestate.errors import EngineError, RuleError
+from ravestate.errors import EngineError, PlatformError, RuleError
 from ravestate.runtime.journal import Taken
 from ravestate.runtime.nest import Nest
 from ravestate.runtime.rule_context import RuleContext
@@ -65,6 +66,8 @@ class Runner:
         """Told of every event before the engine is, and of when its effects are taken: the journal."""
         self.on_ended: Callable[[Ended], None] | None = None
         self.on_failed: Callable[[str, BaseException], None] | None = None
+        self.serial = False
+        """Whether plain functions run one after the other, so that threads do not race in a simulation."""
         self.listeners: dict[str, Callable[[Any], None]] = {}
         """Called with the payload of every spike of a signal, by name; see `listen`."""
         self.futures: dict[str, list[asyncio.Future[Any]]] = {}
@@ -83,6 +86,7 @@ class Runner:
         self._spare: Nest | None = None
         self._is_async: dict[Rule[Any, Any], bool] = {}
         self._quiet: list[asyncio.Future[None]] = []
+        self._todo: deque[Effect] = deque()
         self.closed = False
 
     # ------------------------------------------------------------------------------------ events in
@@ -126,13 +130,16 @@ class Runner:
         self._pumping = True
         try:
             for _ in range(BATCH):
-                if self.on_event is not None:
-                    self.on_event(Taken(), engine.now)
-                effects = engine.effects()
-                if not effects:
-                    break
-                for effect in effects:
-                    self._perform(effect)
+                if self.serial and self.threads:
+                    break  # go on when the function has ended
+                if not self._todo:
+                    if self.on_event is not None:
+                        self.on_event(Taken(), engine.now)
+                    self._todo.extend(engine.effects())
+                    if not self._todo:
+                        break
+                while self._todo and not (self.serial and self.threads):
+                    self._perform(self._todo.popleft())
             else:
                 self._scheduled = True
                 self.loop.call_soon(self._pump)
@@ -175,7 +182,15 @@ class Runner:
         elif isinstance(effect, Failed):
             if self.on_failed is not None:
                 self.on_failed(effect.rule, effect.exception)
-            log.error("rule %s failed: %s", effect.rule, effect.exception, exc_info=effect.exception)
+            told = isinstance(
+                effect.exception, PlatformError
+            )  # its message says all: what to mend, not where
+            log.error(
+                "rule %s failed: %s",
+                effect.rule,
+                effect.exception,
+                exc_info=None if told else effect.exception,
+            )
 
     def listen(self, signal: str, listener: Callable[[Any], None]) -> None:
         """Have a function called with the payload of every spike of a signal."""
@@ -251,6 +266,9 @@ class Runner:
     ) -> None:
         self.threads.pop(run, None)
         self._finish(run, rule, result, exception)
+        if self.serial and not self._scheduled:
+            self._scheduled = True
+            self.loop.call_soon(self._pump)
 
     def _finish(self, run: int, rule: Rule[Any, Any], result: Any, exception: BaseException | None) -> None:
         """Report how a run has ended (L18)."""

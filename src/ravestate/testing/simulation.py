@@ -64,6 +64,7 @@ class Simulation:
             loop.run_until_complete(context.__aenter__())
             runner = context._runner  # pyright: ignore[reportPrivateUsage]
             assert runner is not None  # entering makes it
+            runner.serial = True
             loop.busy = lambda: [rule.name for rule in runner.threads.values()]
             self.settle()
         except BaseException:
