@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Group"]
 
-NOTHING: Any = MappingProxyType({})
+NOTHING: Any = MappingProxyType[Any, Any]({})
 
 
 class Group:

@@ -90,7 +90,7 @@ class Holdings:
         self._blamed: set[int] = set()  # predicates whose failure has been reported
         self._deadlines = Deadlines(self._stands)
         self._busy = 0  # activations of rules that are not in the background
-        self._activations = 0  # numbers given so far
+        self._activations: int = 0  # numbers given so far
         self._spikes = 0
         self._groups = 0
 
