@@ -115,6 +115,7 @@ def test_what_was_streamed_may_become_the_whole() -> None:
         console.stream("Hel")
         console.stream("lo")
         console.write(whole)
+        console.end()
     streamed = ["stream Hel", "stream lo"]
     assert screen.log == [
         *streamed, "stream  you!", "end",
@@ -122,6 +123,16 @@ def test_what_was_streamed_may_become_the_whole() -> None:
         *streamed, "end", "show Help!",
         *streamed, "end", "show again",
     ]  # fmt: skip
+
+
+def test_what_others_say_meanwhile_stands_in_a_line_of_its_own() -> None:
+    screen = Script()
+    console = Console(screen)
+    console.stream("Hello")
+    console.write("Look!")
+    console.stream(" to")
+    console.write("Hello to you!")
+    assert screen.log == ["stream Hello", "end", "show Look!", "stream  to", "stream  you!", "end"]
 
 
 def test_a_streamed_line_is_ended_at_the_end() -> None:

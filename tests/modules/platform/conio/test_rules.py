@@ -15,7 +15,7 @@ from ravestate.testing import simulate
 parrot = rs.Module("parrot", requires=(rawio, interloc))
 
 
-@parrot.rule(when=rawio.input.changed, writes=rawio.output, emits=rawio.piece)
+@parrot.rule(when=rawio.input.changed, writes=rawio.output, emits=rawio.piece, until=rawio.input.changed)
 async def repeat(ctx: rs.RuleContext) -> None:
     heard = ctx.payload(rawio.input.changed)
     for word in heard.split(" ")[:-1]:
@@ -27,6 +27,16 @@ async def repeat(ctx: rs.RuleContext) -> None:
 @parrot.rule(when=interloc.users.removed, writes=rawio.output)
 async def miss(ctx: rs.RuleContext) -> None:
     ctx[rawio.output] = "Bye!"
+
+
+stammer = rs.Module("stammer", requires=(rawio,))
+
+
+@stammer.rule(when=rawio.input.changed, writes=rawio.speaking, emits=rawio.piece)
+async def fail(ctx: rs.RuleContext) -> None:
+    ctx[rawio.speaking] = True
+    ctx.emit(rawio.piece, "I, I")
+    ctx[rawio.speaking] = False
 
 
 class Keys:
@@ -107,6 +117,27 @@ def test_the_end_of_input_ends_the_agent_after_a_farewell(keys: Keys, end: BaseE
         assert sim.context._stopping is not None
         assert sim.context._stopping.is_set()
     assert not sim.failures
+
+
+def test_who_leaves_in_order_hears_the_answer(keys: Keys) -> None:
+    with simulate(parrot, conio) as sim:
+        keys.type("one two", EOFError())
+        sim.advance(1.0)
+        assert sim.said == ["one two", "Bye!"]
+
+
+def test_who_breaks_off_does_not(keys: Keys) -> None:
+    with simulate(parrot, conio) as sim:
+        keys.type("one two", KeyboardInterrupt())
+        sim.settle()
+        assert sim.said == ["Bye!"]
+
+
+def test_what_never_becomes_an_utterance_is_ended(keys: Keys) -> None:
+    with simulate(stammer, conio) as sim:
+        keys.type("hello")
+        sim.settle()
+        assert keys.log == ["I, I…", "end"]
 
 
 def test_lines_of_a_pipe_are_answered_one_by_one(keys: Keys) -> None:

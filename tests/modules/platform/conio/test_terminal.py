@@ -121,7 +121,8 @@ def test_a_full_row_goes_above() -> None:
     assert play(scene).splitlines() == rows
 
 
-def test_what_was_streamed_stays_above_the_line_that_was_typed() -> None:
+@pytest.mark.parametrize(("rest", "printed"), [("…", ""), (" time", " time\n")])
+def test_what_was_streamed_stays_above_the_line_that_was_typed(rest: str, printed: str) -> None:
     async def scene(terminal: Terminal, keys: PipeInput, paper: Paper) -> None:
         reading = asyncio.create_task(terminal.read())
         await drawn(terminal)
@@ -130,9 +131,10 @@ def test_what_was_streamed_stays_above_the_line_that_was_typed() -> None:
         keys.send_text("wait\r")
         assert await reading == "wait"
         assert message(terminal) == "> "
+        terminal.stream(rest)
         terminal.end()
 
-    assert play(scene) == ""  # nothing is printed twice
+    assert play(scene) == printed  # nothing is printed twice
 
 
 def test_what_others_print_goes_above_as_well(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -224,8 +226,10 @@ def test_the_streamed_line_is_really_drawn() -> None:
                 await drawn(terminal)
                 terminal.stream("Hello")
                 await drawn(terminal)
+                assert "Hello" in screen.getvalue()
+                assert "…" not in screen.getvalue()
                 keys.send_text("x\r")
                 await reading
         return screen.getvalue()
 
-    assert "Hello" in asyncio.run(main())
+    assert asyncio.run(main()).count("…") == 1

@@ -88,6 +88,7 @@ class Console:
             screen = _screen(prompt, history, stdin, stdout)
         self._screen = screen
         self._streamed = ""
+        self._line_is_open = False
         self.ending: Ending | None = None
         """Why the iteration ended: end of input (Ctrl-D), interrupt (Ctrl-C), or closed (by whoever reads)."""
 
@@ -128,15 +129,15 @@ class Console:
     def write(self, text: str) -> None:
         """Print `text` and a line end.
 
-        If `text` begins with what is being streamed, it is what the streamed line becomes; otherwise that line is
-        ended before.
+        If `text` begins with all that was streamed, it is what the streamed text becomes; otherwise the streamed line is
+        ended before, and what is streamed later goes on in a line of its own.
         """
         text = printable(text)
         if self._streamed and text.startswith(self._streamed):
             self.stream(text[len(self._streamed) :])
             self.end()
         else:
-            self.end()
+            self._end_line()
             self._safely(lambda: self._screen.show(text))
 
     def stream(self, piece: str) -> None:
@@ -144,12 +145,17 @@ class Console:
         piece = without_controls(piece)
         if piece:
             self._streamed += piece
+            self._line_is_open = True
             self._safely(lambda: self._screen.stream(piece))
 
     def end(self) -> None:
-        """End the line that was streamed; without one this does nothing."""
-        if self._streamed:
-            self._streamed = ""
+        """End the text that was streamed; without one this does nothing."""
+        self._streamed = ""
+        self._end_line()
+
+    def _end_line(self) -> None:
+        if self._line_is_open:
+            self._line_is_open = False
             self._safely(self._screen.end)
 
     def _safely(self, write: Callable[[], None]) -> None:

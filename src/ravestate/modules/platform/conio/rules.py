@@ -30,6 +30,10 @@ async def listen(ctx: rs.RuleContext) -> None:
                     ctx[rawio.input] = line
                 if not console.interactive:
                     await ctx.quiet()  # all lines may be there at once; each is to have its answer
+            if console.ending == "end of input":
+                await ctx.quiet()  # who leaves in order hears the answer
+            else:
+                ctx.wipe(rawio.input.changed)  # who breaks off does not
             ctx[interloc.users].remove(USER)
             await ctx.quiet()  # a farewell
         finally:
@@ -51,3 +55,11 @@ async def show_piece(ctx: rs.RuleContext) -> None:
     console = ctx[screen]
     if console is not None:
         console.stream(ctx.payload(rawio.piece))
+
+
+@module.rule(when=rawio.speaking.false.max_age(None).detached(), reads=screen, background=True)
+async def end_line(ctx: rs.RuleContext) -> None:
+    """End what was being said, also if it never became an utterance."""
+    console = ctx[screen]
+    if console is not None:
+        console.end()

@@ -23,6 +23,10 @@ from ravestate.modules._text import without_controls
 __all__ = ["Terminal"]
 
 
+_OPEN = "…"
+"""Stands behind a line that was being streamed when another was typed."""
+
+
 class Terminal:
     """Reads by prompt_toolkit, and keeps what is written out of the line that is being typed.
 
@@ -51,6 +55,7 @@ class Terminal:
         """
         self._prompt = prompt
         self._streamed = ""
+        self._left_open = False
         self._unprinted: list[str] = []
         self._printing: asyncio.Task[None] | None = None
         self._lost = False
@@ -80,6 +85,7 @@ class Terminal:
             return await self._session.prompt_async(handle_sigint=False, set_exception_handler=False)
         finally:
             # What was streamed so far stays where it was last seen, above the line that was typed.
+            self._left_open = bool(self._streamed)
             self._streamed = ""
 
     def show(self, text: str) -> None:
@@ -93,6 +99,9 @@ class Terminal:
 
     def stream(self, piece: str) -> None:
         """See `Screen.stream`."""
+        was_open, self._left_open = self._left_open, False
+        if was_open and piece == _OPEN:
+            return  # it is there already
         *lines, self._streamed = (self._streamed + piece).split("\n")
         for line in lines:
             self.show(line)
@@ -104,6 +113,7 @@ class Terminal:
 
     def end(self) -> None:
         """See `Screen.end`."""
+        self._left_open = False
         line, self._streamed = self._streamed, ""
         if line:
             self.show(line)
@@ -111,7 +121,9 @@ class Terminal:
     # ------------------------------------------------------------------------------- internals
 
     def _message(self) -> StyleAndTextTuples:
-        before: StyleAndTextTuples = [("", self._streamed + "\n")] if self._streamed else []
+        before: StyleAndTextTuples = []
+        if self._streamed:
+            before = [("", self._streamed), ("", _OPEN if self._session.app.is_done else ""), ("", "\n")]
         return [*before, ("class:prompt", self._prompt)]
 
     async def _print(self) -> None:
