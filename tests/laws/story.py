@@ -18,8 +18,8 @@ def everything() -> rs.Module:
     people, pose = m.collection("people"), m.slot("pose", 0, keep="latest")
     emitter(m, "classify", i, x, after=0.5, only_if=lambda ctx: ctx.payload(i) == "question")
     emitter(m, "detached", i, y, detached=True)
-    writer(m, "specific", x, out, cooldown=3.0, after=0.3, until=j)
-    writer(m, "fused", i & j, out, after=0.2)
+    writer(m, "specific", x, out, cooldown=3.0, after=0.375, until=j)
+    writer(m, "fused", i & j, out, after=0.25)
     writer(m, "general", i, out)
     resigner(m, "shy", i, out, weight=9.0)
     writer(m, "smile", y & j.detached(), face)
@@ -60,7 +60,7 @@ def tell(sim: Any, seed: int = 7, steps: int = 40) -> None:
                 sim.put(slots["m:people"], {name: 1 for name in "abc" if dice.random() < 0.5})
             case _:
                 sim.put(slots["m:pose"], dice.randrange(5))
-        sim.advance(dice.choice([0.0, 0.1, 0.4, 1.5]))
+        sim.advance(dice.choice([0.0, 0.125, 0.5, 1.5]))  # sums of these are exact
 
 
 if __name__ == "__main__":

@@ -98,7 +98,7 @@ def test_live_objects_return_to_their_number_at_rest() -> None:
             tell(sim)
             sim.advance(60.0)
             sim.failures.clear()
-            sim.events.clear()
+            sim.log.clear()
             sim.effects.clear()
             counts.append(census())
         assert counts[0] == counts[1] == counts[2]

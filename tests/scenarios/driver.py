@@ -29,7 +29,7 @@ class Driver:
     Attributes:
         engine: The bare engine.
         now: Virtual time (seconds).
-        events: All that the engine was told, each with its time.
+        log: All that was done to the engine, in order: the verb, the event if there was one, and the time.
         effects: All that the engine has asked for.
         trace: All that was observed.
         fired: The rules that ran and did not resign, in the order in which they finished.
@@ -43,7 +43,7 @@ class Driver:
         if trace:
             self.engine.tracer = self.trace.append
         self.now = 0.0
-        self.events: list[tuple[Event, float]] = []
+        self.log: list[tuple[str, Event | None, float]] = []
         self.effects: list[Effect] = []
         self.fired: list[str] = []
         self.failures: list[tuple[str, BaseException]] = []
@@ -86,15 +86,13 @@ class Driver:
         self.settle()
         while (due := self._next()) <= goal:
             self.now = due
-            self.engine.advance(due)
             self.settle()
         self.now = goal
-        self.engine.advance(goal)
-        self.settle()
+        self._advance()
 
     def settle(self) -> None:
         """Do all that can be done at this moment."""
-        while effects := self.engine.effects() or self._wake():
+        while effects := self._asked() or self._due():
             self.effects += effects
             for effect in effects:
                 self._perform(effect)
@@ -110,16 +108,28 @@ class Driver:
 
     def receive(self, event: Event) -> None:
         """Give the engine an event, and do nothing yet."""
-        self.events.append((event, self.now))
+        self.log.append(("receive", event, self.now))
         self.engine.receive(event, self.now)
 
-    def _wake(self) -> list[Effect]:
-        """Step the first sleeper whose time has come; what the engine then asks for."""
+    def _due(self) -> list[Effect]:
+        """Let the next thing happen whose time has come: the engine's deadlines first, then sleepers."""
         effects: list[Effect] = []
-        while not effects and self._sleepers and self._sleepers[0][0] <= self.now:
-            self._step(heappop(self._sleepers)[2])
-            effects = self.engine.effects()
+        while not effects and self._next() <= self.now:
+            deadline = self.engine.next_deadline()
+            if deadline is not None and deadline <= self.now:
+                self._advance()
+            else:
+                self._step(heappop(self._sleepers)[2])
+            effects = self._asked()
         return effects
+
+    def _asked(self) -> list[Effect]:
+        self.log.append(("effects", None, self.now))
+        return self.engine.effects()
+
+    def _advance(self) -> None:
+        self.log.append(("advance", None, self.now))
+        self.engine.advance(self.now)
 
     def _next(self) -> float:
         times = [self._sleepers[0][0]] if self._sleepers else []
@@ -130,6 +140,8 @@ class Driver:
         if isinstance(effect, Run):
             self._begin(effect)
         elif isinstance(effect, Cancel):
+            if effect.run not in self._runs:
+                return  # it has reported its end meanwhile
             self._sleepers = [nap for nap in self._sleepers if nap[2] != effect.run]
             self._step(effect.run, asyncio.CancelledError())
         elif isinstance(effect, Failed):

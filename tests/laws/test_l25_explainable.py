@@ -1,0 +1,270 @@
+"""L25: at any moment, for every rule: what it holds, lacks, waits for, and why it did not fire; all can be traced."""
+
+import json
+from typing import Any, get_args
+
+import pytest
+
+import ravestate as rs
+from laws.short import emitter, hearer, output, resigner, writer
+from laws.story import everything, tell
+from ravestate.engine import trace
+from ravestate.engine.explain import ActivationState
+from scenarios.driver import Driver
+
+
+def alive(sim: Any, rule: str) -> ActivationState:
+    """What is said of the one live activation of a rule."""
+    [activation] = sim.explain(rule).activations
+    return activation
+
+
+def fusion(**options: Any) -> tuple[rs.Module, rs.Signal[Any], rs.Signal[Any]]:
+    m = rs.Module("m")
+    point, speech, out = m.signal("point"), m.signal("speech"), output(m)
+    hearer(m, "other", m.signal("z"), point, [])
+    writer(m, "fused", point & speech, out, **options)
+    writer(m, "plain", speech, out)
+    return m, point, speech
+
+
+def test_what_a_rule_holds_and_what_it_lacks(play: Any) -> None:
+    m, _, speech = fusion()
+    with play(m) as sim:
+        assert sim.explain("m:fused").activations == ()
+        sim.emit(speech)
+        sim.advance(0.25)
+        fused = alive(sim, "m:fused")
+        assert (fused.state, fused.holds, fused.lacks) == ("gathering", (("m:speech", 0.25),), ("m:point",))
+        plain = alive(sim, "m:plain")
+        assert (plain.state, plain.holds, plain.lacks) == ("waiting", (("m:speech", 0.25),), ())
+
+
+def test_whom_it_waits_for_and_by_how_many_nats_it_loses(play: Any) -> None:
+    m, _, speech = fusion(weight=2.0)
+    with play(m) as sim:
+        sim.emit(speech)
+        [(rule, nats)] = alive(sim, "m:plain").waits_for
+        assert rule == "m:fused"
+        policy = rs.compile(m)
+        assert nats == pytest.approx(2.0 * policy.utility("m:fused") - policy.utility("m:plain"))
+
+
+def test_until_when_it_waits_at_the_latest(play: Any) -> None:
+    m, _, speech = fusion(patience=3.0)
+    with play(m) as sim:
+        sim.advance(1.0)
+        sim.emit(speech)
+        sim.advance(0.5)
+        assert alive(sim, "m:plain").until == 4.0
+        assert alive(sim, "m:fused").until == 4.0
+
+
+def test_until_when_a_spike_is_kept(play: Any) -> None:
+    m, point, _ = fusion()
+    with play(m) as sim:
+        sim.advance(1.0)
+        sim.emit(point)
+        assert alive(sim, "m:fused").until == 6.0
+
+
+def test_a_wait_without_bound_is_said_to_have_none(play: Any) -> None:
+    m = rs.Module("m")
+    i, x, out = m.signal("i"), m.signal("x"), output(m)
+    emitter(m, "classify", i, x, after=50.0)
+    writer(m, "specific", x, out)
+    writer(m, "general", i, out)
+    with play(m) as sim:
+        sim.emit(i)
+        sim.advance(1.0)
+        general = alive(sim, "m:general")
+        assert ([name for name, _ in general.waits_for], general.until) == (["m:specific"], None)
+        assert alive(sim, "m:classify").state == "running"
+
+
+def test_a_taken_slot_is_said_to_be_taken(play: Any) -> None:
+    m = rs.Module("m")
+    i, out = m.signal("i"), output(m)
+    resigner(m, "busy", i, out, after=5.0)
+    writer(m, "next_best", i, out)
+    with play(m) as sim:
+        sim.emit(i)
+        assert alive(sim, "m:next_best").waits_for == (("m:busy", 0.0),)
+
+
+def test_a_spike_that_ripens_and_a_gate_that_is_closed(play: Any) -> None:
+    m = rs.Module("m")
+    i, mood, out = m.signal("i"), m.slot("mood", "calm"), output(m)
+    writer(m, "later", i.min_age(2.0), out)
+    writer(m, "gated", i & mood.holds(lambda value: value == "gay"), out)
+    with play(m) as sim:
+        sim.emit(i)
+        later, gated = alive(sim, "m:later"), alive(sim, "m:gated")
+        assert (later.state, later.until) == ("ripening", 2.0)
+        assert (gated.state, gated.until) == ("gated", 5.0)
+        assert [is_open for _, is_open in sim.explain("m:gated").clauses[0].gates] == [False]
+        assert "may not run" in str(sim.explain("m:gated"))
+
+
+def test_condition_pathways_and_utility_are_told(play: Any) -> None:
+    m, _, _ = fusion()
+    with play(m) as sim:
+        [clause] = sim.explain("m:fused").clauses
+        assert clause.signals == ("m:point", "m:speech")
+        assert clause.pathways == (("m:point", "m:speech"),)
+        assert clause.utility == clause.effective == rs.compile(m).utility("m:fused")
+        words = str(sim.explain("m:fused"))
+        assert f"{clause.utility:.6f} nats" in words
+        assert "m:point & m:speech" in words
+
+
+def why(sim: Any, rule: str) -> str:
+    """What is told of a rule that has not fired on the input of this story."""
+    assert rule not in sim.fired
+    return "\n".join(sim.explain(rule).history)
+
+
+def test_why_it_did_not_fire_another_rule_answered(play: Any) -> None:
+    m, point, speech = fusion()
+    with play(m) as sim:
+        sim.emit(point)
+        sim.emit(speech)
+        assert "another rule answered" in why(sim, "m:plain")
+
+
+def test_why_it_did_not_fire_its_patience_ran_out(play: Any) -> None:
+    m, _, speech = fusion()
+    with play(m) as sim:
+        sim.emit(speech)
+        sim.advance(2.0)
+        reason = why(sim, "m:fused")
+        assert "m:plain waited for it" in reason
+        assert "lacking m:point" in reason
+        assert "patience" in reason
+
+
+def test_why_it_did_not_fire_the_spike_grew_too_old(play: Any) -> None:
+    m, point, _ = fusion()
+    with play(m) as sim:
+        sim.emit(point)
+        sim.advance(6.0)
+        assert "too old" in why(sim, "m:fused")
+
+
+def test_why_it_did_not_fire_it_resigned(play: Any) -> None:
+    m = rs.Module("m")
+    i = m.signal("i")
+    resigner(m, "shy", i, output(m))
+    with play(m) as sim:
+        sim.emit(i)
+        assert "resigned: not this time" in why(sim, "m:shy")
+
+
+def test_why_it_did_not_fire_it_failed(play: Any) -> None:
+    m = rs.Module("m")
+    i, out = m.signal("i"), output(m)
+
+    @m.rule(when=i, writes=out)
+    async def fail(ctx: Any) -> None:
+        raise ValueError("broken")
+
+    with play(m) as sim:
+        sim.emit(i)
+        assert "broken" in why(sim, "m:fail")
+
+
+def test_why_it_did_not_fire_the_spike_was_withdrawn(play: Any) -> None:
+    m, point, _ = fusion()
+    with play(m) as sim:
+        sim.emit(point)
+        sim.wipe(point)
+        assert "withdrawn" in why(sim, "m:fused")
+
+
+def test_why_it_did_not_fire_the_payload_did_not_fit(play: Any) -> None:
+    m = rs.Module("m")
+    i = m.signal("i", payload=int)
+    writer(m, "picky", i.where(lambda number: number > 10), output(m))
+    with play(m) as sim:
+        sim.emit(i, 3)
+        assert "m:i" in why(sim, "m:picky")
+
+
+def test_why_it_did_not_fire_it_has_retired(play: Any) -> None:
+    m = rs.Module("m")
+    i, out = m.signal("i"), output(m)
+
+    @m.rule(when=i, writes=out)
+    async def once(ctx: Any) -> rs.Retire:
+        return rs.Retire("enough")
+
+    with play(m) as sim:
+        sim.emit(i)
+        explanation = sim.explain("m:once")
+        assert explanation.retired
+        assert "retired" in str(explanation)
+
+
+def test_an_unknown_rule_is_refused_with_the_nearest_name(play: Any) -> None:
+    m, _, _ = fusion()
+    with play(m) as sim, pytest.raises(rs.DeclarationError, match="did you mean 'm:fused'"):
+        sim.explain("m:fussed")
+
+
+def test_every_sort_of_decision_is_traced() -> None:
+    m = everything()
+    fuse, i, j, out = m.signal("fuse"), m.signals[0], m.signals[1], m.slots[0]
+    emitter(m, "merge", i & j, fuse)
+    writer(m, "pressed", i & m.signal("never"), out, weight=50.0)
+    with Driver(m) as sim:
+        tell(sim)
+        sim.advance(60.0)
+        assert {type(record) for record in sim.trace} == set(get_args(trace.Record))
+        assert [record.time for record in sim.trace] == sorted(record.time for record in sim.trace)
+
+
+def test_what_was_born_held_and_settled_is_traced_with_its_causes(play: Any) -> None:
+    m, point, speech = fusion()
+    with play(m) as sim:
+        sim.emit(point)
+        sim.emit(speech)
+        [started] = [r for r in sim.trace if isinstance(r, trace.Started)]
+        born = {r.spike: r for r in sim.trace if isinstance(r, trace.Born)}
+        assert [born[spike].signal for spike in started.spikes] == ["m:point", "m:speech"]
+        [effect] = [r for r in born.values() if r.source == started.run]
+        assert (effect.signal, effect.parents) == ("m:out:changed", started.spikes)
+        [settled] = [r for r in sim.trace if isinstance(r, trace.Settled)]
+        assert (settled.run, settled.outcome, settled.fired) == (started.run, "done", True)
+
+
+def test_without_a_listener_no_record_is_made(monkeypatch: pytest.MonkeyPatch) -> None:
+    def never(*_: object) -> None:
+        raise AssertionError("nobody listens")
+
+    for record in get_args(trace.Record):
+        monkeypatch.setattr(trace, record.__name__, never)
+    with Driver(everything(), trace=False) as sim:
+        tell(sim)
+        sim.advance(60.0)
+        assert len(sim.fired) > 50
+
+
+def test_tracing_changes_nothing() -> None:
+    policy = rs.compile(everything())
+    ends: list[tuple[list[str], dict[str, Any]]] = []
+    for traced in (False, True):
+        with Driver(policy, trace=traced) as sim:
+            tell(sim)
+            sim.advance(60.0)
+            ends.append((sim.fired, sim.snapshot()["slots"]))
+    assert ends[0] == ends[1]
+
+
+def test_the_state_is_plain_data(play: Any) -> None:
+    with play(everything()) as sim:
+        tell(sim)
+        state = json.loads(json.dumps(sim.snapshot()))
+        assert state["activations"]
+        assert state == sim.snapshot()
+        for activation in state["activations"]:
+            assert {"rule", "state", "holds", "lacks", "waits_for", "until"} <= set(activation)
