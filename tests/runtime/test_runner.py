@@ -1,0 +1,595 @@
+"""The runner: what rules do well or badly, on a real loop; the conversation goes on."""
+
+import asyncio
+import functools
+import logging
+import re
+import threading
+from typing import Any
+
+import pytest
+
+import ravestate as rs
+from ravestate.runtime import nest as nest_file
+from ravestate.runtime import runner as runner_file
+from ravestate.testing import simulate
+from runtime.on_loop import on_loop, turns
+
+HERE = re.escape(__file__)
+LIMIT = 20.0
+
+
+class Talk:
+    """A module in which a rule under test stands before one that answers in its place."""
+
+    def __init__(self) -> None:
+        self.module = rs.Module("m")
+        self.heard: rs.Slot[Any] = self.module.slot("heard", "", always=True)
+        self.said = self.module.slot("said", "", always=True)
+        self.note = self.module.slot("note", "")
+        self.stop = self.module.signal("stop")
+        self.word = self.module.signal("word")
+        self.failures: list[rs.RuleFailure] = []
+
+        @self.module.rule(when=self.heard.changed, writes=self.said)
+        async def fallback(ctx: rs.RuleContext) -> None:
+            ctx[self.said] = "fallback"
+
+        @self.module.rule(when=rs.error)
+        async def hear_error(ctx: rs.RuleContext) -> None:
+            self.failures.append(ctx.payload(rs.error))
+
+    def rule(self, function: Any, **options: Any) -> Any:
+        options = {"writes": self.said, "weight": 2.0} | options
+        return self.module.rule(when=self.heard.changed, **options)(function)
+
+    async def ask(self, context: rs.Context, text: Any = "hello") -> str:
+        """Say something, and wait for the answer."""
+        answer = asyncio.ensure_future(context.next(self.said.changed))
+        await turns(1)
+        context.put(self.heard, text)
+        found = await answer
+        await context.quiet()
+        return found
+
+
+@pytest.fixture
+def talk() -> Talk:
+    return Talk()
+
+
+def only_failure(talk: Talk) -> BaseException:
+    (failure,) = talk.failures
+    talk.failures.clear()
+    return failure.exception
+
+
+# ---------------------------------------------------------------------------------------- rules that fail
+
+
+class Strange(BaseException):
+    pass
+
+
+def raising(error: BaseException, where: str) -> Any:
+    """A rule function that raises: at once, after it has waited, or in a thread."""
+
+    async def at_once(ctx: rs.RuleContext) -> None:
+        raise error
+
+    async def later(ctx: rs.RuleContext) -> None:
+        await asyncio.sleep(0)
+        raise error
+
+    def in_thread(ctx: rs.RuleContext) -> None:
+        raise error
+
+    return {"at once": at_once, "later": later, "in a thread": in_thread}[where]
+
+
+WHERE = pytest.mark.parametrize("where", ["at once", "later", "in a thread"])
+
+
+@WHERE
+@pytest.mark.parametrize(
+    "error", [ValueError("broken"), Strange("odd"), asyncio.CancelledError(), TimeoutError(), GeneratorExit()]
+)
+@on_loop
+async def test_a_rule_that_raises_is_logged_once_and_the_next_best_answers(
+    error: BaseException, where: str
+) -> None:
+    talk = Talk()
+    talk.rule(raising(error, where), name="fails")
+    handler = Records()
+    with handler:
+        async with rs.Context(talk.module) as context:
+            assert await talk.ask(context) == "fallback"
+            failure = only_failure(talk)
+            assert type(failure) is type(error)
+            (record,) = handler.records
+            assert record.levelno == logging.ERROR and record.getMessage().startswith("rule m:fails failed: ")
+            assert record.exc_info is not None and record.exc_info[1] is failure
+            assert await talk.ask(context) == "fallback"  # and the conversation goes on
+
+
+class Records(logging.Handler):
+    """What is logged for ravestate while it is entered."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.records: list[logging.LogRecord] = []
+
+    def emit(self, record: logging.LogRecord) -> None:
+        self.records.append(record)
+
+    def __enter__(self) -> "Records":
+        logging.getLogger("ravestate").addHandler(self)
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        logging.getLogger("ravestate").removeHandler(self)
+
+    @property
+    def messages(self) -> list[str]:
+        return [record.getMessage() for record in self.records]
+
+
+@WHERE
+@on_loop
+async def test_sys_exit_does_not_end_the_process(where: str) -> None:
+    talk = Talk()
+    talk.rule(raising(SystemExit(3), where), name="leaves")
+    async with rs.Context(talk.module) as context:
+        assert await talk.ask(context) == "fallback"
+        failure = only_failure(talk)
+        assert isinstance(failure, rs.RuleError) and isinstance(failure.__cause__, SystemExit)
+        assert re.match(rf"rule m:leaves \({HERE}:\d+\) called sys.exit", str(failure))
+        assert str(failure).endswith("write ctx.stop() to end the agent")
+        assert await talk.ask(context) == "fallback"
+
+
+def test_a_keyboard_interrupt_ends_what_runs() -> None:
+    talk = Talk()
+    ended: list[bool] = []
+    talk.rule(raising(KeyboardInterrupt(), "at once"), name="interrupts")
+
+    async def main() -> None:
+        try:
+            async with rs.Context(talk.module) as context:
+                context.put(talk.heard, "hello")
+                await asyncio.get_running_loop().create_future()
+        finally:
+            ended.append(True)
+
+    with pytest.raises(KeyboardInterrupt):
+        asyncio.run(main())
+    assert ended == [True]
+
+
+@pytest.mark.parametrize("nonsense", ["an answer", 0, False, (), rs.Module("x")])
+@on_loop
+async def test_a_rule_that_returns_nonsense_is_told_to_write(nonsense: object) -> None:
+    talk = Talk()
+
+    async def answers(ctx: rs.RuleContext) -> object:
+        return nonsense
+
+    talk.rule(answers)
+    async with rs.Context(talk.module) as context:
+        assert await talk.ask(context) == "fallback"
+        failure = only_failure(talk)
+        assert isinstance(failure, rs.RuleError)
+        assert re.match(rf"rule m:answers \({HERE}:\d+\) returned {re.escape(repr(nonsense))};", str(failure))
+        assert "a rule returns nothing, rs.Resign(reason) or rs.Retire(); write its result to a slot" in str(
+            failure
+        )
+
+
+@on_loop
+async def test_huge_nonsense_is_shortened() -> None:
+    talk = Talk()
+
+    async def answers(ctx: rs.RuleContext) -> str:
+        return "x" * 10_000_000
+
+    talk.rule(answers)
+    async with rs.Context(talk.module) as context:
+        assert await talk.ask(context) == "fallback"
+        assert len(str(only_failure(talk))) < 400
+
+
+@on_loop
+async def test_a_plain_wrapper_of_an_async_rule_is_told_so() -> None:
+    talk = Talk()
+
+    async def answer(ctx: rs.RuleContext) -> None:
+        ctx[talk.said] = "never"
+
+    @functools.wraps(answer)
+    def wrapper(ctx: rs.RuleContext) -> Any:
+        return answer(ctx)
+
+    talk.rule(wrapper)
+    async with rs.Context(talk.module) as context:
+        assert await talk.ask(context) == "fallback"
+        assert "is a plain function that returned a coroutine: write async def" in str(only_failure(talk))
+
+
+@on_loop
+async def test_a_rule_that_takes_too_many_arguments_fails_like_any_other() -> None:
+    talk = Talk()
+
+    async def greedy(ctx: rs.RuleContext, more: object) -> None:
+        pass
+
+    talk.rule(greedy)
+    async with rs.Context(talk.module) as context:
+        assert await talk.ask(context) == "fallback"
+        assert "missing 1 required positional argument: 'more'" in str(only_failure(talk))
+
+
+@on_loop
+async def test_who_fails_after_writing_is_not_followed_by_another() -> None:
+    talk = Talk()
+
+    async def halfway(ctx: rs.RuleContext) -> None:
+        ctx[talk.said] = "half"
+        raise ValueError
+
+    talk.rule(halfway)
+    async with rs.Context(talk.module, trace=True) as context:
+        assert await talk.ask(context) == "half"
+        assert isinstance(only_failure(talk), ValueError)
+        assert context.read(talk.said) == "half"
+
+
+@pytest.mark.parametrize("outcome", [rs.Resign("not now"), rs.Retire("enough")])
+@pytest.mark.parametrize("how", ["return", "raise"])
+@on_loop
+async def test_outcomes_may_be_returned_or_raised(outcome: Any, how: str) -> None:
+    talk = Talk()
+
+    async def decide(ctx: rs.RuleContext) -> Any:
+        if how == "raise":
+            raise outcome
+        return outcome
+
+    talk.rule(decide)
+    async with rs.Context(talk.module) as context:
+        if isinstance(outcome, rs.Resign):
+            assert await talk.ask(context) == "fallback"
+        else:
+            context.put(talk.heard, "hello")
+            await context.quiet()
+        assert context.explain("m:decide").retired == isinstance(outcome, rs.Retire)
+        assert talk.failures == []
+
+
+@on_loop
+async def test_a_predicate_that_fails_is_named_and_counts_as_false() -> None:
+    talk = Talk()
+
+    async def picky(ctx: rs.RuleContext) -> None:
+        ctx[talk.said] = "picky"
+
+    talk.module.rule(when=talk.heard.changed.where(lambda text: text.upper()), writes=talk.said)(picky)
+    async with rs.Context(talk.module) as context:
+        assert await talk.ask(context, 3) == "fallback"
+        assert isinstance(only_failure(talk), AttributeError)
+        assert await talk.ask(context, "x") == "picky"
+
+
+# ---------------------------------------------------------------------------------------- undeclared
+
+UNDECLARED = {
+    "read": (lambda talk, ctx: ctx[talk.note], "read m:note without declaring it: add reads=m.note"),
+    "write": (
+        lambda talk, ctx: ctx.__setitem__(talk.note, "x"),
+        "wrote m:note without declaring it: add writes=m.note",
+    ),
+    "emit": (lambda talk, ctx: ctx.emit(talk.word), "emitted m:word without declaring it: add emits=m.word"),
+}
+
+
+@pytest.mark.parametrize("did", list(UNDECLARED))
+@pytest.mark.parametrize("thread", [False, True])
+@on_loop
+async def test_what_is_not_declared_is_refused_with_the_line_to_add(did: str, thread: bool) -> None:
+    talk = Talk()
+    act, text = UNDECLARED[did]
+
+    def plain(ctx: rs.RuleContext) -> None:
+        act(talk, ctx)
+
+    async def trespass(ctx: rs.RuleContext) -> None:
+        act(talk, ctx)
+
+    talk.rule(plain if thread else trespass, name="trespass")
+    async with rs.Context(talk.module) as context:
+        assert await talk.ask(context) == "fallback"
+        failure = only_failure(talk)
+        assert isinstance(failure, rs.UndeclaredError)
+        assert re.match(rf"rule m:trespass \({HERE}:\d+\) {text} to @m.rule\(\.\.\.\)", str(failure))
+
+
+# ---------------------------------------------------------------------------------------- plain functions
+
+
+@on_loop
+async def test_a_plain_function_runs_in_a_thread() -> None:
+    talk = Talk()
+    threads: list[int] = []
+
+    def slow(ctx: rs.RuleContext) -> None:
+        threads.append(threading.get_ident())
+        ctx[talk.said] = ctx.payload(talk.heard.changed).upper()
+        assert ctx[talk.said] == "HELLO"  # its own write
+        ctx.emit(talk.word)
+
+    talk.rule(slow, emits=talk.word)
+    async with rs.Context(talk.module) as context:
+        assert await talk.ask(context) == "HELLO"
+        assert threads != [threading.get_ident()]
+        assert talk.failures == []
+
+
+@pytest.mark.parametrize("how", ["return", "raise"])
+@on_loop
+async def test_a_plain_function_may_resign(how: str) -> None:
+    talk = Talk()
+
+    def resigns(ctx: rs.RuleContext) -> rs.Resign:
+        if how == "raise":
+            raise rs.Resign("no")
+        return rs.Resign("no")
+
+    talk.rule(resigns)
+    async with rs.Context(talk.module) as context:
+        assert await talk.ask(context) == "fallback"
+        assert talk.failures == []
+
+
+@on_loop
+async def test_partials_and_objects_may_be_rules() -> None:
+    talk = Talk()
+
+    class Greeter:
+        async def __call__(self, ctx: rs.RuleContext) -> None:
+            ctx[talk.said] = "object"
+
+    async def with_more(word: str, ctx: rs.RuleContext) -> None:
+        ctx[talk.note] = word
+
+    talk.rule(Greeter(), name="greeter")
+    talk.rule(functools.partial(with_more, "partial"), name="partial", writes=talk.note)
+    async with rs.Context(talk.module) as context:
+        assert await talk.ask(context) == "object"
+        assert context.read(talk.note) == "partial"
+        assert talk.failures == []
+
+
+@on_loop
+async def test_a_plain_function_that_hangs_is_abandoned_and_may_not_act_later() -> None:
+    talk = Talk()
+    release = threading.Event()
+    told: asyncio.Queue[BaseException] = asyncio.Queue()
+    loop = asyncio.get_running_loop()
+
+    def hang(ctx: rs.RuleContext) -> None:
+        release.wait(LIMIT)
+        for act in (
+            lambda: ctx.__setitem__(talk.said, "too late"),
+            lambda: ctx.emit(talk.word),
+            lambda: ctx.wipe(talk.word),
+        ):
+            try:
+                act()
+            except rs.RunEnded as error:
+                loop.call_soon_threadsafe(told.put_nowait, error)
+
+    talk.rule(hang, emits=talk.word, timeout=0.001)
+    async with rs.Context(talk.module) as context:
+        assert await talk.ask(context) == "fallback"
+        failure = only_failure(talk)
+        assert isinstance(failure, rs.RuleTimeout)
+        assert re.match(rf"rule m:hang took longer than its timeout of 0.001 s \({HERE}:\d+\)", str(failure))
+        release.set()
+        for _ in range(3):
+            assert str(await told.get()) == "rule m:hang acted after its run was over (timeout)"
+        assert context.read(talk.said) == "fallback"
+
+
+@on_loop
+async def test_a_plain_function_is_let_go_when_it_is_interrupted() -> None:
+    talk = Talk()
+    release, begun = threading.Event(), asyncio.Event()
+    loop = asyncio.get_running_loop()
+
+    def hang(ctx: rs.RuleContext) -> None:
+        loop.call_soon_threadsafe(begun.set)
+        release.wait(LIMIT)
+
+    talk.rule(hang, until=talk.stop)
+    async with rs.Context(talk.module, trace=True) as context:
+        context.put(talk.heard, "hello")
+        await begun.wait()
+        context.emit(talk.stop)
+        await context.quiet()
+        assert "interrupted" in str(context.explain("m:hang"))
+    release.set()
+
+
+@on_loop
+async def test_the_end_does_not_wait_for_a_plain_function_that_hangs() -> None:
+    talk = Talk()
+    release, begun = threading.Event(), asyncio.Event()
+    over: asyncio.Queue[str] = asyncio.Queue()
+    loop = asyncio.get_running_loop()
+
+    def hang(ctx: rs.RuleContext) -> None:
+        loop.call_soon_threadsafe(begun.set)
+        release.wait(LIMIT)
+        try:
+            ctx[talk.said] = "too late"
+        except rs.RunEnded as error:
+            loop.call_soon_threadsafe(over.put_nowait, str(error))
+
+    talk.rule(hang)
+    async with rs.Context(talk.module) as context:
+        context.put(talk.heard, "hello")
+        await begun.wait()
+    release.set()
+    assert await over.get() == "rule m:hang acted after its run was over (the context has ended)"
+
+
+@on_loop
+async def test_what_a_thread_asks_wrongly_is_logged_not_lost() -> None:
+    talk = Talk()
+    foreign = rs.Module("far").signal("far")
+
+    def wipes(ctx: rs.RuleContext) -> None:
+        ctx.wipe(foreign)
+
+    talk.rule(wipes, writes=talk.note)
+    with Records() as log:
+        async with rs.Context(talk.module) as context:
+            await talk.ask(context)
+    assert any("what another thread asked for was refused: Wipe(signal='far:far'" in m for m in log.messages)
+
+
+# ---------------------------------------------------------------------------------------- rules that hang, or block
+
+
+@on_loop
+async def test_an_async_rule_that_hangs_is_cancelled_at_its_timeout() -> None:
+    talk = Talk()
+    told: list[str] = []
+
+    async def hang(ctx: rs.RuleContext) -> None:
+        try:
+            await asyncio.get_running_loop().create_future()
+        finally:
+            told.append("clean")
+
+    talk.rule(hang, timeout=0.001)
+    async with rs.Context(talk.module) as context:
+        assert await talk.ask(context) == "fallback"
+        assert isinstance(only_failure(talk), rs.RuleTimeout)
+        assert told == ["clean"]
+
+
+def test_a_rule_that_refuses_to_end_is_given_up() -> None:
+    talk = Talk()
+    told: list[str] = []
+
+    async def stubborn(ctx: rs.RuleContext) -> None:
+        while not told:
+            try:
+                await ctx.sleep(3600)
+            except asyncio.CancelledError:
+                try:
+                    await ctx.sleep(3600)
+                except asyncio.CancelledError:
+                    told.append("second")
+                    raise
+            finally:
+                if not told:
+                    try:
+                        ctx[talk.said] = "while cleaning up"
+                    except rs.RunEnded as error:
+                        told.append(str(error))
+
+    talk.rule(stubborn, until=talk.stop)
+    with Records() as log, simulate(talk.module) as sim:
+        sim.put(talk.heard, "hello")
+        sim.emit(talk.stop)
+        sim.advance(runner_file.GRACE - 0.1)
+        assert log.messages == []
+        sim.advance(0.2)
+        assert re.match(
+            rf"rule m:stubborn \({HERE}:\d+\) did not end within 5 s of being cancelled: let asyncio.CancelledError through",
+            log.messages[0],
+        )
+        assert "m:stubborn" in sim.fired
+        sim.advance(3600)
+        assert told == ["rule m:stubborn acted after its run was over (it did not end in time)"]
+
+
+@pytest.mark.parametrize("waits", [False, True])
+@on_loop
+async def test_a_rule_that_blocks_the_loop_is_named(waits: bool) -> None:
+    talk = Talk()
+    clock = [0.0]
+
+    async def heavy(ctx: rs.RuleContext) -> None:
+        if waits:
+            await asyncio.sleep(0)
+        clock[0] += 0.25
+        ctx[talk.said] = "heavy"
+
+    async def light(ctx: rs.RuleContext) -> None:
+        clock[0] += 0.05
+
+    talk.rule(heavy)
+    talk.rule(light, writes=talk.note)
+    with pytest.MonkeyPatch.context() as patch, Records() as log:
+        patch.setattr(runner_file, "perf_counter", lambda: clock[0])
+        patch.setattr(nest_file, "perf_counter", lambda: clock[0])
+        async with rs.Context(talk.module) as context:
+            assert await talk.ask(context) == "heavy"
+    (text,) = log.messages
+    assert re.match(
+        rf"rule m:heavy \({HERE}:\d+\) blocked the loop for 250 ms: make it a plain function", text
+    )
+
+
+# ---------------------------------------------------------------------------------------- much, large
+
+
+@pytest.mark.parametrize("thread", [False, True])
+@on_loop
+async def test_a_payload_of_ten_megabytes_is_handed_over_as_it_is(thread: bool) -> None:
+    talk = Talk()
+    huge = "x" * 10_000_000
+    seen: list[object] = []
+
+    async def measure(ctx: rs.RuleContext) -> None:
+        seen.append(ctx.payload(talk.heard.changed))
+        ctx[talk.said] = str(len(ctx.payload(talk.heard.changed)))
+
+    def plain(ctx: rs.RuleContext) -> None:
+        seen.append(ctx.payload(talk.heard.changed))
+        ctx[talk.said] = str(len(ctx.payload(talk.heard.changed)))
+
+    talk.rule(plain if thread else measure, name="measure")
+    with Records() as log:
+        async with rs.Context(talk.module) as context:
+            assert await talk.ask(context, huge) == "10000000"
+            assert seen[0] is huge
+            assert len(str(context.explain("m:measure"))) < 2000
+            assert await talk.ask(context, "x") == "1"
+    assert log.messages == []
+
+
+@on_loop
+async def test_a_loop_of_rules_lets_the_loop_turn() -> None:
+    """A detached rule that causes itself for ever starves neither timers nor input."""
+    m = rs.Module("m")
+    tick, enough = m.signal("tick", keep="latest"), m.signal("enough")
+    count = [0]
+
+    @m.rule(when=tick, emits=tick, detached=True)
+    async def tock(ctx: rs.RuleContext) -> None:
+        count[0] += 1
+        ctx.emit(tick)
+
+    @m.rule(when=enough)
+    async def end(ctx: rs.RuleContext) -> None:
+        ctx.stop()
+
+    async with rs.Context(m) as context:
+        context.emit(tick)
+        await turns(3)
+        assert count[0] > 0
+        context.emit(enough)
+        await context.until_stopped()
