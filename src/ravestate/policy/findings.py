@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from ravestate.policy.plan import Clause
+from ravestate.policy.plan import Clause, RulePlan
 from ravestate.policy.policy import Policy
 
 __all__ = ["Finding", "find_all"]
@@ -114,13 +114,20 @@ def _dominates(winner: Clause, loser: Clause) -> bool:
 
 def _ties(policy: Policy) -> Iterator[Finding]:
     for conflict in policy.conflicts():
-        if conflict.tie:
+        if conflict.tie and not _apart(policy.rule_plan(conflict.first), policy.rule_plan(conflict.second)):
             yield Finding(
                 "tie",
                 conflict.second,
                 f"rules {conflict.first} and {conflict.second} have the same utility for {', '.join(conflict.slots)}: "
                 f"{conflict.winner} goes first because it is declared first; a weight would say so",
             )
+
+
+def _apart(first: RulePlan, second: RulePlan) -> bool:
+    """Whether payloads tell the rules apart: both ask for different ones of the same signal."""
+    mine = {need.signal.index: need.predicates for clause in first.clauses for need in clause.needs}
+    theirs = {need.signal.index: need.predicates for clause in second.clauses for need in clause.needs}
+    return any(mine[s] and theirs[s] and mine[s] != theirs[s] for s in mine.keys() & theirs.keys())
 
 
 def _unheard(policy: Policy) -> Iterator[Finding]:
