@@ -32,6 +32,15 @@ PARTS = {
     "serve": "Serving",
     "study": "Studies",
 }
+READING_ORDER = {
+    "declare": ["module", "signal", "slot", "condition", "rule", "outcome", "settings", "core"],
+    "policy": ["compile", "policy", "plan", "conflicts", "findings"],
+    "runtime": ["run", "context", "rule_context", "journal"],
+    "testing": ["simulation"],
+    "engine": ["trace", "explain", "snapshot", "engine", "events", "effects", "activation"],
+}
+"""The files of a part that are of use to others, in the order in which to read them. A part that is not named here
+shows all its files, by name."""
 KINDS = {"modality": "Modalities", "meta": "Meta modules", "skill": "Skills", "platform": "Platforms"}
 
 
@@ -62,7 +71,11 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
             text = readme.read_text(encoding="utf-8").rstrip() if readme.exists() else f"# {name}"
             dotted = f"ravestate.modules.{kind}.{name}"
             files.append(
-                _page(config, f"reference/modules/{name}.md", f"{text}\n\n## Reference\n\n::: {dotted}\n")
+                _page(
+                    config,
+                    f"reference/modules/{name}.md",
+                    f"{text}\n\n## Reference\n\n::: {dotted}\n    options:\n      filters: public\n",
+                )
             )
     return files
 
@@ -80,16 +93,15 @@ def _modules(kind: str) -> list[str]:
 
 
 def _reference(part: str) -> str:
-    """One directive for each file of a room that has something public, `__init__` first."""
+    """What the room says of itself, and one directive for each of its files."""
     if not (SOURCE / part).is_dir():
         return f"::: ravestate.{part}\n"
-    text = ""
-    for file in sorted((SOURCE / part).glob("*.py"), key=lambda file: (file.stem != "__init__", file.stem)):
-        if file.stem == "__init__":
-            said = ast.get_docstring(ast.parse(file.read_text(encoding="utf-8"))) or ""
-            text += f"{said}\n\n"
-        elif not file.stem.startswith("_"):
-            text += f"## `{part}.{file.stem}`\n\n::: ravestate.{part}.{file.stem}\n    options:\n      heading_level: 3\n\n"
+    room = SOURCE / part
+    said = ast.get_docstring(ast.parse((room / "__init__.py").read_text(encoding="utf-8"))) or ""
+    found = sorted(file.stem for file in room.glob("*.py") if not file.stem.startswith("_"))
+    text = f"{said}\n\n"
+    for name in READING_ORDER.get(part, found):
+        text += f"## `{part}.{name}`\n\n::: ravestate.{part}.{name}\n    options:\n      heading_level: 3\n      filters: public\n      show_signature_annotations: true\n\n"
     return text
 
 

@@ -1,0 +1,15 @@
+"""The reference names whatever a user may type."""
+
+import re
+from pathlib import Path
+
+import ravestate as rs
+from ravestate.cli import COMMANDS
+
+PAGE = Path(__file__).parents[2] / "docs" / "reference" / "index.md"
+
+
+def test_every_public_name_and_command_is_on_the_page() -> None:
+    text = PAGE.read_text(encoding="utf-8")
+    assert set(re.findall(r"`rs\.(\w+)`", text)) == set(rs.__all__)
+    assert set(re.findall(r"`ravestate (\w+)", text)) == set(COMMANDS)
