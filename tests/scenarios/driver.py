@@ -15,12 +15,15 @@ from types import TracebackType
 from typing import Any
 
 import ravestate as rs
-from ravestate.engine.effects import Cancel, Effect, Ended, Failed, Run
+from ravestate.engine.effects import Cancel, Effect, Ended, Failed, Run, Spiked
 from ravestate.engine.engine import Engine
 from ravestate.engine.events import AddRule, Emit, Event, Finish, Start, Stop, Wipe, Write
 from ravestate.engine.explain import Explanation, explain
 from ravestate.engine.snapshot import snapshot
 from ravestate.engine.trace import Record
+from ravestate.modules import rawio
+
+OUTPUT = rawio.output.changed.name
 
 
 class Driver:
@@ -34,6 +37,7 @@ class Driver:
         trace: All that was observed.
         fired: The rules that ran and did not resign, in the order in which they finished.
         failures: What rules failed with: (name of the rule, exception).
+        said: What was written to ``rawio.output``, in order.
     """
 
     def __init__(self, *modules: rs.Module | rs.Policy, patience: float = 1.0, trace: bool = True) -> None:
@@ -47,6 +51,8 @@ class Driver:
         self.effects: list[Effect] = []
         self.fired: list[str] = []
         self.failures: list[tuple[str, BaseException]] = []
+        self.said: list[str] = []
+        self.engine.watched[OUTPUT] = 1
         self._sleepers: list[tuple[float, int, int]] = []
         self._runs: dict[int, Coroutine[float, None, Any]] = {}
         self._naps = 0
@@ -62,6 +68,10 @@ class Driver:
             self.tell(Stop())
         for coroutine in self._runs.values():
             coroutine.close()
+
+    def say(self, text: str) -> None:
+        """The user says something."""
+        self.put(rawio.input, text)
 
     def put(self, slot: rs.Slot[Any], value: Any) -> None:
         self.tell(Write(slot.name, value))
@@ -144,6 +154,8 @@ class Driver:
                 return  # it has reported its end meanwhile
             self._sleepers = [nap for nap in self._sleepers if nap[2] != effect.run]
             self._step(effect.run, asyncio.CancelledError())
+        elif isinstance(effect, Spiked):
+            self.said.append(effect.payload)
         elif isinstance(effect, Failed):
             self.failures.append((effect.rule, effect.exception))
         elif isinstance(effect, Ended) and effect.fired:
@@ -196,6 +208,7 @@ class View:
     def __init__(self, driver: Driver, effect: Run) -> None:
         self._driver = driver
         self._run = effect.run
+        self._rule = effect.rule.name
         self._payloads = effect.payloads
         self._values = dict(effect.values)
 
@@ -211,6 +224,9 @@ class View:
         self._values[slot.name] = value
 
     def payload(self, signal: rs.Signal[Any]) -> Any:
+        clauses = self._driver.engine.policy.clauses(self._rule)
+        if all(signal not in clause.signals for clause in clauses):
+            raise rs.UndeclaredError(f"the condition of {self._rule} does not name {signal}")
         return self._payloads.get(signal.name)
 
     def emit(self, signal: rs.Signal[Any], payload: Any = None) -> None:
