@@ -369,7 +369,7 @@ def life() -> str:
         ("Done", "its spikes are consumed for its slots: nobody else answers"),
         ("Resign", "its slots are free again: the next best is asked"),
         ("Error", "as Resign if it has written nothing, else as Done"),
-        ("Retire", "as Done, or as Resign; and the rule leaves the context"),
+        ("Retire", "as Done, and the rule leaves the context"),
     )):  # fmt: skip
         sheet.text(524, 356 + 19 * row, name, "small name", "start")
         sheet.text(578, 356 + 19 * row, words, "small", "start")
