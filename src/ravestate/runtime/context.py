@@ -115,14 +115,18 @@ class Context:
 
     async def stop(self, grace: float = 5.0) -> None:
         """End in order: ``rs.shutdown`` is raised, what it triggers may finish within `grace` seconds, the rest is
-        cancelled and may clean up."""
+        cancelled and may clean up. Cancelling this breaks off: nothing is waited for any more."""
         runner = self._running()
         self.ask_to_stop()
         last = max(runner.engine.running, default=0)
         runner.receive(Stop())
-        await asyncio.sleep(0)  # the pump runs: whoever hears rs.shutdown starts
-        await runner.wait_for_runs(last, grace)
-        await runner.close()
+        try:
+            await asyncio.sleep(0)  # the pump runs: whoever hears rs.shutdown starts
+            await runner.wait_for_runs(last, grace)
+            await runner.close()
+        except asyncio.CancelledError:
+            await runner.close(at_once=True)
+            raise
 
     def ask_to_stop(self) -> None:
         """Let `until_stopped` return; the context goes on until it is left. From any thread."""

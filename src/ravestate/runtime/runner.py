@@ -363,19 +363,19 @@ class Runner:
             else:
                 await asyncio.sleep(0.005)
 
-    async def close(self) -> None:
-        """Cancel whatever runs, and let it clean up; what refuses to end is given up."""
+    async def close(self, *, at_once: bool = False) -> None:
+        """Cancel whatever runs, and let it clean up, `at_once` without waiting; what refuses to end is given up."""
         for run, nest in self._nests.items():
             ctx = self._contexts.get(run)
             if ctx is not None:
                 ctx.told = "the context has ended"
             nest.task.cancel()
         if self._nests:
-            await asyncio.wait([nest.task for nest in self._nests.values()], timeout=GRACE)
+            await asyncio.wait([nest.task for nest in self._nests.values()], timeout=0 if at_once else GRACE)
         self.closed = True
         for run, nest in self._nests.items():
             ctx = self._contexts.get(run)
-            if ctx is not None:
+            if ctx is not None and not at_once:
                 self._warn_of(ctx.rule)
             nest.abandon()
         for ctx in self._contexts.values():

@@ -1,0 +1,586 @@
+"""A context's life: begun once, acted on from the loop and from threads, ended in order."""
+
+import asyncio
+import json
+import logging
+import threading
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+import ravestate as rs
+from ravestate.runtime import runner as runner_file
+from ravestate.testing import simulate
+from runtime.on_loop import on_loop, turns
+
+
+class Options(rs.Settings):
+    greeting: str = "hello"
+    pause: float = 1.0
+
+
+demo = rs.Module("demo", settings=Options)
+heard, said = demo.slot("heard", ""), demo.slot("said", "", always=True)
+number = demo.signal("number", payload=int)
+people = demo.collection("people")
+
+
+@demo.rule(when=heard.changed, writes=said)
+async def echo(ctx: rs.RuleContext) -> None:
+    ctx[said] = ctx.payload(heard.changed).upper()
+
+
+@demo.rule(when=number, writes=said)
+async def count(ctx: rs.RuleContext) -> None:
+    ctx[said] = f"{ctx.settings.greeting} {ctx.payload(number)}"
+
+
+policy = rs.compile(demo)
+
+
+# ---------------------------------------------------------------------------------------- life
+
+
+@on_loop
+async def test_a_context_runs_once() -> None:
+    context = rs.Context(policy)
+    async with context:
+        assert context.now >= 0.0
+    with pytest.raises(rs.EngineError, match="a context runs once: make another one of the same policy"):
+        await context.__aenter__()
+
+
+@pytest.mark.parametrize(
+    "act",
+    [
+        lambda c: c.put(heard, "x"),
+        lambda c: c.emit(number, 1),
+        lambda c: c.wipe(number),
+        lambda c: c.read(heard),
+        lambda c: c.explain("demo:echo"),
+        lambda c: c.snapshot(),
+        lambda c: c.now,
+        lambda c: c.add_rule(echo),
+    ],
+)
+def test_nothing_can_be_done_before_it_begins(act: Callable[[rs.Context], object]) -> None:
+    with pytest.raises(rs.EngineError, match=r"has not begun: write `async with rs\.Context"):
+        act(rs.Context(policy))
+
+
+@on_loop
+async def test_waiting_before_it_begins_is_refused_too() -> None:
+    context = rs.Context(policy)
+    for wait in (context.next(number), context.quiet(), context.until_stopped(), context.stop()):
+        with pytest.raises(rs.EngineError, match="has not begun"):
+            await wait
+
+
+@on_loop
+async def test_after_its_end_it_can_be_looked_at_and_no_more() -> None:
+    async with rs.Context(policy) as context:
+        context.put(heard, "x")
+        await context.quiet()
+    assert context.read(said) == "X"
+    assert context.snapshot()["slots"]["demo:said"] == "X"
+    assert str(context.explain(echo)).startswith("demo:echo at ")
+    context.put(heard, "late")
+    context.emit(number, 1)
+    await turns()
+    assert context.read(heard) == "x"
+    with pytest.raises(rs.EngineError, match="the context has ended: there will be no demo:number"):
+        await context.next(number)
+    await context.stop()  # a second time changes nothing
+
+
+def test_after_its_loop_has_closed_nothing_happens_either() -> None:
+    context = rs.Context(policy)
+
+    async def main() -> None:
+        async with context:
+            pass
+
+    asyncio.run(main())
+    context.put(heard, "late")
+    context.ask_to_stop()
+    thread = threading.Thread(target=context.put, args=(heard, "late"))
+    thread.start()
+    thread.join()
+    assert context.read(heard) == ""
+
+
+@on_loop
+async def test_an_exception_inside_ends_the_context_and_comes_through() -> None:
+    with pytest.raises(KeyError):
+        async with rs.Context(policy) as context:
+            raise KeyError("mine")
+    assert context.read(heard) == ""
+    assert len(asyncio.all_tasks()) == 1
+
+
+def test_faults_are_raised_before_anything_runs() -> None:
+    with pytest.raises(rs.DeclarationErrors) as caught:
+        rs.Context("demo")  # a name is no module
+    assert "expected an rs.Module" in str(caught.value)
+    with pytest.raises(rs.DeclarationErrors) as caught:
+        rs.Context(policy, demo)
+    assert "not <policy of 2 rules" in str(caught.value)
+
+
+@pytest.mark.parametrize("patience", [-1, float("nan"), float("inf"), "1", None, True])
+def test_patience_is_a_number_of_seconds(patience: Any) -> None:
+    with pytest.raises(rs.DeclarationError, match=r"patience=.* must be 0 s or more, e.g. patience=1.0"):
+        rs.Context(policy, patience=patience)
+
+
+# ---------------------------------------------------------------------------------------- from outside
+
+
+@on_loop
+async def test_put_emit_and_next() -> None:
+    async with rs.Context(policy) as context:
+        answer = asyncio.create_task(context.next(said.changed))
+        await turns(1)
+        context.put(heard, "hi")
+        assert await answer == "HI"
+        context.emit(number, 7)
+        assert await context.next(said.changed, timeout=20) == "hello 7"
+
+
+@on_loop
+async def test_any_thread_may_put_and_emit() -> None:
+    async with rs.Context(policy) as context:
+        waiting = [asyncio.create_task(context.next(signal)) for signal in (heard.changed, number)]
+        await turns(1)
+        await asyncio.to_thread(context.put, heard, "hi")
+        await asyncio.to_thread(context.emit, number, 7)
+        await asyncio.to_thread(context.wipe, number)
+        assert await asyncio.gather(*waiting) == ["hi", 7]
+        with pytest.raises(rs.UndeclaredError):
+            await asyncio.to_thread(context.emit, rs.Module("x").signal("y"))
+
+
+@on_loop
+async def test_order_from_one_thread_is_kept() -> None:
+    m = rs.Module("m")
+    s, seen = m.signal("s", int), m.slot("seen", ())
+    last = m.signal("last")
+
+    @m.rule(when=s, writes=seen)
+    async def note(ctx: rs.RuleContext) -> None:
+        ctx[seen] = (*ctx[seen], ctx.payload(s))
+
+    async with rs.Context(m) as context:
+
+        def speak() -> None:
+            for value in range(100):
+                context.emit(s, value)
+            context.emit(last)
+
+        end = asyncio.create_task(context.next(last))
+        await turns(1)
+        await asyncio.to_thread(speak)
+        await end
+        await context.quiet()
+        assert context.read(seen) == tuple(range(100))
+
+
+@on_loop
+async def test_several_may_wait_for_the_same() -> None:
+    async with rs.Context(policy) as context:
+        waiting = [asyncio.create_task(context.next(number)) for _ in range(3)]
+        await turns(1)
+        context.emit(number, 0)
+        assert await asyncio.gather(*waiting) == [0, 0, 0]
+        assert context._runner.futures == {} and context._runner.engine.watched == {}
+
+
+@on_loop
+async def test_next_gives_up_after_its_timeout_and_leaves_nothing_behind() -> None:
+    async with rs.Context(policy) as context:
+        with pytest.raises(TimeoutError, match="no demo:number within 0 s"):
+            await context.next(number, timeout=0)
+        with pytest.raises(TimeoutError, match=r"no demo:number within 0\.001 s"):
+            await context.next(number, timeout=0.001)
+        waiting = asyncio.create_task(context.next(number))
+        await turns(1)
+        waiting.cancel()
+        await turns()
+        assert waiting.cancelled()
+        assert context._runner.futures == {} and context._runner.engine.watched == {}
+
+
+@on_loop
+async def test_who_waits_when_the_context_ends_is_told() -> None:
+    async with rs.Context(policy) as context:
+        waiting = asyncio.create_task(context.next(number))
+        await turns(1)
+    with pytest.raises(rs.EngineError, match="the context ended before there was a demo:number"):
+        await waiting
+
+
+@on_loop
+async def test_quiet_waits_for_what_runs_and_ends_with_the_context() -> None:
+    m = rs.Module("m")
+    go, done = m.signal("go"), m.slot("done", 0)
+    gate = asyncio.Event()
+
+    @m.rule(when=go, writes=done)
+    async def work(ctx: rs.RuleContext) -> None:
+        await gate.wait()
+        ctx[done] = 1
+
+    @m.rule(when=rs.startup, background=True)
+    async def watch(ctx: rs.RuleContext) -> None:
+        await asyncio.get_running_loop().create_future()
+
+    async with rs.Context(m) as context:
+        await context.quiet()  # what is in the background does not count
+        context.emit(go)
+        waiting = asyncio.create_task(context.quiet())
+        await turns()
+        assert not waiting.done()
+        gate.set()
+        await waiting
+        assert context.read(done) == 1
+        gate.clear()
+        context.emit(go)
+        waiting = asyncio.create_task(context.quiet())
+        await turns()
+    await waiting  # nothing runs any more
+
+
+# ---------------------------------------------------------------------------------------- wrong names
+
+
+@pytest.mark.parametrize(
+    ("act", "text"),
+    [
+        (lambda c: c.put(rs.Module("demo").slot("hear"), 1), "no slot demo:hear; did you mean 'demo:heard'?"),
+        (lambda c: c.put(rs.Module("xy").slot("z"), 1), "no slot xy:z; add module xy to the context"),
+        (lambda c: c.put("heard", 1), "this context has no slot 'heard'"),
+        (
+            lambda c: c.emit(rs.Module("demo").signal("numbr")),
+            "no signal demo:numbr; did you mean 'demo:number'?",
+        ),
+        (lambda c: c.emit(heard), "no signal demo:heard; it is a slot: write demo:heard.changed"),
+        (lambda c: c.wipe(heard), "it is a slot: write demo:heard.changed"),
+        (lambda c: c.read(number), "this context has no slot demo:number"),
+        (lambda c: c.read(rs.Module("demo").slot("heard")), "this context has no slot demo:heard"),
+    ],
+)
+@on_loop
+async def test_names_that_the_context_does_not_have(act: Callable[[rs.Context], object], text: str) -> None:
+    async with rs.Context(policy) as context:
+        with pytest.raises(rs.UndeclaredError) as caught:
+            act(context)
+        assert text in str(caught.value)
+
+
+@on_loop
+async def test_waiting_for_a_signal_that_is_not_there() -> None:
+    async with rs.Context(policy) as context:
+        with pytest.raises(rs.UndeclaredError, match="it is a slot"):
+            await context.next(heard)
+        with pytest.raises(rs.DeclarationError, match="no rule 'demo:ecko'; did you mean 'demo:echo'"):
+            context.explain("demo:ecko")
+
+
+@on_loop
+async def test_a_collection_wants_a_mapping() -> None:
+    async with rs.Context(policy) as context:
+        with pytest.raises(
+            rs.RuleError, match="demo:people is a collection: write a mapping of keys to items"
+        ):
+            context.put(people, ["Ada"])
+        context.put(people, {"a": "Ada"})
+        assert dict(context.read(people)) == {"a": "Ada"}
+
+
+# ---------------------------------------------------------------------------------------- looking in
+
+
+@on_loop
+async def test_slots_have_values_of_their_own_in_each_context() -> None:
+    m = rs.Module("m")
+    things = m.slot("things", ["a"])
+    async with rs.Context(m) as one, rs.Context(m) as other:
+        one.read(things).append("b")
+        assert other.read(things) == ["a"] and things.default == ["a"]
+
+
+@on_loop
+async def test_a_snapshot_is_plain_data() -> None:
+    async with rs.Context(policy) as context:
+        context.put(people, {"a": object()})
+        context.emit(number, 1)
+        found = json.loads(json.dumps(context.snapshot()))
+        assert found["slots"]["demo:people"]["a"].startswith("<object object")
+        assert {"now", "slots", "spikes", "activations", "groups", "dropped", "retired"} <= set(found)
+
+
+@on_loop
+async def test_the_trace_is_kept_or_told_or_neither() -> None:
+    told: list[object] = []
+    for trace in (False, True, told.append):
+        async with rs.Context(policy, trace=trace) as context:
+            context.put(heard, "x")
+            await context.quiet()
+            kept = [type(record).__name__ for record in context.trace]
+            assert ("Started" in kept) == (trace is True)
+            assert ("ran" in str(context.explain(echo))) == (trace is True)
+    assert "Started" in [type(record).__name__ for record in told]
+
+
+# ---------------------------------------------------------------------------------------- settings, seed
+
+
+@on_loop
+async def test_settings_come_from_code_or_the_environment() -> None:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("RAVESTATE_DEMO_GREETING", "salut")
+        patch.setenv("RAVESTATE_DEMO_PAUSE", "4")
+        async with rs.Context(policy, settings={"demo": {"greeting": "hallo"}}) as context:
+            assert context.settings == {"demo": Options(greeting="hallo", pause=4.0)}
+            context.emit(number, 1)
+            await context.quiet()
+            assert context.read(said) == "hallo 1"
+
+
+def test_unknown_settings_are_refused() -> None:
+    with pytest.raises(rs.DeclarationErrors) as caught:
+        rs.Context(policy, settings={"demo": {"greting": "x"}, "dmo": {}})
+    assert "setting demo.greting: module 'demo' has no such setting; did you mean 'greeting'?" in str(
+        caught.value
+    )
+    assert "module 'dmo' is not part of this agent; did you mean 'demo'?" in str(caught.value)
+
+
+def test_the_numbers_of_declarations_follow_the_settings() -> None:
+    m = rs.Module("m", settings=Options)
+    s, done = m.signal("s"), m.slot("done", 0)
+
+    @m.rule(when=s.min_age(Options.pause), writes=done)
+    async def late(ctx: rs.RuleContext) -> None:
+        ctx[done] = ctx.now
+
+    with simulate(m, settings={"m": {"pause": 3.0}}) as sim:
+        sim.emit(s)
+        sim.advance(10)
+        assert sim.read(done) == 3.0
+
+
+def rolls(seed: int | None) -> list[float]:
+    m = rs.Module("m")
+    s, seen = m.signal("s"), m.slot("seen", ())
+
+    @m.rule(when=s, writes=seen)
+    async def roll(ctx: rs.RuleContext) -> None:
+        ctx[seen] = (*ctx[seen], ctx.random.random())
+
+    with simulate(m, seed=seed) as sim:
+        for _ in range(3):
+            sim.emit(s)
+        return list(sim.read(seen))
+
+
+def test_a_seed_repeats_all_random_choices() -> None:
+    assert rolls(5) == rolls(5) != rolls(6)
+    assert rolls(None) != rolls(None)
+
+
+# ---------------------------------------------------------------------------------------- rules that come later
+
+
+@on_loop
+async def test_a_rule_can_be_added_to_one_context() -> None:
+    rule = rs.Module("more").rule(when=number, writes=said, weight=2.0, name="louder")(loud)
+    async with rs.Context(policy) as one, rs.Context(policy) as other:
+        one.add_rule(rule)
+        for context in (one, other):
+            context.emit(number, 1)
+            await context.quiet()
+        assert (one.read(said), other.read(said)) == ("LOUD", "hello 1")
+        assert list(one.policy.rules)[-1] == "more:louder" and list(policy.rules) == [
+            "demo:echo",
+            "demo:count",
+        ]
+        with pytest.raises(rs.DeclarationErrors) as caught:
+            one.add_rule(rule)
+        assert "is in the policy already" in str(caught.value)
+
+
+async def loud(ctx: rs.RuleContext) -> None:
+    ctx[said] = "LOUD"
+
+
+def test_an_added_rule_follows_the_context_s_settings() -> None:
+    m = rs.Module("m", settings=Options)
+    s, done = m.signal("s"), m.slot("done", 0)
+    with simulate(m, settings={"m": {"pause": 3.0}}) as sim:
+
+        @rs.Module("m").rule(when=s.min_age(Options.pause), writes=done)
+        async def late(ctx: rs.RuleContext) -> None:
+            ctx[done] = ctx.now
+
+        sim.add_rule(late)
+        sim.emit(s)
+        sim.advance(10)
+        assert sim.read(done) == 3.0
+
+
+# ---------------------------------------------------------------------------------------- the end
+
+
+class Ending:
+    """A module whose rules note what becomes of them when the context ends."""
+
+    def __init__(self) -> None:
+        self.module = rs.Module("m")
+        self.go, self.then = self.module.signal("go"), self.module.signal("then")
+        self.told: list[str] = []
+
+    def rule(self, when: rs.Condition, **options: Any) -> Callable[[Any], Any]:
+        return self.module.rule(when=when, **options)
+
+
+def test_rules_for_shutdown_finish_and_long_runs_are_cancelled_and_clean_up() -> None:
+    ending = Ending()
+
+    @ending.rule(ending.go)
+    async def long(ctx: rs.RuleContext) -> None:
+        try:
+            await ctx.sleep(3600)
+        finally:
+            await ctx.sleep(1)
+            ending.told.append("cleaned up")
+
+    @ending.rule(rs.shutdown, emits=ending.then)
+    async def farewell(ctx: rs.RuleContext) -> None:
+        await ctx.sleep(2)
+        ending.told.append("farewell")
+        ctx.emit(ending.then)
+
+    @ending.rule(ending.then)
+    async def last_word(ctx: rs.RuleContext) -> None:
+        await ctx.sleep(1)
+        ending.told.append("last word")
+
+    with simulate(ending.module) as sim:
+        sim.emit(ending.go)
+    assert ending.told == ["farewell", "last word", "cleaned up"]
+    assert sim.failures == []
+
+
+def test_shutdown_is_given_so_much_time_and_no_more() -> None:
+    ending = Ending()
+
+    @ending.rule(rs.shutdown)
+    async def farewell(ctx: rs.RuleContext) -> None:
+        try:
+            await ctx.sleep(3600)
+        finally:
+            ending.told.append(f"cut off at {ctx.now:g} s")
+
+    with simulate(ending.module):
+        pass
+    assert ending.told == ["cut off at 5 s"]
+
+
+@on_loop
+async def test_a_plain_function_for_shutdown_finishes() -> None:
+    ending = Ending()
+
+    @ending.rule(rs.shutdown)
+    def farewell(ctx: rs.RuleContext) -> None:
+        ending.told.append("farewell")
+
+    async with rs.Context(ending.module):
+        pass
+    assert ending.told == ["farewell"]
+
+
+def test_who_refuses_to_end_is_given_up_and_named(caplog: pytest.LogCaptureFixture) -> None:
+    ending = Ending()
+
+    @ending.rule(ending.go)
+    async def stubborn(ctx: rs.RuleContext) -> None:
+        try:
+            while True:
+                try:
+                    await ctx.sleep(3600)
+                except asyncio.CancelledError:
+                    ending.told.append("no")
+        finally:
+            ending.told.append("closed")
+
+    with caplog.at_level(logging.WARNING, "ravestate"), simulate(ending.module) as sim:
+        sim.emit(ending.go)
+    assert ending.told == ["no", "closed"]
+    (message,) = caplog.messages
+    assert message.startswith("rule m:stubborn (") and "did not end within 5 s of being cancelled" in message
+
+
+@on_loop
+async def test_nobody_who_refuses_keeps_the_process() -> None:
+    ending = Ending()
+
+    @ending.rule(ending.go)
+    async def stubborn(ctx: rs.RuleContext) -> None:
+        while True:
+            try:
+                await asyncio.get_running_loop().create_future()
+            except asyncio.CancelledError:
+                ending.told.append("no")
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(runner_file, "GRACE", 0.001)
+        async with rs.Context(ending.module) as context:
+            context.emit(ending.go)
+            await turns()
+    assert ending.told == ["no"]
+    assert len(asyncio.all_tasks()) == 1
+
+
+@on_loop
+async def test_the_last_acts_are_still_seen() -> None:
+    ending = Ending()
+    goodbye = ending.module.slot("goodbye", "")
+
+    @ending.rule(rs.shutdown, writes=goodbye)
+    async def farewell(ctx: rs.RuleContext) -> None:
+        ctx[goodbye] = "bye"
+
+    async with rs.Context(ending.module) as context:
+        word = asyncio.create_task(context.next(goodbye.changed))
+        await turns(1)
+    assert await word == "bye" == context.read(goodbye)
+
+
+@pytest.mark.parametrize("who", ["rule", "plain rule", "outside", "thread"])
+@on_loop
+async def test_everybody_may_ask_to_stop(who: str) -> None:
+    ending = Ending()
+
+    @ending.rule(ending.go)
+    async def leave(ctx: rs.RuleContext) -> None:
+        ctx.stop()
+
+    @ending.rule(ending.then)
+    def leave_from_thread(ctx: rs.RuleContext) -> None:
+        ctx.stop()
+
+    async with rs.Context(ending.module) as context:
+        waiting = asyncio.create_task(context.until_stopped())
+        await turns(1)
+        assert not waiting.done()
+        if who == "rule":
+            context.emit(ending.go)
+        elif who == "plain rule":
+            context.emit(ending.then)
+        elif who == "outside":
+            context.ask_to_stop()
+        else:
+            await asyncio.to_thread(context.ask_to_stop)
+        await waiting

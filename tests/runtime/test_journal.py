@@ -1,0 +1,147 @@
+"""A journal of a real run, fed to a fresh engine, gives the same effects (L24)."""
+
+import asyncio
+
+import ravestate as rs
+from ravestate.engine.effects import Cancel, Effect, Run
+from ravestate.engine.engine import Engine
+from ravestate.engine.events import AddRule, Emit, Finish, Start, Stop, Write
+from ravestate.engine.trace import Record
+from ravestate.policy.policy import Policy
+from ravestate.runtime.journal import Entry, Journal, Taken, replay
+from runtime.on_loop import on_loop, turns
+
+m = rs.Module("m")
+heard = m.slot("heard", "", always=True)
+question, stop = m.signal("question"), m.signal("stop")
+said, people = m.slot("said", "", always=True), m.collection("people")
+
+
+@m.rule(when=heard.changed, emits=question)
+async def classify(ctx: rs.RuleContext) -> None:
+    await asyncio.sleep(0)
+    if ctx.payload(heard.changed).endswith("?"):
+        ctx.emit(question)
+
+
+@m.rule(when=heard.changed, writes=said)
+async def chat(ctx: rs.RuleContext) -> None:
+    ctx[said] = "I see"
+
+
+@m.rule(when=question, writes=said, cooldown=30.0)
+async def answer(ctx: rs.RuleContext) -> None:
+    ctx[said] = "because"
+
+
+@m.rule(when=question & stop, writes=said)
+async def refuse(ctx: rs.RuleContext) -> rs.Resign:
+    return rs.Resign("never")
+
+
+@m.rule(when=heard.changed, writes=people, until=stop)
+def remember(ctx: rs.RuleContext) -> None:
+    ctx[people].add(str(len(ctx[people])), ctx.payload(heard.changed))
+
+
+async def conversation(context: rs.Context) -> None:
+    """Inputs alone and together, waited for and not, and a rule that comes later."""
+    context.put(heard, "hello")
+    await context.quiet()
+    context.put(heard, "why?")
+    context.emit(stop)
+    context.put(heard, "why not?")
+    await turns(2)
+    context.put(heard, "no")
+    await context.quiet()
+    context.explain("m:chat")
+
+    async def late(ctx: rs.RuleContext) -> None:
+        raise ValueError("late")
+
+    context.add_rule(rs.Module("late").rule(when=heard.changed, name="late")(late))
+    for word in ("a?", "b", "c?"):
+        context.put(heard, word)
+    await context.quiet()
+
+
+async def recorded() -> tuple[Policy, list[Entry], list[Record], list[object]]:
+    journal, policy = Journal(), rs.compile(m)
+    records: list[Record] = []
+    async with rs.Context(policy, journal=journal, trace=records.append, patience=0.01) as context:
+        await conversation(context)
+        seen = [context.read(slot) for slot in (heard, said)] + [dict(context.read(people))]
+    return policy, journal.entries, records, seen
+
+
+def shape(effects: list[list[Effect]]) -> list[str]:
+    return [repr((e.run, e.rule.name)) if isinstance(e, Run) else repr(e) for batch in effects for e in batch]
+
+
+@on_loop
+async def test_replay_repeats_the_run_to_the_letter() -> None:
+    policy, entries, records, seen = await recorded()
+    engine = Engine(policy, patience=0.01)
+    again: list[Record] = []
+    engine.tracer = again.append
+    replay(engine, entries)
+    assert again == records
+    assert [engine.read(engine.policy.slot_of[f"m:{name}"].index) for name in ("heard", "said")] == seen[:2]
+    assert dict(engine.read(engine.policy.slot_of["m:people"].index)) == seen[2]
+
+
+@on_loop
+async def test_replay_calls_nothing_and_gives_the_same_effects_each_time() -> None:
+    policy, entries, *_ = await recorded()
+    first = shape(replay(Engine(policy, patience=0.01), entries))
+    second = shape(replay(Engine(policy, patience=0.01), entries))
+    assert first == second
+    assert any("m:answer" in effect for effect in first)
+
+
+@on_loop
+async def test_every_event_is_kept_in_order_with_its_time() -> None:
+    _, entries, *_ = await recorded()
+    kinds = [type(entry.event) for entry in entries]
+    assert kinds[0] is Start and kinds.count(Stop) == 1 and kinds.count(AddRule) == 1
+    assert {Write, Emit, Finish, Taken} <= set(kinds)
+    times = [entry.time for entry in entries]
+    assert times == sorted(times) and times[0] >= 0.0
+
+
+@on_loop
+async def test_a_function_may_be_the_journal() -> None:
+    told: list[tuple[object, float]] = []
+    async with rs.Context(m, journal=lambda event, time: told.append((event, time))) as context:
+        context.emit(stop)
+    assert Emit("m:stop") in [event for event, _ in told]
+
+
+def test_a_journal_keeps_events_as_they_were() -> None:
+    journal = Journal()
+    event = Emit("m:stop", "before")
+    journal(event, 1.0)
+    event.payload = "after"
+    assert journal.entries == [Entry(1.0, Emit("m:stop", "before"))]
+
+
+def test_an_interrupted_run_is_interrupted_again() -> None:
+    n = rs.Module("n")
+    go, halt = n.signal("go"), n.signal("halt")
+
+    @n.rule(when=go, until=halt)
+    async def long(ctx: rs.RuleContext) -> None:
+        await asyncio.get_running_loop().create_future()
+
+    journal, policy = Journal(), rs.compile(n)
+
+    async def main() -> None:
+        async with rs.Context(policy, journal=journal) as context:
+            context.emit(go)
+            await turns()
+            context.emit(halt)
+            await context.quiet()
+
+    asyncio.run(main())
+    effects = [effect for batch in replay(Engine(policy), journal.entries) for effect in batch]
+    assert [effect.reason for effect in effects if isinstance(effect, Cancel)] == ["interrupted"]

@@ -1,0 +1,378 @@
+"""What a rule function is given: views, acts, and refusals that say what to write."""
+
+import re
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+import ravestate as rs
+from ravestate.testing import simulate
+
+HERE = re.escape(__file__)
+
+
+class Options(rs.Settings):
+    word: str = "hi"
+
+
+class Scene:
+    def __init__(self) -> None:
+        self.module = rs.Module("m", settings=Options)
+        self.go = self.module.signal("go", payload=int)
+        self.other, self.out = self.module.signal("other"), self.module.signal("out", payload=str)
+        self.mood, self.note = self.module.slot("mood", "calm"), self.module.slot("note", "")
+        self.lit = self.module.flag("lit")
+        self.people = self.module.collection("people")
+        self.found: list[Any] = []
+
+    def run(
+        self, act: Callable[[rs.RuleContext], object], when: rs.Condition | None = None, **options: Any
+    ) -> None:
+        """Let a rule do something, once, and keep what it returns or fails with."""
+
+        async def doer(ctx: rs.RuleContext) -> None:
+            self.found.append(act(ctx))
+
+        self.module.rule(when=self.go if when is None else when, **options)(doer)
+
+    def outcome(self, payload: int = 0) -> Any:
+        with simulate(self.module) as sim:
+            sim.emit(self.go, payload)
+            if sim.failures:
+                return sim.failures[0][1]
+        return self.found[-1]
+
+
+@pytest.fixture
+def scene() -> Scene:
+    return Scene()
+
+
+def write(slot: rs.Slot[Any], value: object) -> Callable[[rs.RuleContext], None]:
+    def act(ctx: rs.RuleContext) -> None:
+        ctx[slot] = value
+
+    return act
+
+
+# ---------------------------------------------------------------------------------------- reading
+
+
+def test_slots_that_are_read_or_written_can_be_read(scene: Scene) -> None:
+    scene.run(lambda ctx: (ctx[scene.mood], ctx[scene.note]), reads=scene.mood, writes=scene.note)
+    assert scene.outcome() == ("calm", "")
+
+
+def test_its_own_writes_are_seen_and_those_of_others_are_not(scene: Scene) -> None:
+    seen: list[str] = []
+
+    @scene.module.rule(when=scene.go, reads=scene.mood, writes=scene.note)
+    async def slow(ctx: rs.RuleContext) -> None:
+        ctx[scene.note] = "mine"
+        await ctx.sleep(1)
+        seen.extend((ctx[scene.mood], ctx[scene.note]))
+
+    with simulate(scene.module) as sim:
+        sim.emit(scene.go)
+        sim.put(scene.mood, "changed meanwhile")
+        sim.put(scene.note, "changed meanwhile")
+        sim.advance(1)
+    assert seen == ["calm", "mine"]
+
+
+@pytest.mark.parametrize(
+    ("slot", "text"),
+    [
+        ("mood", "read m:mood without declaring it: add reads=m.mood to @m.rule(...)"),
+        ("people", "read m:people without declaring it: add reads=m.people"),
+    ],
+)
+def test_an_undeclared_read_names_the_line_to_add(scene: Scene, slot: str, text: str) -> None:
+    scene.run(lambda ctx: ctx[getattr(scene, slot)])
+    failure = scene.outcome()
+    assert isinstance(failure, rs.UndeclaredError) and text in str(failure)
+    assert re.match(rf"rule m:doer \({HERE}:\d+\) ", str(failure))
+
+
+@pytest.mark.parametrize("key", ["mood", None, 3])
+def test_what_is_no_slot_is_told_so(scene: Scene, key: Any) -> None:
+    scene.run(lambda ctx: ctx[key], reads=scene.mood)
+    assert f"read {key!r}, which is no slot: write ctx[slot]" in str(scene.outcome())
+
+
+def test_a_signal_in_place_of_its_slot(scene: Scene) -> None:
+    scene.run(lambda ctx: ctx[scene.mood.changed], reads=scene.mood)
+    assert "read m:mood:changed, which is no slot" in str(scene.outcome())
+
+
+# ---------------------------------------------------------------------------------------- writing
+
+
+def test_reading_is_no_leave_to_write(scene: Scene) -> None:
+    scene.run(write(scene.mood, "x"), reads=scene.mood, writes=scene.note)
+    text = str(scene.outcome())
+    assert "wrote m:mood without declaring it: add writes=m.mood to @m.rule(...)" in text
+
+
+def test_a_misspelt_slot_is_met_by_the_nearest(scene: Scene) -> None:
+    other = scene.module.slot("notes", "")
+    scene.run(write(other, "x"), writes=scene.note)
+    assert str(scene.outcome()).endswith("; did you mean 'm:note'?")
+
+
+def test_a_write_signals_at_once(scene: Scene) -> None:
+    order: list[str] = []
+
+    @scene.module.rule(when=scene.lit.true, reads=scene.lit)
+    async def follows(ctx: rs.RuleContext) -> None:
+        order.append("heard")
+
+    @scene.module.rule(when=scene.go, writes=scene.lit)
+    async def writes(ctx: rs.RuleContext) -> None:
+        ctx[scene.lit] = True
+        await ctx.sleep(1)
+        order.append("ended")
+
+    with simulate(scene.module) as sim:
+        sim.emit(scene.go)
+        assert sim.read(scene.lit) is True and order == ["heard"]
+        sim.advance(1)
+    assert order == ["heard", "ended"]
+
+
+# ---------------------------------------------------------------------------------------- collections
+
+
+def test_collections_are_mappings_with_add_and_remove(scene: Scene) -> None:
+    def act(ctx: rs.RuleContext) -> object:
+        people = ctx[scene.people]
+        people.add("a", "Ada")
+        people.add("b", "Bob")
+        people.remove("b")
+        people.remove("nobody")
+        assert (dict(people), len(people), "a" in people, people["a"], list(people)) == (
+            {"a": "Ada"}, 1, True, "Ada", ["a"],
+        )  # fmt: skip
+        assert repr(people) == "m:people{'a': 'Ada'}"
+        assert dict(ctx[scene.people]) == {"a": "Ada"}
+        ctx[scene.people] = {"c": "Cleo"}
+        return dict(ctx[scene.people])
+
+    events: list[tuple[str, str, object]] = []
+    for what in ("added", "removed"):
+        signal = getattr(scene.people, what)
+
+        async def note(ctx: rs.RuleContext, what: str = what, signal: rs.Signal[rs.Entry] = signal) -> None:
+            events.append((what, *ctx.payload(signal)))
+
+        scene.module.rule(when=signal, name=f"note_{what}")(note)
+    scene.run(act, writes=scene.people)
+    assert scene.outcome() == {"c": "Cleo"}
+    assert sorted(events) == [
+        ("added", "a", "Ada"), ("added", "b", "Bob"), ("added", "c", "Cleo"),
+        ("removed", "a", "Ada"), ("removed", "b", "Bob"),
+    ]  # fmt: skip
+
+
+def test_a_view_of_a_collection_does_not_forget_what_another_wrote(scene: Scene) -> None:
+    def act(ctx: rs.RuleContext) -> object:
+        one, other = ctx[scene.people], ctx[scene.people]
+        one.add("a", 1)
+        other.add("b", 2)
+        return dict(ctx[scene.people])
+
+    scene.run(act, writes=scene.people)
+    assert scene.outcome() == {"a": 1, "b": 2}
+
+
+@pytest.mark.parametrize("act", [lambda p: p.add("a", 1), lambda p: p.remove("a")])
+def test_a_collection_that_is_only_read_cannot_be_changed(scene: Scene, act: Callable[[Any], None]) -> None:
+    scene.run(lambda ctx: act(ctx[scene.people]), reads=scene.people)
+    assert "wrote m:people without declaring it: add writes=m.people" in str(scene.outcome())
+
+
+@pytest.mark.parametrize("value", [5, ["Ada"], None, "Ada"])
+def test_a_collection_is_not_written_like_a_value(scene: Scene, value: object) -> None:
+    scene.run(write(scene.people, value), writes=scene.people)
+    failure = scene.outcome()
+    assert isinstance(failure, rs.RuleError)
+    kind = type(value).__name__
+    assert (
+        f"wrote {kind} to the collection m:people: write a mapping of keys to items, or ctx[people].add(key, item)"
+        in (str(failure))
+    )
+
+
+# ---------------------------------------------------------------------------------------- payloads, emitting
+
+
+@pytest.mark.parametrize("payload", [7, 0, "", None, False])
+def test_payloads_come_through_also_falsy_ones(scene: Scene, payload: Any) -> None:
+    scene.run(lambda ctx: ctx.payload(scene.go))
+    assert scene.outcome(payload) is payload or scene.outcome(payload) == payload
+
+
+def test_the_payload_of_the_other_clause_is_none(scene: Scene) -> None:
+    scene.run(lambda ctx: (ctx.payload(scene.go), ctx.payload(scene.other)), when=scene.go | scene.other)
+    assert scene.outcome(3) == (3, None)
+
+
+@pytest.mark.parametrize(
+    ("ask", "text"),
+    [
+        (
+            lambda s: s.other,
+            "asked for the payload of m:other, which its condition does not name: it has m:go, m:mood:changed",
+        ),
+        (lambda s: s.mood, "asked for the payload of m:mood, .*; did you mean 'm:mood:changed'"),
+        (lambda s: "go", "asked for the payload of 'go', which its condition does not name"),
+    ],
+)
+def test_payloads_of_other_signals_are_refused(scene: Scene, ask: Callable[[Scene], Any], text: str) -> None:
+    scene.run(lambda ctx: ctx.payload(ask(scene)), when=scene.go | scene.mood.changed)
+    failure = scene.outcome()
+    assert isinstance(failure, rs.UndeclaredError)
+    assert re.search(text, str(failure))
+
+
+def test_an_emitted_signal_carries_its_payload(scene: Scene) -> None:
+    scene.run(lambda ctx: ctx.emit(scene.out, "word"), emits=scene.out)
+    heard: list[object] = []
+
+    @scene.module.rule(when=scene.out)
+    async def hear(ctx: rs.RuleContext) -> None:
+        heard.append(ctx.payload(scene.out))
+
+    scene.outcome()
+    assert heard == ["word"]
+
+
+@pytest.mark.parametrize(
+    ("what", "text"),
+    [
+        (lambda s: s.other, "emitted m:other without declaring it: add emits=m.other to @m.rule(...)"),
+        (lambda s: rs.Module("m").signal("outt"), "add emits=m.outt to @m.rule(...); did you mean 'm:out'?"),
+        (
+            lambda s: s.mood,
+            "emitted m:mood, which is a slot: write ctx[mood] = value, which signals, or ctx.emit(signal)",
+        ),
+        (lambda s: "out", "emitted 'out' without declaring it"),
+    ],
+)
+def test_undeclared_emissions_are_refused(scene: Scene, what: Callable[[Scene], Any], text: str) -> None:
+    scene.run(lambda ctx: ctx.emit(what(scene)), emits=scene.out)
+    failure = scene.outcome()
+    assert isinstance(failure, rs.UndeclaredError) and text in str(failure)
+
+
+def test_wiping_withdraws_and_unknown_signals_are_refused(scene: Scene) -> None:
+    scene.run(lambda ctx: ctx.wipe(scene.mood))
+    assert "no signal 'm:mood'; did you mean 'm:mood:changed'" in str(scene.outcome())
+    scene = Scene()
+    both: list[str] = []
+
+    @scene.module.rule(when=scene.other & scene.out)
+    async def together(ctx: rs.RuleContext) -> None:
+        both.append("met")
+
+    scene.run(lambda ctx: ctx.wipe(scene.other))
+    with simulate(scene.module) as sim:
+        sim.emit(scene.other)
+        sim.emit(scene.go)
+        sim.emit(scene.out)
+        assert both == [] and sim.failures == []
+
+
+# ---------------------------------------------------------------------------------------- the rest of what it offers
+
+
+def test_what_else_a_rule_is_given(scene: Scene) -> None:
+    @scene.module.rule(when=scene.go)
+    async def look(ctx: rs.RuleContext) -> None:
+        scene.found.append((ctx.now, ctx.settings.word, ctx.log.name, ctx.rule.name))
+        await ctx.sleep(2.5)
+        scene.found.append(ctx.now)
+
+    with simulate(scene.module) as sim:
+        sim.advance(1)
+        sim.emit(scene.go)
+        sim.advance(5)
+    assert scene.found == [(1.0, "hi", "ravestate.m.look", "m:look"), 3.5]
+
+
+def test_a_module_without_settings_has_none() -> None:
+    m = rs.Module("m")
+    found: list[object] = []
+
+    @m.rule(when=rs.startup)
+    async def look(ctx: rs.RuleContext) -> None:
+        found.append(ctx.settings)
+
+    with simulate(m):
+        assert found == [None]
+
+
+def test_a_rule_may_add_a_rule_and_wait_for_quiet(scene: Scene) -> None:
+    late = rs.Module("late").rule(when=scene.other, writes=scene.note, name="late")(note_late(scene))
+
+    @scene.module.rule(when=scene.go, emits=scene.other, detached=True, background=True)
+    async def grow(ctx: rs.RuleContext) -> None:
+        ctx.add_rule(late)
+        ctx.emit(scene.other)
+        await ctx.quiet()
+        scene.found.append("quiet")
+
+    with simulate(scene.module) as sim:
+        sim.emit(scene.go)
+        assert sim.read(scene.note) == "late" and scene.found == ["quiet"]
+        assert sim.failures == []
+
+
+def note_late(scene: Scene) -> Any:
+    async def late(ctx: rs.RuleContext) -> None:
+        await ctx.sleep(0)
+        ctx[scene.note] = "late"
+
+    return late
+
+
+def test_a_rule_that_does_not_fit_cannot_be_added(scene: Scene) -> None:
+    strange = rs.Module("far").rule(when=rs.Module("far").signal("x"), name="strange")(note_late(scene))
+    scene.run(lambda ctx: ctx.add_rule(strange))
+    failure = scene.outcome()
+    assert isinstance(failure, rs.DeclarationErrors) and "unknown signal far:x" in str(failure)
+
+
+def test_a_rule_may_write_while_it_cleans_up(scene: Scene) -> None:
+    @scene.module.rule(when=scene.go, writes=scene.note, until=scene.other)
+    async def long(ctx: rs.RuleContext) -> None:
+        try:
+            await ctx.sleep(60)
+        finally:
+            ctx[scene.note] = ctx.told
+
+    with simulate(scene.module) as sim:
+        sim.emit(scene.go)
+        sim.emit(scene.other)
+        assert sim.read(scene.note) == "interrupted" and sim.failures == []
+
+
+@pytest.mark.parametrize("act", ["write", "emit", "wipe", "add"])
+def test_a_context_that_is_kept_does_nothing_after_the_run(scene: Scene, act: str) -> None:
+    kept: list[rs.RuleContext] = []
+    scene.run(kept.append, writes=(scene.note, scene.people), emits=scene.out)
+    with simulate(scene.module) as sim:
+        sim.emit(scene.go)
+        ctx = kept[0]
+        late: dict[str, Callable[[], object]] = {
+            "write": lambda: write(scene.note, "late")(ctx),
+            "emit": lambda: ctx.emit(scene.out),
+            "wipe": lambda: ctx.wipe(scene.out),
+            "add": lambda: ctx[scene.people].add("a", 1),
+        }
+        with pytest.raises(
+            rs.RunEnded, match=r"rule m:doer acted after its run was over \(the function has returned\)"
+        ):
+            late[act]()
+        assert sim.read(scene.note) == "" and dict(sim.read(scene.people)) == {}

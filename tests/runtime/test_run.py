@@ -1,0 +1,161 @@
+"""Running until told to end: by a rule, by one Ctrl-C in order, by a second at once."""
+
+import asyncio
+import os
+import signal
+import subprocess
+import sys
+import textwrap
+import threading
+from pathlib import Path
+
+import pytest
+
+import ravestate as rs
+from ravestate.runtime.run import run_context
+
+LIMIT = 20
+
+
+def test_a_rule_ends_it_in_order() -> None:
+    m = rs.Module("m")
+    told: list[str] = []
+
+    @m.rule(when=rs.startup)
+    async def leave(ctx: rs.RuleContext) -> None:
+        told.append("start")
+        ctx.stop()
+
+    @m.rule(when=rs.shutdown)
+    async def end(ctx: rs.RuleContext) -> None:
+        await asyncio.sleep(0)
+        told.append("end")
+
+    rs.run(m)
+    assert told == ["start", "end"]
+
+
+def test_options_are_those_of_a_context() -> None:
+    class Options(rs.Settings):
+        word: str = "a"
+
+    m = rs.Module("m", settings=Options)
+    told: list[object] = []
+
+    @m.rule(when=rs.startup)
+    async def leave(ctx: rs.RuleContext) -> None:
+        told.append(ctx.settings.word)
+        told.append(ctx.random.random())
+        ctx.stop()
+
+    for _ in range(2):
+        rs.run(m, settings={"m": {"word": "b"}}, seed=1)
+    assert told[:2] == told[2:] and told[0] == "b"
+
+
+def test_faults_are_raised_before_anything_runs() -> None:
+    with pytest.raises(rs.DeclarationErrors):
+        rs.run("nonsense")
+
+
+def test_it_runs_in_a_thread_too() -> None:
+    m = rs.Module("m")
+    told: list[str] = []
+
+    @m.rule(when=rs.startup)
+    async def leave(ctx: rs.RuleContext) -> None:
+        told.append("ran")
+        ctx.stop()
+
+    thread = threading.Thread(target=rs.run, args=(m,))
+    thread.start()
+    thread.join(LIMIT)
+    assert told == ["ran"]
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_signal_handlers_are_there_while_it_runs_and_gone_after_it(number: signal.Signals) -> None:
+    m = rs.Module("m")
+    before = signal.getsignal(number)
+
+    @m.rule(when=rs.startup)
+    async def hit(ctx: rs.RuleContext) -> None:
+        os.kill(os.getpid(), number)
+
+    async def main() -> None:
+        async with asyncio.timeout(LIMIT):
+            await run_context(rs.Context(m))
+
+    asyncio.run(main())
+    assert signal.getsignal(number) is before
+
+
+AGENT = """
+    import asyncio, sys
+    import ravestate as rs
+
+    m = rs.Module("m")
+
+    def tell(text):
+        print(text, flush=True)
+
+    @m.rule(when=rs.startup)
+    async def long(ctx):
+        tell("running")
+        try:
+            await asyncio.get_running_loop().create_future()
+        finally:
+            tell("cleaned up")
+
+    @m.rule(when=rs.shutdown)
+    async def farewell(ctx):
+        tell("farewell")
+        if "slow" in sys.argv:
+            try:
+                await asyncio.get_running_loop().create_future()
+            finally:
+                tell("broken off")
+        while "stubborn" in sys.argv:
+            try:
+                await asyncio.get_running_loop().create_future()
+            except asyncio.CancelledError:
+                tell("no")
+
+    rs.run(m)
+    tell("ended")
+"""
+
+
+def started(folder: Path, *arguments: str) -> subprocess.Popen[str]:
+    file = folder / "agent.py"
+    file.write_text(textwrap.dedent(AGENT), encoding="utf-8")
+    return subprocess.Popen(
+        [sys.executable, str(file), *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_one_signal_ends_it_in_order(tmp_path: Path, number: signal.Signals) -> None:
+    with started(tmp_path) as process:
+        assert process.stdout is not None
+        assert process.stdout.readline() == "running\n"
+        process.send_signal(number)
+        out, errors = process.communicate(timeout=LIMIT)
+    assert out.splitlines() == ["farewell", "cleaned up", "ended"]
+    assert (process.returncode, errors) == (0, "")
+
+
+@pytest.mark.parametrize(
+    ("manner", "said"),
+    [("slow", ["broken off", "cleaned up", "ended"]), ("stubborn", ["cleaned up", "ended", "no"])],
+)
+def test_a_second_signal_breaks_off(tmp_path: Path, manner: str, said: list[str]) -> None:
+    with started(tmp_path, manner) as process:
+        assert process.stdout is not None
+        assert process.stdout.readline() == "running\n"
+        process.send_signal(signal.SIGINT)
+        assert process.stdout.readline() == "farewell\n"
+        process.send_signal(signal.SIGINT)
+        out, errors = process.communicate(timeout=LIMIT)
+    assert sorted(out.splitlines()) == said
+    assert (process.returncode, errors) == (0, "")
