@@ -37,6 +37,8 @@ class Contests(Holdings):
         """Offer a spike to the contests of its signal."""
         for clauses in signal.contests:
             if spike.group.finished(clauses[0].rule.slots):
+                for clause in clauses if self.tracer is not None else ():
+                    self._pass_by(clause, spike, "consumed")
                 continue  # consumed for all of them
             if self.retired:
                 clauses = tuple(c for c in clauses if c.rule.index not in self.retired)

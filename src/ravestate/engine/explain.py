@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from ravestate.engine.activation import GATHERING, NEVER, WAITING, Activation
-from ravestate.engine.trace import GaveUp, Held, Pressed, Record, Settled, Started, Waits
+from ravestate.engine.trace import GaveUp, Held, Passed, Pressed, Record, Settled, Started, Waits
 from ravestate.policy.plan import Clause, RulePlan
 
 if TYPE_CHECKING:
@@ -164,6 +164,8 @@ def _history(rule: str, records: Iterable[Record]) -> Iterable[str]:
                 yield f"{record.time:.3f} s: took {record.signal}{lacking}"
             case GaveUp(rule=name) if name == rule:
                 yield f"{record.time:.3f} s: gave {record.signal} up: {WHY[record.reason]}"
+            case Passed(rule=name) if name == rule:
+                yield f"{record.time:.3f} s: did not take {record.signal}: {WHY_NOT[record.reason]}"
             case Waits(rule=name) if name == rule:
                 until = f" until {record.until:.3f} s at the latest" if record.until is not None else ""
                 yield f"{record.time:.3f} s: was ready, and waited for {', '.join(record.for_)}{until}"
@@ -181,6 +183,12 @@ def _history(rule: str, records: Iterable[Record]) -> Iterable[str]:
             case _:
                 pass
 
+
+WHY_NOT = {
+    "payload": "its payload did not fit",
+    "consumed": "another rule had answered its cause",
+    "caused": "the rule itself was among its causes",
+}
 
 WHY = {
     "age": "too old",

@@ -235,6 +235,13 @@ class Holdings:
                 )
             )
 
+    def _pass_by(self, clause: Clause, spike: Spike, reason: str) -> None:
+        """A rule that hears the signal does not take the spike; this is only told."""
+        if self.tracer is not None:
+            self.tracer(
+                trace.Passed(self.now, clause.rule.name, clause.number, spike.id, spike.signal.name, reason)
+            )
+
     def _update(self, activation: Activation) -> None:
         """Its spikes have changed, or become old enough: it may be ready (L14), or wait for an age."""
         clause = activation.clause

@@ -101,11 +101,14 @@ class Pool(Contests):
             return
         for predicate in need.predicates:
             if not self._test(predicate, spike.payload, rule):
+                self._pass_by(clause, spike, "payload")
                 return
         if not need.detached:
             if clause.cyclic and spike.descends_from(rule.index):
+                self._pass_by(clause, spike, "caused")
                 return
             if spike.group.taken and spike.group.finished(rule.slots):
+                self._pass_by(clause, spike, "consumed")
                 return
         lacking = self.lacking.get(need)
         if lacking:

@@ -15,6 +15,7 @@ __all__ = [
     "GaveUp",
     "Held",
     "Merged",
+    "Passed",
     "Pressed",
     "Record",
     "Set",
@@ -94,6 +95,18 @@ class GaveUp:
 
 
 @dataclass(frozen=True, slots=True)
+class Passed:
+    """A spike passed a rule by: its ``payload`` did not fit, its cause was ``consumed``, or the rule had ``caused`` it."""
+
+    time: float
+    rule: str
+    clause: int
+    spike: int
+    signal: str
+    reason: str
+
+
+@dataclass(frozen=True, slots=True)
 class Waits:
     """A ready activation is kept waiting, for rivals or for holders of a slot (L15)."""
 
@@ -148,5 +161,5 @@ class Settled:
     fired: bool
 
 
-Record = Born | Dropped | Merged | Set | Held | GaveUp | Waits | Pressed | Started | Told | Settled
+Record = Born | Dropped | Merged | Set | Held | GaveUp | Passed | Waits | Pressed | Started | Told | Settled
 Tracer = Callable[[Record], None]
