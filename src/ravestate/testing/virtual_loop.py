@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import selectors
 from collections.abc import Callable
+from typing import Any
 
 __all__ = ["VirtualLoop"]
 
@@ -15,7 +16,8 @@ REAL_LIMIT = 30.0
 class VirtualLoop(asyncio.SelectorEventLoop):
     """Runs as fast as it can, until nothing is left to do before `goal`.
 
-    Plain functions in worker threads take no virtual time: while `busy()` names some, the loop waits for them.
+    Plain functions in threads take no virtual time: while `busy()` names some, or `asyncio.to_thread` runs one, the
+    loop waits for them.
     """
 
     def __init__(self) -> None:
@@ -23,11 +25,29 @@ class VirtualLoop(asyncio.SelectorEventLoop):
         self.goal: float | None = None
         """Virtual time at which `run_to` stops."""
         self.busy: Callable[[], list[str]] = list
+        self._lent: dict[asyncio.Future[Any], str] = {}
         super().__init__(_Selector(self))
 
     def time(self) -> float:
         """Virtual seconds since the loop was made."""
         return self._virtual
+
+    def run_in_executor(self, executor: Any, func: Callable[..., Any], *args: Any) -> asyncio.Future[Any]:
+        """As in any loop; virtual time waits for the function."""
+        future: asyncio.Future[Any] = super().run_in_executor(executor, func, *args)
+        called = getattr(func, "args", (func,))[0]  # within the partials of asyncio.to_thread
+        self._lent[future] = getattr(called, "__qualname__", repr(called))
+        future.add_done_callback(lambda future: self._lent.pop(future, None))
+        return future
+
+    def kept_by(self) -> list[str]:
+        """The names of the plain functions that are waited for."""
+        return [*self.busy(), *self._lent.values()]
+
+    def wait_no_more(self) -> None:
+        """Do not wait for plain functions any more."""
+        self.busy = list
+        self._lent.clear()
 
     def run_to(self, goal: float) -> None:
         """Run until all that happens at or before `goal` (virtual seconds) has happened."""
@@ -43,7 +63,7 @@ class VirtualLoop(asyncio.SelectorEventLoop):
         timers: list[asyncio.TimerHandle] = vars(self)["_scheduled"]  # of BaseEventLoop
         due: float | None = timers[0].when() if timers else None
         if self.goal is not None and (due is None or due > self.goal):
-            self._virtual = self.goal
+            self._virtual = max(self._virtual, self.goal)
             self.stop()
         elif due is None:
             raise RuntimeError("everything waits for something that will never happen")
@@ -60,11 +80,11 @@ class _Selector(selectors.DefaultSelector):  # type: ignore[misc,valid-type]  # 
         events = super().select(0)
         if events or (timeout is not None and timeout <= 0):
             return events
-        busy = self._loop.busy()
+        busy = self._loop.kept_by()
         if busy:
             events = super().select(REAL_LIMIT)
             if not events:
-                self._loop.busy = list  # nobody waits for it a second time
+                self._loop.wait_no_more()
                 raise TimeoutError(
                     f"{' and '.join(busy)} kept virtual time waiting for {REAL_LIMIT:g} real seconds: a plain function "
                     "takes real time; to wait in virtual time write async def and await ctx.sleep(seconds)"

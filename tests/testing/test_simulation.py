@@ -1,0 +1,393 @@
+"""Simulated contexts: the real runtime, in virtual time."""
+
+import asyncio
+from asyncio import sleep  # in here it costs no real time
+from typing import Any
+
+import pytest
+
+import ravestate as rs
+from ravestate.engine.trace import Started
+from ravestate.modules import rawio
+from ravestate.testing import simulate
+
+
+class Options(rs.Settings):
+    greeting: str = "hello"
+
+
+def talk() -> rs.Module:
+    """A module that greets, answers, and is bored by nobody."""
+    module = rs.Module("talk", requires=[rawio], settings=Options)
+
+    @module.rule(when=rs.startup, writes=rawio.output)
+    async def greet(ctx: rs.RuleContext) -> None:
+        ctx[rawio.output] = ctx.settings.greeting
+
+    @module.rule(when=rawio.input.changed, writes=rawio.output)
+    async def answer(ctx: rs.RuleContext) -> rs.Resign | None:
+        if not ctx.payload(rawio.input.changed):
+            return rs.Resign("nothing was said")
+        await ctx.sleep(2)
+        ctx[rawio.output] = ctx.payload(rawio.input.changed).upper()
+        return None
+
+    @module.rule(when=rs.shutdown, writes=rawio.output)
+    async def farewell(ctx: rs.RuleContext) -> None:
+        ctx[rawio.output] = "bye"
+
+    return module
+
+
+def clock() -> tuple[rs.Module, rs.Signal[Any], list[float]]:
+    """A module with one signal, and a list for the times at which its rule gets somewhere."""
+    module = rs.Module("clock")
+    return module, module.signal("go"), []
+
+
+# ---------------------------------------------------------------------------------------- what is told
+
+
+def test_what_is_said_is_kept_from_startup_to_the_end() -> None:
+    with simulate(talk()) as sim:
+        assert sim.said == ["hello"]
+        sim.say("you")
+        assert sim.said == ["hello"]
+        sim.advance(2)
+        assert sim.said == ["hello", "YOU"]
+    assert sim.said == ["hello", "YOU", "bye"]
+
+
+def test_what_fired_did_not_resign_and_stands_in_order_of_finishing() -> None:
+    module, go, _ = clock()
+
+    @module.rule(when=go)
+    async def slow(ctx: rs.RuleContext) -> None:
+        await ctx.sleep(1)
+
+    @module.rule(when=go)
+    async def quick(ctx: rs.RuleContext) -> None:
+        pass
+
+    @module.rule(when=go)
+    async def shy(ctx: rs.RuleContext) -> rs.Resign:
+        return rs.Resign("no")
+
+    with simulate(module) as sim:
+        sim.emit(go)
+        assert sim.fired == ["clock:quick"]
+        sim.advance(1)
+        assert sim.fired == ["clock:quick", "clock:slow"]
+
+
+def test_failures_are_kept_with_the_rule_s_name(caplog: pytest.LogCaptureFixture) -> None:
+    module, go, _ = clock()
+
+    @module.rule(when=rs.startup)
+    async def early(ctx: rs.RuleContext) -> None:
+        raise ValueError("early")
+
+    @module.rule(when=go)
+    async def late(ctx: rs.RuleContext) -> None:
+        raise KeyError("late")
+
+    with simulate(module) as sim:
+        sim.emit(go)
+        assert [(rule, type(error)) for rule, error in sim.failures] == [
+            ("clock:early", ValueError), ("clock:late", KeyError),
+        ]  # fmt: skip
+        assert sim.fired == []
+    assert [record.levelname for record in caplog.records] == ["ERROR", "ERROR"]
+
+
+def test_the_trace_is_kept_unless_it_is_not_wanted() -> None:
+    with simulate(talk()) as sim:
+        assert [record.rule for record in sim.trace if isinstance(record, Started)] == ["talk:greet"]
+        assert "talk:greet at 0.000 s" in str(sim.explain("talk:greet"))
+    with simulate(talk(), trace=False) as sim:
+        sim.say("x")
+        assert list(sim.trace) == []
+
+
+def test_short_cuts_to_the_context() -> None:
+    module, go, _ = clock()
+    value = module.slot("value", 0)
+
+    @module.rule(when=go.max_age(None) & value.changed)
+    async def both(ctx: rs.RuleContext) -> None:
+        pass
+
+    with simulate(module) as sim:
+        sim.emit(go, "payload")
+        assert sim.snapshot()["spikes"][0]["payload"] == "payload"
+        sim.wipe(go)
+        sim.put(value, 5)
+        assert sim.read(value) == 5 and sim.fired == []
+
+        @module.rule(when=value.changed)
+        async def later(ctx: rs.RuleContext) -> None:
+            pass
+
+        sim.add_rule(later)
+        sim.put(value, 6)
+        assert sim.fired == ["clock:later"]
+
+
+def test_settings_seed_and_patience_are_passed_on() -> None:
+    with simulate(talk(), settings={"talk": {"greeting": "salut"}}) as sim:
+        assert sim.said == ["salut"]
+    module, go, found = clock()
+
+    @module.rule(when=go)
+    async def roll(ctx: rs.RuleContext) -> None:
+        found.append(ctx.random.random())
+
+    for seed in ({}, {}, {"seed": 1}):
+        with simulate(module, **seed) as sim:
+            sim.emit(go)
+    assert found[0] == found[1] != found[2]
+
+
+def test_patience_is_waited_for_in_virtual_time() -> None:
+    module, go, found = clock()
+    point, out = module.signal("point"), module.slot("out", "")
+
+    @module.rule(when=go & point, writes=out)
+    async def fused(ctx: rs.RuleContext) -> None:
+        pass
+
+    @module.rule(when=go, writes=out)
+    async def alone(ctx: rs.RuleContext) -> None:
+        found.append(ctx.now)
+
+    with simulate(module, patience=0.25) as sim:
+        sim.emit(go)
+        sim.advance(10)
+    assert found == [0.25]
+
+
+# ---------------------------------------------------------------------------------------- virtual time
+
+
+async def nested(depth: int) -> None:
+    await sleep(0.5)
+    if depth:
+        await nested(depth - 1)
+
+
+def test_everything_that_waits_waits_in_virtual_time() -> None:
+    module, go, at = clock()
+
+    @module.rule(when=go)
+    async def by_sleep(ctx: rs.RuleContext) -> None:
+        await sleep(3600)
+        at.append(ctx.now)
+
+    @module.rule(when=go)
+    async def by_call_later(ctx: rs.RuleContext) -> None:
+        future: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+        asyncio.get_running_loop().call_later(1800, future.set_result, None)
+        await future
+        at.append(ctx.now)
+
+    @module.rule(when=go)
+    async def by_timeout(ctx: rs.RuleContext) -> None:
+        try:
+            async with asyncio.timeout(900):
+                await asyncio.get_running_loop().create_future()
+        except TimeoutError:
+            at.append(ctx.now)
+
+    @module.rule(when=go)
+    async def by_nested_tasks(ctx: rs.RuleContext) -> None:
+        async with asyncio.TaskGroup() as group:
+            group.create_task(nested(3))
+            group.create_task(nested(7))
+        at.append(ctx.now)
+
+    with simulate(module) as sim:
+        sim.emit(go)
+        sim.advance(3599)
+        assert at == [4.0, 900.0, 1800.0]
+        sim.advance(1)
+        assert at == [4.0, 900.0, 1800.0, 3600.0] and sim.now == 3600.0
+        assert sim.failures == []
+
+
+def test_plain_functions_take_no_virtual_time() -> None:
+    module, go, at = clock()
+    done = module.slot("done", 0)
+
+    @module.rule(when=go, writes=done)
+    def plain(ctx: rs.RuleContext) -> None:
+        ctx[done] = sum(range(1000))
+        at.append(ctx.now)
+
+    @module.rule(when=done.changed)
+    async def after(ctx: rs.RuleContext) -> None:
+        at.append(await asyncio.to_thread(lambda: ctx.now))
+
+    with simulate(module) as sim:
+        sim.advance(1)
+        sim.emit(go)
+        assert sim.read(done) == 499500 and at == [1.0, 1.0]
+        assert sim.failures == []
+
+
+def test_a_plain_function_that_keeps_time_waiting_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    import threading
+
+    from ravestate.testing import virtual_loop
+
+    monkeypatch.setattr(virtual_loop, "REAL_LIMIT", 0.001)
+    module, go, _ = clock()
+    release = threading.Event()
+
+    @module.rule(when=go)
+    def hang(ctx: rs.RuleContext) -> None:
+        release.wait(20)
+
+    sim = simulate(module)
+    with pytest.raises(TimeoutError) as caught, sim:
+        sim.emit(go)
+    assert str(caught.value) == (
+        "clock:hang kept virtual time waiting for 0.001 real seconds: a plain function takes real time; to wait in "
+        "virtual time write async def and await ctx.sleep(seconds)"
+    )
+    release.set()
+
+
+# ---------------------------------------------------------------------------------------- advance, settle
+
+
+def test_advance_settles_before_and_after_and_stops_on_the_second() -> None:
+    module, go, at = clock()
+
+    @module.rule(when=go)
+    async def late(ctx: rs.RuleContext) -> None:
+        await ctx.sleep(2)
+        at.append(ctx.now)
+
+    with simulate(module) as sim:
+        assert sim.now == 0.0
+        sim.context.emit(go)  # without settling
+        sim.advance(2)
+        assert at == [2.0] and sim.now == 2.0
+        sim.advance(0)
+        assert sim.now == 2.0
+        sim.advance(0.125)
+        assert sim.now == 2.125
+
+
+def test_advance_in_parts_is_advance_at_once() -> None:
+    def times(parts: list[float]) -> list[float]:
+        module, go, at = clock()
+
+        @module.rule(when=go, emits=go, detached=True)
+        async def again(ctx: rs.RuleContext) -> None:
+            await ctx.sleep(0.7)
+            at.append(ctx.now)
+            ctx.emit(go)
+
+        with simulate(module) as sim:
+            sim.emit(go)
+            for part in parts:
+                sim.advance(part)
+            return list(at)
+
+    assert times([7.0]) == times([0.5] * 14) == times([3.25, 3.75]) != []
+
+
+def test_settle_does_what_can_be_done_now() -> None:
+    module, go, at = clock()
+
+    @module.rule(when=go)
+    async def steps(ctx: rs.RuleContext) -> None:
+        for _ in range(10):
+            await sleep(0)
+        at.append(ctx.now)
+        await ctx.sleep(0.001)
+        at.append(ctx.now)
+
+    with simulate(module) as sim:
+        sim.context.emit(go)
+        sim.settle()
+        assert at == [0.0]
+        sim.settle()
+        assert at == [0.0]
+
+
+def test_time_does_not_run_backwards() -> None:
+    with simulate() as sim, pytest.raises(ValueError, match=r"advance\(-1\): time does not run backwards"):
+        sim.advance(-1)
+
+
+# ---------------------------------------------------------------------------------------- wrong use
+
+
+def test_it_is_refused_inside_a_running_loop() -> None:
+    async def main() -> None:
+        with pytest.raises(
+            rs.EngineError, match="simulate runs a loop of its own: use it in a plain function"
+        ):
+            simulate().__enter__()
+
+    asyncio.run(main())
+
+
+def test_it_is_a_context_manager_and_runs_once() -> None:
+    sim = simulate()
+    for act in (lambda: sim.advance(1), sim.settle, lambda: sim.now):
+        with pytest.raises(rs.EngineError, match="has not begun: write"):
+            act()
+    with sim:
+        pass
+    with pytest.raises(rs.EngineError, match="a context runs once"):
+        sim.__enter__()
+
+
+def test_saying_wants_rawio() -> None:
+    with (
+        simulate() as sim,
+        pytest.raises(rs.UndeclaredError, match="no slot rawio:input; add module rawio to the context"),
+    ):
+        sim.say("hello")
+
+
+def test_faults_are_raised_before_it_begins() -> None:
+    with pytest.raises(rs.DeclarationErrors):
+        simulate(rs.Module("a"), rs.Module("a"))
+    with pytest.raises(rs.DeclarationErrors):
+        simulate(talk(), settings={"talk": {"greting": "x"}})
+
+
+def test_an_exception_in_the_block_comes_through_and_everything_is_closed() -> None:
+    module, go, _ = clock()
+    told: list[str] = []
+
+    @module.rule(when=go)
+    async def long(ctx: rs.RuleContext) -> None:
+        try:
+            await ctx.sleep(3600)
+        finally:
+            told.append("cleaned up")
+
+    @module.rule(when=rs.shutdown)
+    async def end(ctx: rs.RuleContext) -> None:
+        told.append("shut down")
+
+    sim = simulate(module)
+    with pytest.raises(ZeroDivisionError), sim:
+        sim.emit(go)
+        _ = 1 / 0
+    assert told == ["shut down", "cleaned up"]
+    assert sim._loop is not None and sim._loop.is_closed()
+
+
+def test_simulations_may_stand_side_by_side() -> None:
+    policy = rs.compile(talk())
+    with simulate(policy) as one, simulate(policy) as other:
+        one.say("x")
+        one.advance(5)
+        assert (one.now, other.now) == (5.0, 0.0)
+        assert (one.said, other.said) == (["hello", "X"], ["hello"])

@@ -1,0 +1,133 @@
+"""The loop whose time jumps."""
+
+import asyncio
+import threading
+from asyncio import sleep  # in here it costs no real time
+from collections.abc import Iterator
+
+import pytest
+
+from ravestate.testing import virtual_loop
+from ravestate.testing.virtual_loop import VirtualLoop
+
+
+@pytest.fixture
+def loop() -> Iterator[VirtualLoop]:
+    loop = VirtualLoop()
+    yield loop
+    loop.close()
+
+
+def test_it_jumps_from_timer_to_timer(loop: VirtualLoop) -> None:
+    seen: list[tuple[str, float]] = []
+    for name, delay in (("b", 5), ("a", 2), ("c", 5)):
+        loop.call_later(delay, lambda name=name: seen.append((name, loop.time())))
+    loop.run_to(4)
+    assert seen == [("a", 2.0)] and loop.time() == 4.0
+    loop.run_to(5)
+    assert seen == [("a", 2.0), ("b", 5.0), ("c", 5.0)] and loop.time() == 5.0
+
+
+def test_what_is_ready_is_done_before_time_passes(loop: VirtualLoop) -> None:
+    seen: list[float] = []
+
+    async def steps() -> None:
+        for _ in range(20):
+            await sleep(0)
+        seen.append(loop.time())
+
+    task = loop.create_task(steps())
+    loop.run_to(0)
+    assert seen == [0.0] and task.done()
+
+
+def test_cancelled_timers_do_not_hold_it_up(loop: VirtualLoop) -> None:
+    loop.call_later(1, lambda: None).cancel()
+    loop.run_to(3)
+    assert loop.time() == 3.0
+
+
+def test_running_to_the_past_changes_nothing(loop: VirtualLoop) -> None:
+    loop.run_to(3)
+    loop.run_to(1)
+    assert loop.time() == 3.0
+
+
+def test_it_runs_a_coroutine_to_its_end_as_any_loop(loop: VirtualLoop) -> None:
+    async def work() -> float:
+        await sleep(3600)
+        return loop.time()
+
+    assert loop.run_until_complete(work()) == 3600.0
+
+
+def test_waiting_for_what_never_comes_is_told(loop: VirtualLoop) -> None:
+    async def wait() -> None:
+        await loop.create_future()
+
+    task = loop.create_task(wait())
+    with pytest.raises(RuntimeError, match="everything waits for something that will never happen"):
+        loop.run_until_complete(task)
+    task.cancel()
+    with pytest.raises(asyncio.CancelledError):
+        loop.run_until_complete(task)
+
+
+def test_threads_that_are_busy_are_waited_for_without_virtual_time(loop: VirtualLoop) -> None:
+    busy = ["work"]
+    seen: list[float] = []
+    go = threading.Event()
+
+    def done() -> None:
+        busy.clear()
+        seen.append(loop.time())
+
+    loop.busy = lambda: busy
+    thread = threading.Thread(target=lambda: (go.wait(20), loop.call_soon_threadsafe(done)))
+    thread.start()
+    loop.call_soon(go.set)
+    loop.call_later(1, lambda: seen.append(loop.time()))
+    loop.run_to(2)
+    thread.join()
+    assert seen == [0.0, 1.0]
+
+
+def test_threads_are_not_waited_for_for_ever_nor_twice(
+    loop: VirtualLoop, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(virtual_loop, "REAL_LIMIT", 0.001)
+    loop.busy = lambda: ["m:one", "m:two"]
+    with pytest.raises(
+        TimeoutError, match=r"m:one and m:two kept virtual time waiting for 0\.001 real seconds"
+    ):
+        loop.run_to(1)
+    loop.run_to(1)
+    assert loop.time() == 1.0
+
+
+def test_what_asyncio_runs_in_threads_takes_no_virtual_time(
+    loop: VirtualLoop, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    meet = threading.Barrier(2)
+    seen: list[float] = []
+
+    async def work() -> None:
+        await asyncio.gather(asyncio.to_thread(meet.wait, 20), asyncio.to_thread(meet.wait, 20))
+        seen.append(loop.time())
+
+    task = loop.create_task(work())
+    loop.run_to(5)
+    assert seen == [0.0] and task.done()
+
+    monkeypatch.setattr(virtual_loop, "REAL_LIMIT", 0.001)
+    release = threading.Event()
+
+    async def hang() -> None:
+        await asyncio.to_thread(release.wait, 20)
+
+    task = loop.create_task(hang())
+    with pytest.raises(TimeoutError, match=r"Event\.wait kept virtual time waiting"):
+        loop.run_to(6)
+    release.set()
+    task.cancel()
+    loop.run_to(6)
