@@ -264,7 +264,7 @@ class Engine(Waves):
                         and other.state < RUNNING
                         and not other.clause.rule.slotset.isdisjoint(rule.slotset)
                     ):
-                        self._lose(other, self._of_group(other, group), "consumed")
+                        self._lose(other, self._of_group(other, group), "consumed", rule.name)
                 self._dirty[group] = None
         else:
             self._give_up(run, spikes, "consumed")
@@ -286,7 +286,7 @@ class Engine(Waves):
             if len(spike.holders) > 1:
                 for other in list(spike.holders):
                     if other is not run and other.clause.rule is rule and other.state < RUNNING:
-                        self._lose(other, self._of_spike(other, spike), reason)
+                        self._lose(other, self._of_spike(other, spike), reason, rule.name)
             spike.refuse(rule.index)
 
     def _retire(self, rule: RulePlan) -> None:

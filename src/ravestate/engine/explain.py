@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from ravestate.engine.activation import GATHERING, NEVER, WAITING, Activation
-from ravestate.engine.trace import GaveUp, Held, Passed, Pressed, Record, Settled, Started, Waits
+from ravestate.engine.trace import Born, GaveUp, Held, Passed, Pressed, Record, Settled, Started, Waits
 from ravestate.policy.plan import Clause, RulePlan
 
 if TYPE_CHECKING:
@@ -58,6 +58,8 @@ class Explanation:
         retired: Whether it has left the context.
         clauses: Its clauses.
         activations: What is alive of it.
+        missing: For each of its signals that has not occurred while the trace was kept: who may raise it, and how that
+            ended last; empty when nothing is traced.
         history: What the trace has of it lately, in words; empty when nothing is traced.
     """
 
@@ -66,6 +68,7 @@ class Explanation:
     retired: bool
     clauses: tuple[ClauseState, ...]
     activations: tuple[ActivationState, ...]
+    missing: tuple[str, ...]
     history: tuple[str, ...]
 
     def __str__(self) -> str:
@@ -90,6 +93,7 @@ class Explanation:
             ]
             if one.until is not None:
                 lines.append(f"    until {one.until:.3f} s at the latest")
+        lines += [f"  {line}" for line in self.missing]
         if self.history:
             lines.append("  lately:")
             lines += [f"    {line}" for line in self.history]
@@ -106,6 +110,7 @@ def explain(engine: Engine, rule: RulePlan, records: Iterable[Record] = (), limi
         rule.index in engine.retired,
         tuple(_clause(engine, clause) for clause in rule.clauses),
         tuple(_activation(engine, activation) for activation in engine.active.get(rule.index, ())),
+        tuple(_missing(engine, rule, list(records))),
         tuple(_history(rule.name, records))[-limit:],
     )
 
@@ -153,7 +158,28 @@ def _activation(engine: Engine, activation: Activation) -> ActivationState:
     )
 
 
-def _history(rule: str, records: Iterable[Record]) -> Iterable[str]:
+def _missing(engine: Engine, rule: RulePlan, records: Sequence[Record]) -> Iterator[str]:
+    """What has not occurred of the signals of a rule, and why not."""
+    if not records:
+        return
+    occurred = {record.signal for record in records if isinstance(record, Born)}
+    ends = {record.rule: record for record in records if isinstance(record, Settled)}
+    for signal in dict.fromkeys(need.signal for clause in rule.clauses for need in clause.needs):
+        if signal.name in occurred:
+            continue
+        raisers = [
+            f"{cause.name} may raise it, and "
+            + (
+                f"was {end.outcome} at {end.time:.3f} s without"
+                if (end := ends.get(cause.name))
+                else "has not run"
+            )
+            for cause in engine.policy.causes.all_causes[signal.index]
+        ]
+        yield f"{signal.name} has not occurred" + (f": {'; '.join(raisers)}" if raisers else "")
+
+
+def _history(rule: str, records: Iterable[Record]) -> Iterator[str]:
     """The story of a rule, from a trace."""
     for record in records:
         match record:
@@ -163,7 +189,12 @@ def _history(rule: str, records: Iterable[Record]) -> Iterable[str]:
                 )
                 yield f"{record.time:.3f} s: took {record.signal}{lacking}"
             case GaveUp(rule=name) if name == rule:
-                yield f"{record.time:.3f} s: gave {record.signal} up: {WHY[record.reason]}"
+                why = (
+                    f"{record.by} answered it"
+                    if record.reason == "consumed" and record.by
+                    else WHY[record.reason]
+                )
+                yield f"{record.time:.3f} s: gave {record.signal} up: {why}"
             case Passed(rule=name) if name == rule:
                 yield f"{record.time:.3f} s: did not take {record.signal}: {WHY_NOT[record.reason]}"
             case Waits(rule=name) if name == rule:

@@ -289,7 +289,7 @@ class Holdings:
         else:
             self._free.append(activation)
 
-    def _release(self, activation: Activation, need: Need, reason: str) -> None:
+    def _release(self, activation: Activation, need: Need, reason: str, by: str = "") -> None:
         """Take a spike from an activation."""
         spike = activation.spikes[need.index]
         if spike is None:
@@ -312,11 +312,17 @@ class Holdings:
         if reason and self.tracer is not None:
             self.tracer(
                 trace.GaveUp(
-                    self.now, activation.id, activation.clause.rule.name, spike.id, spike.signal.name, reason
+                    self.now,
+                    activation.id,
+                    activation.clause.rule.name,
+                    spike.id,
+                    spike.signal.name,
+                    reason,
+                    by,
                 )
             )
 
-    def _lose(self, activation: Activation, needs: Iterable[Need], reason: str) -> None:
+    def _lose(self, activation: Activation, needs: Iterable[Need], reason: str, by: str = "") -> None:
         """An activation gives spikes up; without any left it is no more."""
         needs = [need for need in needs if not need.bit & activation.missing]
         if not needs:
@@ -326,10 +332,10 @@ class Holdings:
         for need in needs:
             left &= ~need.bit
         if not left or (clause.asks_detached and not left & clause.firm_bits):
-            self._end(activation, reason)
+            self._end(activation, reason, by)
             return
         for need in needs:
-            self._release(activation, need, reason)
+            self._release(activation, need, reason, by)
         self._unready(activation)
         for need in needs:
             self.lacking.setdefault(need, {})[activation] = None
@@ -346,7 +352,7 @@ class Holdings:
         self._asking.pop(activation, None)
         self.gated.pop(activation, None)
 
-    def _end(self, activation: Activation, reason: str = "") -> None:
+    def _end(self, activation: Activation, reason: str = "", by: str = "") -> None:
         """An activation is no more: nothing of it is left. With a reason, what it held counts as given up."""
         before = activation.state
         activation.step(END)
@@ -359,7 +365,7 @@ class Holdings:
                 if not lacking:
                     del self.lacking[need]
             else:
-                self._release(activation, need, reason)
+                self._release(activation, need, reason, by)
         if before is GATHERING:
             self.gated.pop(activation, None)
             if activation.ripens != NEVER:

@@ -92,6 +92,7 @@ class GaveUp:
     spike: int
     signal: str
     reason: str
+    by: str = ""  # the rule that consumed it, if one did
 
 
 @dataclass(frozen=True, slots=True)

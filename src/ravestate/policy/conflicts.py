@@ -41,14 +41,15 @@ class Conflict:
 def find_conflicts(policy: Policy) -> tuple[Conflict, ...]:
     """All conflicts, in declaration order of the first rule, then of the second."""
     writers = [rule for rule in policy.rule_plans if rule.slots]
-    names = {rule.index: _pathway_names(rule) for rule in writers}
+    names = {clause: _pathway_names(clause) for rule in writers for clause in rule.clauses}
+    of_rule = {rule.index: frozenset[str]().union(*(names[c] for c in rule.clauses)) for rule in writers}
     found: list[Conflict] = []
     for position, first in enumerate(writers):
         for second in writers[position + 1 :]:
             slots = first.slotset & second.slotset
-            causes = names[first.index] & names[second.index] if slots else frozenset[str]()
+            causes = of_rule[first.index] & of_rule[second.index] if slots else frozenset[str]()
             if causes:
-                a, b = _best(first), _best(second)
+                a, b = (_best(rule, causes, names) for rule in (first, second))
                 found.append(
                     Conflict(
                         first.name,
@@ -63,18 +64,20 @@ def find_conflicts(policy: Policy) -> tuple[Conflict, ...]:
     return tuple(found)
 
 
-def _best(rule: RulePlan) -> Clause:
-    return max(rule.clauses, key=lambda clause: clause.base)
+def _best(rule: RulePlan, causes: frozenset[str], names: dict[Clause, frozenset[str]]) -> Clause:
+    """The best of the clauses that share one of the causes."""
+    return max((c for c in rule.clauses if names[c] & causes), key=lambda clause: clause.base)
 
 
-def _pathway_names(rule: RulePlan) -> frozenset[str]:
-    """The signals through which a rule can share a causal group: those of its non-detached needs' pathways."""
+def _pathway_names(clause: Clause) -> frozenset[str]:
+    """The signals through which a clause can share a causal group: those of its non-detached needs' pathways."""
+    if not clause.firm_bits:
+        return frozenset()
+    looked_at = {need.signal.name for need in clause.needs if need.detached}
+    taken = {need.signal.name for need in clause.needs if not need.detached}
     return frozenset(
         signal.name
-        for clause in rule.clauses
-        if clause.firm_bits
         for pathway in clause.pathways
         for signal in pathway
-        if not all(need.detached for need in clause.needs if need.signal.signal is signal)
-        or not any(need.signal.signal is signal for need in clause.needs)
+        if signal.name not in looked_at or signal.name in taken
     )
