@@ -21,6 +21,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Carry the command out; 1 if there are faults."""
     from ravestate.errors import DeclarationError, DeclarationErrors
+    from ravestate.modules import BUILT_IN
     from ravestate.policy.compile import compile_policy
     from ravestate.settings import load_settings
 
@@ -35,7 +36,10 @@ def run(options: argparse.Namespace) -> int:
     except DeclarationError as fault:
         print(f"fault: {fault}", file=sys.stderr)
         return 1
-    findings = policy.findings()
+    # What a built-in module offers and this agent has no use for is no finding of its designer's.
+    findings = [
+        f for f in policy.findings() if f.kind != "unheard" or f.subject.split(":")[0] not in BUILT_IN
+    ]
     for finding in findings:
         print(finding)
     if options.utilities:

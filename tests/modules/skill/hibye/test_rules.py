@@ -68,3 +68,16 @@ def test_it_speaks_the_language_of_the_context() -> None:
     with simulate(hibye, settings={"verbaliser": {"language": "de-AT"}}) as sim:
         sim.say("Hallo")
         assert only(sim) in {template.text for template in german.templates("hello")}
+
+
+def test_who_has_said_goodbye_and_leaves_is_not_bidden_farewell_again() -> None:
+    with simulate(hibye) as sim:
+        sim.put(interloc.users, {"door": None})
+        sim.say("bye")
+        sim.advance(5.0)
+        sim.put(interloc.users, {})
+        assert len(sim.said) == 2
+        sim.put(interloc.users, {"door": None})
+        sim.advance(120.0)
+        sim.put(interloc.users, {})
+        assert len(sim.said) == 4

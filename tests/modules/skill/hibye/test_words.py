@@ -6,14 +6,17 @@ from ravestate.modules.skill.hibye.words import is_farewell, is_greeting
 
 
 @pytest.mark.parametrize(
-    "text", ["hi", "Hello!", "  hey there", "HELLO my dear robot", "good morning", "Hallo", "hiii", "Guten Tag!"]
+    "text",
+    ["hi", "Hello!", "  hey there", "HELLO my dear robot", "good morning", "Hallo", "hiii", "Guten Tag!"],
 )
 def test_a_greeting_greets_and_does_not_take_leave(text: str) -> None:
     assert is_greeting(text)
     assert not is_farewell(text)
 
 
-@pytest.mark.parametrize("text", ["bye", "Goodbye!", "see you later", "bye-bye", "Good night", "I have to go", "Tschüss"])
+@pytest.mark.parametrize(
+    "text", ["bye", "Goodbye!", "see you later", "bye-bye", "Good night", "I have to go", "Tschüss"]
+)
 def test_a_farewell_takes_leave_and_does_not_greet(text: str) -> None:
     assert is_farewell(text)
     assert not is_greeting(text)
