@@ -1,9 +1,10 @@
 """L15: a ready activation needs the consent of each causal group of its non-detached spikes."""
 
+from math import log
 from typing import Any
 
 import ravestate as rs
-from laws.short import emitter, moments, output, resigner, started, writer, written
+from laws.short import at_rest, emitter, moments, output, resigner, started, writer, written
 
 
 def test_without_a_rival_a_ready_rule_runs_at_once(play: Any) -> None:
@@ -37,6 +38,7 @@ def test_a_slot_that_a_finished_rule_has_taken_is_refused(play: Any) -> None:
         sim.emit(i)
         sim.advance(10.0)
         assert written(sim, out) == ["first"]
+        assert at_rest(sim)  # nobody waits for ever for what is gone
 
 
 def test_the_greater_effective_utility_goes_first(play: Any) -> None:
@@ -171,3 +173,82 @@ def test_the_group_of_a_detached_spike_is_not_asked(play: Any) -> None:
         sim.emit(i)
         sim.advance(10.0)
         assert moments(sim, out) == [(0.0, "look"), (3.0, "busy")]
+
+
+def test_merged_groups_keep_what_each_of_them_has_taken(play: Any) -> None:
+    m = rs.Module("m")
+    i, j, x, out = m.signal("i"), m.signal("j"), m.signal("x"), output(m)
+    emitter(m, "fuse", i.min_age(1.0) & j, x)
+    writer(m, "other", m.signal("k"), output(m, "face"))
+    resigner(m, "one", i, out, after=2.0, weight=9.0)
+    writer(m, "two", j, out, after=5.0, weight=9.0)
+    writer(m, "late", x, out, weight=0.1)
+    with play(m) as sim:
+        sim.emit(i)
+        sim.emit(j)
+        sim.advance(20.0)
+        assert [name for _, name in started(sim)] == ["one", "two", "fuse"]
+        assert moments(sim, out) == [(5.0, "two")]
+
+
+def test_what_waits_for_two_groups_is_free_when_both_are(play: Any) -> None:
+    m = rs.Module("m")
+    i, j, out = every_group(m)
+    resigner(m, "one", i, out, after=2.0, weight=10.0)
+    resigner(m, "two", j, out, after=5.0, weight=10.0)
+    with play(m) as sim:
+        sim.emit(i)
+        sim.emit(j)
+        sim.advance(20.0)
+        assert moments(sim, out) == [(5.0, "fuse")]
+
+
+def test_a_rival_that_recovers_is_counted_at_its_effective_utility(play: Any) -> None:
+    m = rs.Module("m")
+    i, x, out = m.signal("i"), m.signal("x"), output(m)
+    writer(m, "other", m.signal("k"), output(m, "face"))
+    emitter(m, "classify", i, x, after=5.0)
+    writer(m, "specific", x, out, cooldown=100.0)
+    writer(m, "general", i, out)
+    with play(m) as sim:
+        sim.emit(i)
+        sim.advance(6.0)
+        sim.emit(i)  # a second after `specific` has run
+        sim.advance(20.0)
+        assert moments(sim, out) == [(5.0, "specific"), (6.0, "general")]
+
+
+def test_one_that_recovers_while_it_waits_runs_when_it_overtakes(play: Any) -> None:
+    m = rs.Module("m")
+    i, x, out = m.signal("i"), m.signal("x"), output(m)
+    weight = 2 * (log(4) + log(4 / 3)) / log(4 / 3)  # twice what `specific` is worth
+    writer(m, "general", i, out, weight=weight, cooldown=10.0)
+    emitter(m, "classify", i, x, after=60.0)
+    writer(m, "specific", x, out)
+    writer(m, "other", m.signal("k"), output(m, "face"))
+    with play(m) as sim:
+        sim.emit(i)
+        sim.advance(1.0)
+        sim.emit(i)
+        sim.advance(100.0)
+        assert moments(sim, out) == [(0.0, "general"), (5.0, "general")]
+
+
+def test_two_that_wait_for_each_other_do_not_wait_for_ever(play: Any) -> None:
+    m = rs.Module("m")
+    i, y, z = m.signal("i"), m.signal("y"), m.signal("z")
+    out, face = output(m), output(m, "face")
+
+    def first(name: str, slot: rs.Slot[str], effect: rs.Signal[Any]) -> None:
+        @m.rule(when=i, writes=slot, emits=effect, name=name)
+        async def act(ctx: Any) -> None:
+            ctx[slot] = name
+            ctx.emit(effect)
+
+    first("speak", out, y)
+    first("smile", face, z)
+    writer(m, "smile_at_y", y, face)  # `smile` would wait for it, so for `speak`
+    writer(m, "speak_of_z", z, out)  # `speak` would wait for it, so for `smile`
+    with play(m) as sim:
+        sim.emit(i)
+        assert (written(sim, out), written(sim, face)) == (["speak"], ["smile_at_y"])

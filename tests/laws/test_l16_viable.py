@@ -5,7 +5,18 @@ from typing import Any
 import pytest
 
 import ravestate as rs
-from laws.short import emitter, given_up, moments, output, pressed, resigner, started, writer, written
+from laws.short import (
+    at_rest,
+    emitter,
+    given_up,
+    moments,
+    output,
+    pressed,
+    resigner,
+    started,
+    writer,
+    written,
+)
 
 
 def no(ctx: Any) -> bool:
@@ -376,3 +387,113 @@ def test_a_rival_is_pressed_from_the_moment_at_which_it_lost_a_spike(play: Any) 
         sim.advance(20.0)
         assert started(sim) == [(0.0, "busy"), (4.0, "plain")]
         assert set(pressed(sim)) == {(3.0, "fuse", ("m:j",), 4.0)}  # `busy` has consumed the only one
+
+
+# ---------------------------------------------------------------------------- mixtures
+
+
+def mixed(after: float, **options: Any) -> tuple[rs.Module, rs.Signal[Any], rs.Signal[Any], rs.Slot[str]]:
+    """The rival lacks `x`, which may come in the group, and `j`, an input."""
+    m = rs.Module("m")
+    i, j, x, out = m.signal("i"), m.signal("j"), m.signal("x"), output(m)
+    emitter(m, "classify", i, x, after=after, **options)
+    writer(m, "specific", j & x, out)
+    writer(m, "general", i, out)
+    return m, i, j, out
+
+
+def test_a_rival_elsewhere_has_a_stake_if_it_waits_for_what_the_group_may_cause(play: Any) -> None:
+    m, i, j, out = mixed(after=3.0)
+    with play(m) as sim:
+        sim.emit(j)
+        sim.emit(i)
+        sim.advance(20.0)
+        assert moments(sim, out) == [(3.0, "specific")]
+        assert pressed(sim) == []
+
+
+def test_a_rival_elsewhere_lets_go_when_the_group_cannot_cause_it(play: Any) -> None:
+    m, i, j, out = mixed(after=3.0, only_if=no)
+    with play(m) as sim:
+        sim.emit(j)
+        sim.emit(i)
+        sim.advance(20.0)
+        assert moments(sim, out) == [(3.0, "general")]
+
+
+def test_what_lacks_an_input_besides_is_pressed(play: Any) -> None:
+    m, i, _, out = mixed(after=3.0)
+    with play(m) as sim:
+        sim.emit(i)
+        sim.advance(20.0)
+        assert moments(sim, out) == [(1.0, "general")]
+
+
+@pytest.mark.parametrize("comes", [False, True])
+def test_what_rests_on_an_input_through_another_rule_is_pressed(play: Any, comes: bool) -> None:
+    m = rs.Module("m")
+    i, j, x, out = m.signal("i"), m.signal("j"), m.signal("x"), output(m)
+    emitter(m, "make", i & j, x)
+    writer(m, "specific", x, out)
+    writer(m, "general", i, out)
+    with play(m) as sim:
+        sim.emit(i)
+        sim.advance(0.5)
+        if comes:
+            sim.emit(j)
+        sim.advance(20.0)
+        assert moments(sim, out) == ([(0.5, "specific")] if comes else [(1.0, "general")])
+
+
+def test_a_rival_whose_slot_is_consumed_is_not_viable(play: Any) -> None:
+    m = rs.Module("m")
+    i, x, out, face = m.signal("i"), m.signal("x"), output(m), output(m, "face")
+    writer(m, "other", m.signal("k"), output(m, "arm"))
+    emitter(m, "classify", i, x, after=10.0)
+    writer(m, "speak", i, out, weight=100.0)
+    writer(m, "perform", x, out, face)
+    writer(m, "smile", i, face)
+    with play(m) as sim:
+        sim.emit(i)
+        assert (moments(sim, out), moments(sim, face)) == ([(0.0, "speak")], [(0.0, "smile")])
+        sim.advance(20.0)
+        assert at_rest(sim)
+
+
+def test_a_gate_that_is_closed_keeps_nobody_waiting(play: Any) -> None:
+    m = rs.Module("m")
+    i, mood, out = m.signal("i"), m.slot("mood", "calm"), output(m)
+    writer(m, "gated", i & mood.holds(lambda value: value == "gay"), out)
+    writer(m, "general", i, out)
+    with play(m) as sim:
+        sim.emit(i)
+        sim.advance(20.0)
+        [(moment, name)] = moments(sim, out)
+        assert name == "general"
+        assert moment <= 1.0
+
+
+@pytest.mark.parametrize("fits", [False, True])
+def test_a_predicate_that_the_payload_fails_ends_the_wait(play: Any, fits: bool) -> None:
+    m = rs.Module("m")
+    i, x, out = m.signal("i"), m.signal("x", payload=str), output(m)
+    emitter(m, "classify", i, x, after=2.0)
+    writer(m, "specific", x.where(lambda payload: fits), out)
+    writer(m, "general", i, out)
+    with play(m) as sim:
+        sim.emit(i)
+        sim.advance(20.0)
+        assert moments(sim, out) == [(2.0, "specific" if fits else "general")]
+        assert at_rest(sim)
+
+
+def test_pressure_on_one_cause_leaves_another_alone(play: Any) -> None:
+    m, point, speech, out = fusion()
+    with play(m) as sim:
+        sim.emit(speech)
+        sim.advance(0.6)
+        sim.emit(speech)  # has a patience of its own
+        sim.advance(0.7)
+        assert moments(sim, out) == [(1.0, "plain")]
+        sim.emit(point)
+        assert moments(sim, out) == [(1.0, "plain"), (1.3, "fused")]

@@ -50,6 +50,23 @@ def test_an_interrupted_run_is_done(play: Any) -> None:
         assert (written(sim, out), sim.fired) == (["word 0"], ["m:talk"])
 
 
+def test_an_interrupted_run_is_done_though_it_had_written_nothing(play: Any) -> None:
+    m = rs.Module("m")
+    i, stop, out = m.signal("i"), m.signal("stop"), output(m)
+
+    @m.rule(when=i, writes=out, until=stop)
+    async def ponder(ctx: Any) -> None:
+        await ctx.sleep(10.0)
+
+    writer(m, "next_best", i, out)
+    with play(m) as sim:
+        sim.emit(i)
+        sim.advance(1.0)
+        sim.emit(stop)
+        sim.advance(20.0)
+        assert (written(sim, out), sim.fired) == ([], ["m:ponder"])
+
+
 def test_without_its_signal_a_run_goes_on(play: Any) -> None:
     m, i, _, hush, _, out = talker(lambda stop, hush, mood: stop)
     with play(m) as sim:

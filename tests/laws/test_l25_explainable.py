@@ -129,7 +129,7 @@ def test_why_it_did_not_fire_another_rule_answered(play: Any) -> None:
     with play(m) as sim:
         sim.emit(point)
         sim.emit(speech)
-        assert "another rule answered" in why(sim, "m:plain")
+        assert "m:fused answered" in why(sim, "m:plain")
 
 
 def test_why_it_did_not_fire_its_patience_ran_out(play: Any) -> None:
@@ -190,6 +190,27 @@ def test_why_it_did_not_fire_the_payload_did_not_fit(play: Any) -> None:
         assert "m:i" in why(sim, "m:picky")
 
 
+def test_why_it_did_not_fire_its_cause_was_answered_before(play: Any) -> None:
+    m = rs.Module("m")
+    i, x, out = m.signal("i"), m.signal("x"), output(m)
+    writer(m, "other", m.signal("k"), output(m, "face"))
+    writer(m, "first", i, out, weight=10.0)
+    emitter(m, "cause", i, x, after=2.0)
+    writer(m, "late", x, out, weight=0.1)
+    with play(m) as sim:
+        sim.emit(i)
+        sim.advance(5.0)
+        assert "m:first" in why(sim, "m:late")
+
+
+def test_why_it_did_not_fire_nothing_it_waits_for_has_occurred(play: Any) -> None:
+    m, point, _ = fusion()
+    with play(m) as sim:
+        sim.emit(point)
+        sim.advance(10.0)
+        assert "m:speech" in why(sim, "m:fused")
+
+
 def test_why_it_did_not_fire_it_has_retired(play: Any) -> None:
     m = rs.Module("m")
     i, out = m.signal("i"), output(m)
@@ -216,6 +237,7 @@ def test_every_sort_of_decision_is_traced() -> None:
     fuse, i, j, out = m.signal("fuse"), m.signals[0], m.signals[1], m.slots[0]
     emitter(m, "merge", i & j, fuse)
     writer(m, "pressed", i & m.signal("never"), out, weight=50.0)
+    writer(m, "picky", i.where(lambda text: text == "nobody says this"), out)
     with Driver(m) as sim:
         tell(sim)
         sim.advance(60.0)
