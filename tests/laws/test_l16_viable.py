@@ -52,6 +52,22 @@ def test_a_rival_that_ripens_is_waited_for_though_it_lies_in_another_group(play:
         assert moments(sim, out) == [(3.0, "specific")]
 
 
+def test_a_spike_that_is_consumed_makes_nobody_viable(play: Any) -> None:
+    m = rs.Module("m")
+    i, j, never, out = m.signal("i"), m.signal("j"), m.signal("never"), output(m)
+    writer(m, "hold", j.max_age(None) & never, output(m, "face"))
+    writer(m, "answer", j, out, weight=9.0)
+    writer(m, "specific", i & j.max_age(None), out)
+    writer(m, "general", i, out)
+    with play(m) as sim:
+        sim.emit(j)
+        sim.advance(2.0)
+        sim.emit(i)
+        sim.advance(20.0)
+        # j lives on, for another slot; a new j might come, so there is patience, and no more than that
+        assert moments(sim, out) == [(0.0, "answer"), (3.0, "general")]
+
+
 # ---------------------------------------------------------------------------- (ii) the horizon
 
 

@@ -53,6 +53,18 @@ def test_one_spike_may_be_looked_at_more_than_once(play: Any) -> None:
         assert heard == [0, 1, 2]  # too old to be looked at
 
 
+def test_what_others_have_consumed_may_still_be_looked_at(play: Any) -> None:
+    m = rs.Module("m")
+    i, j, out = m.signal("i"), m.signal("j"), output(m)
+    writer(m, "answer", j, out)
+    writer(m, "look", i & j.detached(), out)
+    with play(m) as sim:
+        sim.emit(j)
+        sim.advance(1.0)
+        sim.emit(i)
+        assert moments(sim, out) == [(0.0, "answer"), (1.0, "look")]
+
+
 def test_a_rule_that_only_looks_runs_once_on_each_spike(play: Any) -> None:
     m = rs.Module("m")
     i, heard = m.signal("i"), list[Any]()
