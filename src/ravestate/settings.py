@@ -7,8 +7,8 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterable, Mapping
-from typing import Any
+from collections.abc import Callable, Iterable, Mapping
+from typing import Any, get_args
 
 import pydantic
 from pydantic._internal._model_construction import ModelMetaclass
@@ -17,7 +17,10 @@ from ravestate.declare.module import Module
 from ravestate.declare.settings import SettingRef
 from ravestate.errors import DeclarationError, DeclarationErrors, nearest
 
-__all__ = ["Settings", "load_settings", "variable_of"]
+__all__ = ["Settings", "load_settings", "value_of", "variable_of"]
+
+
+TEXT = (str, pydantic.SecretStr)
 
 
 class _SettingsMeta(ModelMetaclass):
@@ -122,13 +125,30 @@ def _from_environment(
     for field in model.model_fields:
         text = variables.get(variable_of(name, field))
         if text is not None:
-            try:
-                found[field] = json.loads(text)
-            except ValueError:
-                found[field] = text
-            if model.model_fields[field].annotation is str:
-                found[field] = text
+            found[field] = value_of(text, model, field, json.loads)
     return found
+
+
+def value_of(text: str, model: type[pydantic.BaseModel], field: str, parse: Callable[[str], Any]) -> Any:
+    """What a text from outside stands for: itself where the field takes text, else what `parse` makes of it.
+
+    Args:
+        text: E.g. of a variable, or behind ``--set``.
+        model: The settings.
+        field: The name of one of their fields.
+        parse: Raises a ValueError where it can make nothing of a text, which then stands for itself.
+    """
+    annotation: object = model.model_fields[field].annotation
+    kinds = {annotation, *get_args(annotation)}
+    if annotation in TEXT:
+        return text
+    try:
+        value = parse(text)
+    except ValueError:
+        return text
+    # `12` is text for `str | None`, and a number for `str | int`
+    is_word = isinstance(value, (bool, int, float)) and not kinds & {bool, int, float}
+    return text if is_word and not kinds.isdisjoint(TEXT) else value
 
 
 def _faults(
