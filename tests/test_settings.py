@@ -1,5 +1,6 @@
 """Settings: typed, from code, environment and defaults; every fault named, no secret shown."""
 
+import json
 from typing import Any
 
 import pydantic
@@ -7,7 +8,7 @@ import pytest
 
 import ravestate as rs
 from ravestate.declare.settings import SettingRef
-from ravestate.settings import load_settings, variable_of
+from ravestate.settings import load_settings, value_of, variable_of
 
 
 class Voice(rs.Settings):
@@ -15,6 +16,12 @@ class Voice(rs.Settings):
     speed: float = 1.0
     words: tuple[str, ...] = ()
     key: pydantic.SecretStr = pydantic.SecretStr("")
+
+
+class Mixed(rs.Settings):
+    maybe: str | None = None
+    either: str | int = ""
+    count: int = 0
 
 
 class Server(rs.Settings):
@@ -87,6 +94,23 @@ def test_the_process_environment_is_the_default(monkeypatch: pytest.MonkeyPatch)
 def test_the_environment_holds_json_for_all_but_text(field: str, text: str, value: object) -> None:
     found = load_settings([voice], None, {variable_of("voice", field): text})
     assert getattr(found["voice"], field) == value
+
+
+@pytest.mark.parametrize(
+    ("model", "field", "text", "value"),
+    [
+        (Voice, "name", "12", "12"),
+        (Voice, "key", "12", "12"),
+        (Mixed, "maybe", "12", "12"),
+        (Mixed, "maybe", "true", "true"),
+        (Mixed, "maybe", "null", None),
+        (Mixed, "either", "12", 12),
+        (Mixed, "count", "12", 12),
+        (Mixed, "count", "twelve", "twelve"),  # which the settings refuse
+    ],
+)
+def test_what_a_text_stands_for(model: type[rs.Settings], field: str, text: str, value: object) -> None:
+    assert value_of(text, model, field, json.loads) == value
 
 
 def test_variables_are_named_after_module_and_field() -> None:

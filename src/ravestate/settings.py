@@ -8,7 +8,7 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Callable, Iterable, Mapping
-from typing import Any, get_args
+from typing import Any, cast, get_args
 
 import pydantic
 from pydantic._internal._model_construction import ModelMetaclass
@@ -138,7 +138,7 @@ def value_of(text: str, model: type[pydantic.BaseModel], field: str, parse: Call
         field: The name of one of their fields.
         parse: Raises a ValueError where it can make nothing of a text, which then stands for itself.
     """
-    annotation: object = model.model_fields[field].annotation
+    annotation = cast("object", model.model_fields[field].annotation)
     kinds = {annotation, *get_args(annotation)}
     if annotation in TEXT:
         return text

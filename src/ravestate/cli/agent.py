@@ -18,7 +18,7 @@ from ravestate.cli import UsageError
 from ravestate.declare.module import Module, as_module
 from ravestate.errors import DeclarationError, RavestateError, nearest
 from ravestate.modules import BUILT_IN
-from ravestate.settings import variable_of
+from ravestate.settings import value_of, variable_of
 
 __all__ = ["Agent", "add_arguments", "load_agent", "load_module"]
 
@@ -84,7 +84,7 @@ def load_agent(options: argparse.Namespace, first: Iterable[str] = ()) -> Agent:
         if module not in agent.modules:
             agent.modules.append(module)
     for text in options.sets:
-        _set(agent.settings, text)
+        _set(agent, text)
     if options.seed is not None:
         agent.seed = options.seed
     return agent
@@ -237,15 +237,31 @@ def _filled(value: Any, path: Path) -> Any:
     return value
 
 
-def _set(settings: dict[str, dict[str, Any]], text: str) -> None:
-    import yaml
-
-    name, equals, value = text.partition("=")
+def _set(agent: Agent, text: str) -> None:
+    name, equals, said = text.partition("=")
+    value: Any = said
     module, dot, key = name.strip().partition(".")
     if not equals or not dot or not module or not key:
         raise UsageError(f"--set {text}: write --set module.key=value, e.g. --set idle.bored_after=10")
+    found = next((m for m in _all(agent.modules) if m.name == module), None)
+    if found is not None and found.settings is not None and key in found.settings.model_fields:
+        value = value_of(said, found.settings, key, _parse)
+    agent.settings.setdefault(module, {})[key] = value
+
+
+def _parse(text: str) -> Any:
+    """A value as in a file: numbers, ``true``, ``[a, b]``."""
+    import yaml
+
     try:
-        parsed: Any = yaml.safe_load(value)
-    except yaml.YAMLError:
-        parsed = value
-    settings.setdefault(module, {})[key] = "" if parsed is None and value == "" else parsed
+        return "" if not text else yaml.safe_load(text)
+    except yaml.YAMLError as error:
+        raise ValueError from error
+
+
+def _all(modules: Iterable[Module]) -> list[Module]:
+    """The modules and all that they require."""
+    found = list(modules)
+    for module in found:  # grows on the way
+        found += [required for required in module.requires if required not in found]
+    return found
