@@ -18,7 +18,7 @@ def test_a_run_takes_its_slots_in_all_of_its_groups(play: Any) -> None:
     with play(m, trace=False) as sim:
         sim.emit(i)
         sim.emit(j)
-        assert taken(sim) == [{"m:out": "m:act", "m:face": "m:act"}] * 2
+        assert taken(sim) == [{"m:out": ["m:act"], "m:face": ["m:act"]}] * 2
 
 
 def test_a_slot_is_taken_in_no_other_group(play: Any) -> None:

@@ -65,8 +65,7 @@ def ask(engine: Engine, activation: Activation) -> Refusal:
         refusal.interests[group] = None
         taken = False
         for slot in rule.slots:
-            holder = group.taken.get(slot)
-            if holder is not None:
+            for holder in group.taken.get(slot) or ():
                 taken = True
                 refusal.names[holder.clause.rule.name] = None
                 refusal.blockers[holder] = None

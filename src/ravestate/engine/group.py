@@ -18,7 +18,7 @@ class Group:
     """Which slots are taken in it, and which activations have a stake in it.
 
     Attributes:
-        taken: For each slot taken here: the activation that runs, or None once it has finished.
+        taken: For each slot taken here: who runs on it, or None once somebody has finished.
         members: The activations that hold non-detached spikes of it, oldest first; with how many.
         interested: The waiting activations to be asked again when something ends in it.
         pressed: Stand-by rivals (numbers of clauses) under pressure: until when they have patience (seconds).
@@ -32,7 +32,7 @@ class Group:
         self.into: Group | None = None  # the group that this one has merged into
         self.members: dict[Activation, int] = {}
         # Most groups never need the following: they are made when they do.
-        self.taken: Mapping[int, Activation | None] = NOTHING
+        self.taken: Mapping[int, tuple[Activation, ...] | None] = NOTHING
         self.interested: Mapping[Activation, None] = NOTHING
         self.pressed: dict[int, float] | None = None
         self.eliminated: set[int] | None = None
@@ -44,17 +44,21 @@ class Group:
             group = group.into
         return group
 
-    def take(self, slot: int, holder: Activation | None) -> None:
-        """A slot is taken by a run, or (None) for good."""
+    def take(self, slot: int, holders: tuple[Activation, ...] | None) -> None:
+        """A slot is taken by a run (by several, if their groups have merged), or (None) for good."""
         if self.taken is NOTHING:
-            self.taken = {slot: holder}
+            self.taken = {slot: holders}
         else:
-            self.taken[slot] = holder  # type: ignore[index]  # it is a dictionary from then on
+            self.taken[slot] = holders  # type: ignore[index]  # it is a dictionary from then on
 
     def free(self, slot: int, holder: Activation) -> None:
         """A run gives a slot back, if it has it."""
-        if self.taken.get(slot) is holder:
-            self.taken = {s: h for s, h in self.taken.items() if s != slot} or NOTHING
+        holders = self.taken.get(slot)
+        if holders and holder in holders:
+            left = tuple(other for other in holders if other is not holder)
+            self.taken = {s: h for s, h in self.taken.items() if s != slot or left} or NOTHING
+            if left:
+                self.take(slot, left)
 
     def finished(self, slots: tuple[int, ...]) -> bool:
         """Whether one of the slots is taken for good."""
@@ -82,9 +86,9 @@ class Group:
     def absorb(self, other: Group) -> None:
         """Make `other` part of this group. What is finished in either is finished in both."""
         other.into = self
-        for slot, holder in other.taken.items():
-            if slot not in self.taken or holder is None:
-                self.take(slot, holder)
+        for slot, holders in other.taken.items():
+            mine = self.taken.get(slot, ())
+            self.take(slot, None if mine is None or holders is None else mine + holders)
         for activation, count in other.members.items():
             self.members[activation] = self.members.get(activation, 0) + count
         for activation in other.interested:

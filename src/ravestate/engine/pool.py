@@ -47,7 +47,7 @@ class Pool(Contests):
         root.absorb(merged)
         if self.tracer is not None:
             self.tracer(trace.Merged(self.now, merged.id, root.id))
-        done = {slot for slot, holder in root.taken.items() if holder is None}
+        done = {slot for slot, holders in root.taken.items() if holders is None}
         for activation in list(root.members):
             if activation.state < RUNNING and not activation.clause.rule.slotset.isdisjoint(done):
                 self._lose(activation, self._of_group(activation, root), "consumed")

@@ -59,8 +59,10 @@ def snapshot(engine: Engine) -> dict[str, Any]:
             {
                 "id": group.id,
                 "taken": {
-                    engine.policy.slot_plans[slot].name: None if holder is None else holder.clause.rule.name
-                    for slot, holder in group.taken.items()
+                    engine.policy.slot_plans[slot].name: None
+                    if holders is None
+                    else [holder.clause.rule.name for holder in holders]
+                    for slot, holders in group.taken.items()
                 },
             }
             for group in sorted(groups, key=lambda group: group.id)

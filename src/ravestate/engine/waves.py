@@ -243,7 +243,7 @@ class Waves(Slots):
             activation.groups = tuple(activation.firm_groups())
             for group in activation.groups:
                 for slot in rule.slots:
-                    group.take(slot, activation)
+                    group.take(slot, (activation,))
         elif len(clause.needs) > 1 or len(rule.clauses) > 1:
             for spike in stands_on:
                 if spike.claims is None:

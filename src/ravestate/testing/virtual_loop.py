@@ -3,14 +3,28 @@
 from __future__ import annotations
 
 import asyncio
+import heapq
 import selectors
 from collections.abc import Callable
+from contextvars import Context
 from typing import Any
 
 __all__ = ["VirtualLoop"]
 
 REAL_LIMIT = 30.0
 """Real seconds that a plain function may keep virtual time waiting."""
+
+
+class _Timer(asyncio.TimerHandle):
+    """A timer that knows when it was set, among those for the same moment."""
+
+    __slots__ = ("number",)
+    number: int
+
+    def __lt__(self, other: object) -> bool:
+        if isinstance(other, _Timer):
+            return (self.when(), self.number) < (other.when(), other.number)
+        return NotImplemented
 
 
 class VirtualLoop(asyncio.SelectorEventLoop):
@@ -25,6 +39,7 @@ class VirtualLoop(asyncio.SelectorEventLoop):
         self.goal: float | None = None
         """Virtual time at which `run_to` stops."""
         self.busy: Callable[[], list[str]] = list
+        self._timers = 0
         self._lent: dict[asyncio.Future[Any], str] = {}
         super().__init__(_Selector(self))
 
@@ -48,6 +63,18 @@ class VirtualLoop(asyncio.SelectorEventLoop):
         """Do not wait for plain functions any more."""
         self.busy = list
         self._lent.clear()
+
+    def call_at(
+        self, when: float, callback: Callable[..., object], *args: Any, context: Context | None = None
+    ) -> asyncio.TimerHandle:
+        """As any loop does, but timers for the same moment go off in the order in which they were set."""
+        self._check_closed()  # type: ignore[attr-defined]  # of BaseEventLoop
+        self._timers += 1
+        timer = _Timer(when, callback, args, self, context)
+        timer.number = self._timers
+        heapq.heappush(vars(self)["_scheduled"], timer)
+        timer._scheduled = True  # pyright: ignore[reportAttributeAccessIssue]  # as BaseEventLoop marks it
+        return timer
 
     def run_to(self, goal: float) -> None:
         """Run until all that happens at or before `goal` (virtual seconds) has happened."""
