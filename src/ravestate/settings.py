@@ -138,7 +138,7 @@ def value_of(text: str, model: type[pydantic.BaseModel], field: str, parse: Call
         field: The name of one of their fields.
         parse: Raises a ValueError where it can make nothing of a text, which then stands for itself.
     """
-    annotation = cast("object", model.model_fields[field].annotation)
+    annotation = cast("Any", model.model_fields[field].annotation)
     kinds = {annotation, *get_args(annotation)}
     if annotation in TEXT:
         return text

@@ -114,12 +114,12 @@ def load_module(name: str, folder: Path = Path()) -> Module:
             raise UsageError(
                 f"entry point {name!r} ({installed[name].value}) fails: {_where(error)}"
             ) from error
-    if "/" in name or Path(name).is_dir():
+    if "/" in name or not name.strip("."):
         raise UsageError(f"{name!r} is no module: name a file (./hello.py), or a dotted path (pkg.mod)")
+    if str(Path.cwd()) not in sys.path:  # a command does not look there by itself
+        sys.path.insert(0, str(Path.cwd()))
     if "." in name or ":" in name or (name.isidentifier() and importlib.util.find_spec(name) is not None):
         path, _, attribute = name.partition(":")
-        if str(Path.cwd()) not in sys.path:
-            sys.path.insert(0, str(Path.cwd()))
         try:
             value: Any = import_module(path)
         except ModuleNotFoundError as error:
@@ -130,7 +130,9 @@ def load_module(name: str, folder: Path = Path()) -> Module:
             raise UsageError(f"module {name!r} fails when it is imported: {_where(error)}") from error
         if attribute:
             if not hasattr(value, attribute):
-                raise UsageError(f"{path} has no {attribute!r}{nearest(attribute, dir(value))}")
+                raise UsageError(
+                    f"{path} has no {attribute!r}{nearest(attribute, [*dir(value), *getattr(value, '__all__', ())])}"
+                )
             value = getattr(value, attribute)
         return _as_module(name, value)
     raise UsageError(
@@ -150,9 +152,10 @@ def _from_file(name: str, path: Path) -> Module:
     sys.modules[path.stem] = module
     try:
         spec.loader.exec_module(module)
-    except RavestateError:
-        raise
     except Exception as error:
+        sys.modules.pop(path.stem, None)
+        if isinstance(error, RavestateError):
+            raise
         raise UsageError(f"{name} fails when it is loaded: {_where(error)}") from error
     return _as_module(name, module)
 

@@ -38,7 +38,7 @@ def run(options: argparse.Namespace) -> int:
         raise UsageError(
             f"{name!r} is no name for a project: use letters, digits, '-' and '_', e.g. my-agent"
         )
-    if package in sys.stdlib_module_names or package in ("core", "ravestate", *BUILT_IN):
+    if package in sys.stdlib_module_names or package in ("core", "ravestate", "test", "tests", *BUILT_IN):
         raise UsageError(f"a module named {package!r} exists already: choose another name, e.g. my-{name}")
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         raise UsageError(f"{folder} exists already, and is not empty")

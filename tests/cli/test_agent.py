@@ -1,0 +1,318 @@
+"""How an agent is named: modules by four ways, files, settings; every mistake in one line."""
+
+import re
+from importlib.metadata import EntryPoint
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import ravestate as rs
+from cli.examples import HELLO, call, write
+from ravestate.cli import UsageError, agent
+from ravestate.modules import rawio
+
+Capture = pytest.CaptureFixture[str]
+
+
+def run(capsys: Capture, *arguments: str) -> str:
+    """Run an agent that ends by itself, and return what it printed."""
+    code, out, errors = call(capsys, "run", *arguments)
+    assert (code, errors) == (0, "")
+    return out
+
+
+def refused(capsys: Capture, *arguments: str, code: int = 2) -> str:
+    """Run what cannot be run, and return the complaint."""
+    found, out, errors = call(capsys, "run", *arguments)
+    assert (found, out) == (code, ""), errors
+    assert errors.startswith("ravestate run: ")
+    return errors.removeprefix("ravestate run: ").rstrip("\n")
+
+
+# ---------------------------------------------------------------------------------------- modules
+
+
+def test_a_module_by_its_built_in_name() -> None:
+    assert agent.load_module("rawio") is rawio.module
+
+
+def test_a_module_by_its_file(folder: Path, capsys: Capture) -> None:
+    write(folder / "sub" / "hello.py", HELLO)
+    write(folder / "sub" / "beside.py", "WORD = 'beside'")
+    write(folder / "sub" / "uses.py", "import beside, ravestate as rs\nmodule = rs.Module(beside.WORD)")
+    assert run(capsys, "./sub/hello.py").startswith("Hello 1.0")
+    assert run(capsys, "sub/hello.py").startswith("Hello 1.0")
+    assert run(capsys, str(folder / "sub" / "hello.py")).startswith("Hello 1.0")
+    assert agent.load_module("sub/uses.py").name == "beside"
+
+
+def test_a_module_by_a_dotted_path(folder: Path, capsys: Capture) -> None:
+    write(folder / "pkg" / "__init__.py", "")
+    write(folder / "pkg" / "inner.py", HELLO + "\n    other = rs.Module('other')\n    module = hello\n")
+    assert run(capsys, "pkg.inner").startswith("Hello")
+    assert run(capsys, "pkg.inner:hello").startswith("Hello")
+    assert agent.load_module("pkg.inner:other").name == "other"
+
+
+def test_a_module_by_the_name_of_its_package_or_file_here(folder: Path, capsys: Capture) -> None:
+    write(folder / "pkg" / "__init__.py", HELLO)
+    write(folder / "single.py", HELLO)
+    assert run(capsys, "pkg").startswith("Hello")
+    assert run(capsys, "single").startswith("Hello")
+
+
+def test_a_module_by_its_entry_point(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    write(folder / "plugin.py", "import ravestate as rs\nweather = rs.Module('weather')\nbroken = 3")
+    install(
+        monkeypatch, weather="plugin:weather", bad="plugin:broken", gone="plugin:gone", lost="no_such_package"
+    )
+    monkeypatch.syspath_prepend(folder)
+    assert agent.load_module("weather").name == "weather"
+    for name, text in {
+        "bad": "bad: expected an rs.Module (or a Python module that holds one), not 3",
+        "gone": "entry point 'gone' (plugin:gone) fails: ",
+        "lost": "entry point 'lost' (no_such_package) fails: ModuleNotFoundError",
+        "wether": "there is no module 'wether'; did you mean 'weather'?",
+    }.items():
+        with pytest.raises(UsageError) as caught:
+            agent.load_module(name)
+        assert text in str(caught.value)
+
+
+def install(monkeypatch: pytest.MonkeyPatch, **points: str) -> None:
+    """Pretend that packages with entry points are installed."""
+    found = [EntryPoint(name, value, "ravestate.modules") for name, value in points.items()]
+
+    def entry_points(*, group: str) -> list[EntryPoint]:
+        return [point for point in found if point.group == group]
+
+    monkeypatch.setattr(agent, "entry_points", entry_points)
+
+
+def test_the_installed_package_uses_the_right_group() -> None:
+    assert list(agent.entry_points(group="ravestate.modules")) == []  # the built-in ones need none
+
+
+def test_a_module_that_is_named_twice_is_taken_once(folder: Path, capsys: Capture) -> None:
+    write(folder / "pkg.py", HELLO)
+    assert run(capsys, "pkg", "pkg:hello", "rawio", "rawio").count("Hello") == 1
+
+
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        ("hibie", "there is no module 'hibie'; did you mean 'hibye'?; built in: conio, rawio,"),
+        ("zzz", "there is no module 'zzz'; built in: conio, rawio,"),
+        ("no.such.path", "module 'no.such.path': No module named 'no'"),
+        ("ravestate.modules:rawi", "ravestate.modules has no 'rawi'; did you mean 'rawio'?"),
+        ("ravestate.errors", "ravestate.errors: Python module ravestate.errors holds no rs.Module"),
+        ("ravestate.errors:nearest", "ravestate.errors:nearest: expected an rs.Module"),
+        ("./missing.py", "there is no file ./missing.py"),
+        ("./missing", "'./missing' is no module: name a file (./hello.py), or a dotted path (pkg.mod)"),
+        (".", "'.' is no module: name a file"),
+        ("", "'' is no module: name a file"),
+        (":module", "module ':module' fails when it is imported: ValueError: Empty module name"),
+    ],
+)
+def test_a_module_that_is_not_there(name: str, text: str, folder: Path, capsys: Capture) -> None:
+    assert refused(capsys, name).startswith(text)
+
+
+@pytest.mark.parametrize("way", ["./bad.py", "bad"])
+@pytest.mark.parametrize(
+    ("content", "text"),
+    [
+        ("x = = 1\n", r"\S+bad\.py:1: invalid syntax"),
+        ("import os\n\nos.nope\n", r"\S+bad\.py:3: AttributeError: module 'os' has no attribute 'nope'"),
+        ("def f():\n    raise KeyError('x')\n\nf()\n", r"\S+bad\.py:2: KeyError: 'x'"),
+    ],
+)
+def test_a_module_that_fails_when_it_is_loaded(
+    way: str, content: str, text: str, folder: Path, capsys: Capture
+) -> None:
+    write(folder / "bad.py", content)
+    assert re.fullmatch(rf"\S+ ?\S* fails when it is (loaded|imported): {text}", refused(capsys, way))
+
+
+def test_a_package_that_is_missing_is_named(folder: Path, capsys: Capture) -> None:
+    write(folder / "needs.py", "import no_such_package\n")
+    assert "No module named 'no_such_package'" in refused(capsys, "./needs.py")
+    assert "No module named 'no_such_package'" in refused(capsys, "needs")
+
+
+def test_a_wrong_declaration_is_a_fault_and_says_where(folder: Path, capsys: Capture) -> None:
+    write(folder / "wrong.py", "import ravestate as rs\nm = rs.Module('two words')\n")
+    assert refused(capsys, "./wrong.py", code=1).startswith("Module: 'two words' is no name")
+
+
+def test_a_file_without_a_module(folder: Path, capsys: Capture) -> None:
+    write(folder / "empty.py", "")
+    write(folder / "two.py", "import ravestate as rs\na, b = rs.Module('a'), rs.Module('b')")
+    assert "holds no rs.Module: write module = rs.Module('name')" in refused(capsys, "./empty.py")
+    assert "holds 2 rs.Modules: name the one you mean `module`" in refused(capsys, "./two.py")
+
+
+# ---------------------------------------------------------------------------------------- agent files
+
+
+def test_an_agent_file_names_modules_relative_to_itself(folder: Path, capsys: Capture) -> None:
+    write(folder / "deep" / "parts" / "hello.py", HELLO)
+    write(
+        folder / "deep" / "agent.yaml",
+        """
+        modules: [rawio, ./parts/hello.py]
+        settings:
+          hello: {greeting: Salut, words: [a, b]}
+        seed: 3
+        patience: 0.5
+        """,
+    )
+    first = run(capsys, "deep/agent.yaml")
+    assert first.startswith("Salut 1.0 ('a', 'b') ")
+    assert run(capsys, "-f", "deep/agent.yaml") == first  # by its seed
+    assert run(capsys, "deep/agent.yaml", "--seed", "4") != first
+
+
+def test_files_and_modules_may_be_combined(folder: Path, capsys: Capture) -> None:
+    write(folder / "hello.py", HELLO)
+    write(folder / "settings.yml", "settings: {hello: {greeting: Ahoy}}")
+    assert run(capsys, "./hello.py", "-f", "settings.yml").startswith("Ahoy")
+    assert "name a module, or an agent file that names some" in refused(capsys, "-f", "settings.yml")
+    assert "name a module, or an agent file that names some" in refused(capsys)
+
+
+def test_secrets_come_from_the_environment(
+    folder: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    write(folder / "hello.py", HELLO)
+    write(
+        folder / "agent.yaml",
+        "modules: [./hello.py]\nsettings: {hello: {greeting: 'say ${WORD}', words: ['${WORD}', '${NONE:-none}', '${NONE:-}']}}",
+    )
+    monkeypatch.setenv("WORD", "friend")
+    monkeypatch.delenv("NONE", raising=False)
+    assert run(capsys, "agent.yaml").startswith("say friend 1.0 ('friend', 'none', '') ")
+    monkeypatch.delenv("WORD")
+    assert refused(capsys, "agent.yaml") == (
+        "agent.yaml: the environment has no WORD; set it, or write ${WORD:-default}"
+    )
+
+
+@pytest.mark.parametrize(
+    ("content", "text"),
+    [
+        ("modules: [", "agent.yaml is not valid YAML: while parsing"),
+        ("- rawio", "agent.yaml must hold `modules: [...]`, and may hold settings, seed, patience"),
+        ("", "agent.yaml must hold `modules: [...]`"),
+        ("moduls: [rawio]", "agent.yaml: unknown key 'moduls'; did you mean 'modules'?"),
+        ("modules: rawio", "agent.yaml: modules must be a list of names, not 'rawio'"),
+        ("modules: [1]", "agent.yaml: modules must be a list of names, not [1]"),
+        ("settings: [a]", "agent.yaml: settings must map a module to its settings, not ['a']"),
+        ("settings: {rawio: 3}", "agent.yaml: settings of rawio must be keys and values, not 3"),
+        ("modules: [rawio]\nseed: x", "agent.yaml: seed must be a number, not 'x'"),
+        ("modules: [rawio]\nseed: true", "agent.yaml: seed must be a number, not True"),
+        ("modules: [rawio]\npatience: []", "agent.yaml: patience must be a number, not []"),
+        ("modules: [./gone.py]", "there is no file ./gone.py"),
+    ],
+)
+def test_an_agent_file_that_is_wrong(content: str, text: str, folder: Path, capsys: Capture) -> None:
+    write(folder / "agent.yaml", content)
+    assert refused(capsys, "agent.yaml").startswith(text)
+
+
+def test_patience_out_of_range_is_refused(folder: Path, capsys: Capture) -> None:
+    write(folder / "agent.yaml", "modules: [rawio]\npatience: -1")
+    assert refused(capsys, "agent.yaml", code=1) == "patience=-1 must be 0 s or more, e.g. patience=1.0"
+
+
+def test_an_agent_file_that_cannot_be_read(folder: Path, capsys: Capture) -> None:
+    assert refused(capsys, "gone.yaml") == "cannot read gone.yaml: No such file or directory"
+    (folder / "folder.yaml").mkdir()
+    assert refused(capsys, "folder.yaml") == "cannot read folder.yaml: Is a directory"
+    (folder / "binary.yaml").write_bytes(b"\xff\xfe\x00")
+    assert refused(capsys, "binary.yaml").startswith("binary.yaml is not valid YAML: ")
+
+
+# ---------------------------------------------------------------------------------------- settings
+
+
+def test_set_goes_before_the_environment_and_that_before_the_file(
+    folder: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    write(folder / "hello.py", HELLO)
+    write(folder / "agent.yaml", "modules: [./hello.py]\nsettings: {hello: {greeting: file, pause: 2}}")
+    assert run(capsys, "agent.yaml").startswith("file 2.0")
+    monkeypatch.setenv("RAVESTATE_HELLO_GREETING", "environment")
+    assert run(capsys, "agent.yaml").startswith("environment 2.0")
+    assert run(capsys, "agent.yaml", "--set", "hello.greeting=set").startswith("set 2.0")
+    assert run(capsys, "./hello.py").startswith("environment 1.0")
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("hello.greeting=a=b c", "a=b c 1.0 ()"),
+        ("hello.greeting=12", "12 1.0 ()"),
+        ("hello.greeting=yes", "yes 1.0 ()"),
+        ("hello.greeting=", " 1.0 ()"),
+        ("hello.pause=2", "Hello 2.0 ()"),
+        ("hello.pause=1e3", "Hello 1000.0 ()"),
+        ("hello.words=[a, b]", "Hello 1.0 ('a', 'b')"),
+    ],
+)
+def test_what_is_set_is_text_where_text_is_wanted_and_yaml_elsewhere(
+    text: str, said: str, folder: Path, capsys: Capture
+) -> None:
+    write(folder / "hello.py", HELLO)
+    assert run(capsys, "./hello.py", "--set", text).startswith(said)
+
+
+def test_the_last_of_two_values_counts(folder: Path, capsys: Capture) -> None:
+    write(folder / "hello.py", HELLO)
+    assert run(capsys, "./hello.py", "--set", "hello.pause=2", "--set", "hello.pause=3").startswith(
+        "Hello 3.0"
+    )
+
+
+def test_settings_of_required_modules_are_known_too(folder: Path) -> None:
+    write(folder / "user.py", HELLO.replace("    hello = ", "    base = ").replace("@hello", "@base"))
+    base = rs.Module("base")
+    top = rs.Module("top", requires=[base])
+    base.requires = [top]  # a cycle is the compiler's business
+    assert agent._all([top]) == [top, base]
+
+
+@pytest.mark.parametrize(
+    "text", ["hello", "hello.greeting", "greeting=x", "=x", ".=x", "hello.=x", ".greeting=x"]
+)
+def test_a_set_that_is_none(text: str, folder: Path, capsys: Capture) -> None:
+    assert refused(capsys, "rawio", "--set", text) == (
+        f"--set {text}: write --set module.key=value, e.g. --set idle.bored_after=10"
+    )
+
+
+@pytest.mark.parametrize(
+    ("text", "fault"),
+    [
+        (
+            "idle.bored_afer=3",
+            "setting idle.bored_afer: module 'idle' has no such setting; did you mean 'bored_after'?",
+        ),
+        (
+            "idel.bored_after=3",
+            "settings for 'idel': module 'idel' is not part of this agent; did you mean 'idle'?",
+        ),
+        ("rawio.loud=1", "settings for 'rawio': module 'rawio' has no settings"),
+        ("idle.bored_after=never", "setting idle.bored_after = 'never': Input should be a valid number"),
+        ("idle.bored_after=[", "setting idle.bored_after = '[': Input should be a valid number"),
+        ("idle.bored_after=-1", "idle:notice_silence"),
+    ],
+)
+def test_settings_that_do_not_fit_are_faults(text: str, fault: str, capsys: Capture) -> None:
+    assert fault in refused(capsys, "idle", "rawio", "--set", text, code=1)
+
+
+def test_an_agent_knows_what_its_contexts_are_given() -> None:
+    options: Any = agent.Agent([], {"a": {}}, 3, 0.5).options()
+    assert options == {"settings": {"a": {}}, "seed": 3, "patience": 0.5}

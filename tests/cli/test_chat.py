@@ -1,0 +1,78 @@
+"""``ravestate chat``: everything together on the console, also through plain pipes."""
+
+import argparse
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from cli.examples import HELLO, call, write
+from ravestate.cli import chat
+from ravestate.modules import BUILT_IN
+from ravestate.runtime import run as run_file
+
+Capture = pytest.CaptureFixture[str]
+
+
+@pytest.fixture
+def started(monkeypatch: pytest.MonkeyPatch) -> list[tuple[list[str], dict[str, Any]]]:
+    """What the command would have run: names of modules, and options."""
+    seen: list[tuple[list[str], dict[str, Any]]] = []
+
+    def run(*modules: Any, **options: Any) -> None:
+        seen.append(([module.name for module in modules], options))
+
+    monkeypatch.setattr(run_file, "run", run)
+    return seen
+
+
+def test_the_complete_agent_takes_part(started: Any, capsys: Capture) -> None:
+    assert call(capsys, "chat") == (0, "", "")
+    ((names, options),) = started
+    assert tuple(names) == chat.COMPLETE
+    assert options["settings"] == {}
+    assert set(chat.COMPLETE) <= set(BUILT_IN)
+
+
+def test_modules_and_settings_may_be_added_and_left_out(folder: Path, started: Any, capsys: Capture) -> None:
+    write(folder / "hello.py", HELLO)
+    code, *_ = call(
+        capsys,
+        "chat",
+        "./hello.py",
+        "--without",
+        "wildtalk",
+        "--without",
+        "fillers",
+        "--set",
+        "hello.pause=2",
+    )
+    ((names, options),) = started
+    assert code == 0
+    assert names == ["conio", "idle", "verbaliser", "interloc", "hibye", "hello"]
+    assert options["settings"] == {"hello": {"pause": 2}}
+
+
+def test_only_what_takes_part_can_be_left_out(started: Any, capsys: Capture) -> None:
+    code, out, errors = call(capsys, "chat", "--without", "wildtlk")
+    assert (code, out, started) == (2, "", [])
+    assert (
+        errors == "ravestate chat: --without wildtlk: the chat has no such module; did you mean 'wildtalk'?\n"
+    )
+
+
+def test_it_needs_no_module() -> None:
+    parser = argparse.ArgumentParser()
+    chat.add_arguments(parser)
+    assert parser.parse_args([]).modules == []
+
+
+def test_a_pipe_is_answered_and_ends_it() -> None:
+    command = [str(Path(sys.executable).parent / "ravestate"), "chat", "--without", "wildtalk"]
+    run = subprocess.run(
+        command, input="hello\nbye\n", capture_output=True, text=True, timeout=60, check=False
+    )
+    assert (run.returncode, run.stderr) == (0, "")
+    assert len(run.stdout.splitlines()) >= 2

@@ -1,0 +1,100 @@
+"""``ravestate check``: faults are 1, findings are told, all is well otherwise."""
+
+from pathlib import Path
+
+import pytest
+
+from cli.examples import HELLO, call, write
+from ravestate.modules import BUILT_IN
+
+Capture = pytest.CaptureFixture[str]
+
+
+def test_all_is_well(folder: Path, capsys: Capture) -> None:
+    write(folder / "hello.py", HELLO)
+    assert call(capsys, "check", "./hello.py") == (
+        0,
+        "1 rules, 10 signals, 3 slots: no faults, no findings\n",
+        "",
+    )
+
+
+def test_findings_are_told_and_are_no_faults(folder: Path, capsys: Capture) -> None:
+    write(
+        folder / "odd.py",
+        """
+        import ravestate as rs
+        module = rs.Module("odd")
+        go, lost, out = module.signal("go"), module.signal("lost"), module.slot("out")
+
+        @module.rule(when=go, writes=out, emits=lost)
+        async def first(ctx): ...
+
+        @module.rule(when=go, writes=out)
+        async def second(ctx): ...
+        """,
+    )
+    code, out, errors = call(capsys, "check", "./odd.py")
+    lines = out.splitlines()
+    assert (code, errors) == (0, "")
+    assert [line.split(":")[0] for line in lines[:-1]] == ["never-wins", "tie", "unheard"]
+    assert lines[-1].endswith("no faults, 3 findings")
+
+
+def test_every_fault_is_told_at_once(folder: Path, capsys: Capture) -> None:
+    write(
+        folder / "faulty.py",
+        """
+        import ravestate as rs
+        module = rs.Module("faulty", requires=[])
+        far = rs.Module("far").signal("far")
+
+        @module.rule(when=far)
+        async def first(ctx): ...
+
+        @module.rule(when=module.signal("go"), weight=-1)
+        async def second(ctx): ...
+        """,
+    )
+    code, out, errors = call(capsys, "check", "./faulty.py")
+    assert (code, out) == (1, "")
+    lines = errors.splitlines()
+    assert len(lines) == 2 and all(line.startswith("fault: rule faulty:") for line in lines)
+    assert "write requires=[far]" in errors and "weight=-1.0 must be above 0" in errors
+
+
+def test_settings_are_checked_with_their_declarations(capsys: Capture) -> None:
+    assert call(capsys, "check", "idle", "--set", "idle.bored_after=3")[0] == 0
+    code, _, errors = call(capsys, "check", "idle", "--set", "idle.bored_after=-3")
+    assert (
+        code == 1
+        and errors.startswith("fault: rule idle:notice_silence")
+        and "= -3.0 must be 0 s or more" in errors
+    )
+    code, _, errors = call(capsys, "check", "idle", "--set", "idle.bored=3")
+    assert code == 1 and errors.startswith("fault: setting idle.bored: module 'idle' has no such setting")
+
+
+def test_a_module_that_declares_wrongly_is_a_fault(folder: Path, capsys: Capture) -> None:
+    write(folder / "wrong.py", "import ravestate as rs\nmodule = rs.Module('')\n")
+    code, _, errors = call(capsys, "check", "./wrong.py")
+    assert code == 1 and errors.startswith("fault: Module: '' is no name")
+
+
+def test_wrong_use_is_2(capsys: Capture) -> None:
+    assert call(capsys, "check")[0] == 2
+    assert call(capsys, "check", "hibie")[0] == 2
+
+
+def test_utilities_are_listed(folder: Path, capsys: Capture) -> None:
+    write(folder / "hello.py", HELLO)
+    _, out, _ = call(capsys, "check", "./hello.py", "--utilities")
+    assert "hello:greet   0.000000 nats" in out
+
+
+@pytest.mark.parametrize("name", BUILT_IN)
+def test_the_built_in_modules_have_no_faults(name: str, capsys: Capture) -> None:
+    code, out, _ = call(capsys, "check", name)
+    assert code == 0
+    kinds = {line.split(":")[0] for line in out.splitlines()[:-1]}
+    assert kinds <= {"unheard"}  # what a module offers is heard by others

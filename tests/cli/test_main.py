@@ -1,0 +1,105 @@
+"""The command line as a whole: help, exit codes, no traceback for a user's mistake."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import ravestate as rs
+from cli.examples import HELLO, call, write
+from ravestate.cli import COMMANDS, main
+
+Capture = pytest.CaptureFixture[str]
+
+
+def test_every_command_has_help(capsys: Capture) -> None:
+    code, out, _ = call(capsys, "--help")
+    assert code == 0
+    for name, summary in COMMANDS.items():
+        assert name in out and summary.split(",")[0][:30] in " ".join(out.split())
+        code, own, _ = call(capsys, name, "--help")
+        assert code == 0 and own.startswith(f"usage: ravestate {name}")
+
+
+def test_the_version_is_told(capsys: Capture) -> None:
+    assert call(capsys, "--version") == (0, f"ravestate {rs.__version__}\n", "")
+
+
+@pytest.mark.parametrize(
+    "arguments", [(), ("rnu",), ("run", "--nonsense", "idle"), ("run", "idle", "--seed", "x")]
+)
+def test_wrong_use_is_2(arguments: tuple[str, ...], capsys: Capture) -> None:
+    code, out, errors = call(capsys, *arguments)
+    assert (code, out) == (2, "") and errors.startswith("usage: ravestate")
+
+
+def test_options_are_not_guessed_from_their_beginnings(capsys: Capture) -> None:
+    code, _, errors = call(capsys, "run", "idle", "--see", "1")
+    assert code == 2 and "--see" in errors
+
+
+@pytest.mark.parametrize("flags", [(), ("-v",), ("-vv",)])
+def test_verbosity_is_counted(flags: tuple[str, ...], capsys: Capture) -> None:
+    assert call(capsys, *flags, "check", "rawio")[0] == 0
+
+
+def test_ctrl_c_is_130(monkeypatch: pytest.MonkeyPatch) -> None:
+    from ravestate.cli import check
+
+    def interrupted(options: object) -> int:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(check, "run", interrupted)
+    assert main(["check", "rawio"]) == 130
+
+
+def test_a_pipe_that_closes_is_no_error(monkeypatch: pytest.MonkeyPatch) -> None:
+    from ravestate.cli import check
+
+    def broken(options: object) -> int:
+        raise BrokenPipeError
+
+    monkeypatch.setattr(check, "run", broken)
+    assert main(["check", "rawio"]) == 0
+
+
+def test_the_world_s_failures_are_1(monkeypatch: pytest.MonkeyPatch, capsys: Capture) -> None:
+    from ravestate.cli import check
+
+    def fails(options: object) -> int:
+        raise rs.PlatformError("the microphone is gone")
+
+    monkeypatch.setattr(check, "run", fails)
+    assert call(capsys, "check", "rawio") == (1, "", "ravestate check: the microphone is gone\n")
+
+
+def test_it_is_installed_as_a_command(folder: Path) -> None:
+    write(folder / "hello.py", HELLO)
+    command = Path(sys.executable).parent / "ravestate"
+    run = subprocess.run(
+        [command, "run", "./hello.py"], capture_output=True, text=True, timeout=60, check=False
+    )
+    assert (run.returncode, run.stderr) == (0, "") and run.stdout.startswith("Hello 1.0")
+
+
+def test_warnings_reach_the_user(folder: Path) -> None:
+    write(
+        folder / "failing.py",
+        """
+        import ravestate as rs
+        module = rs.Module("failing")
+
+        @module.rule(when=rs.startup)
+        async def fail(ctx):
+            ctx.stop()
+            raise ValueError("broken")
+        """,
+    )
+    command = Path(sys.executable).parent / "ravestate"
+    run = subprocess.run(
+        [command, "run", "./failing.py"], capture_output=True, text=True, timeout=60, check=False
+    )
+    assert run.returncode == 0
+    assert "ERROR ravestate: rule failing:fail failed: broken" in run.stderr
+    assert run.stderr.count("Traceback") == 1  # the rule's own

@@ -1,0 +1,92 @@
+"""``ravestate new``: a project that runs and whose tests pass, and names that it refuses."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from cli.examples import call
+
+Capture = pytest.CaptureFixture[str]
+
+
+def files(folder: Path) -> set[str]:
+    return {str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file()}
+
+
+def test_a_project_whose_tests_pass(folder: Path, capsys: Capture) -> None:
+    code, out, errors = call(capsys, "new", "my-agent")
+    assert (code, errors) == (0, "")
+    made = folder / "my-agent"
+    assert files(made) == {
+        "README.md",
+        "agent.yaml",
+        "pyproject.toml",
+        "my_agent.py",
+        "tests/test_my_agent.py",
+    }
+    assert all(f"wrote {Path('my-agent') / name}" in out for name in files(made))
+    assert out.endswith("\nNow:\n  cd my-agent\n  ravestate run agent.yaml\n  python -m pytest\n")
+    for name in files(made):
+        text = (made / name).read_text(encoding="utf-8")
+        assert "__name__" not in text and "__package__" not in text
+
+    environment = {k: v for k, v in os.environ.items() if not k.startswith("PYTEST")}
+    tests = subprocess.run(
+        [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider"],
+        cwd=made, capture_output=True, text=True, timeout=120, check=False, env=environment,
+    )  # fmt: skip
+    assert tests.returncode == 0, tests.stdout + tests.stderr
+    assert "4 passed" in tests.stdout
+
+    run = subprocess.run(
+        [Path(sys.executable).parent / "ravestate", "run", "agent.yaml"],
+        cwd=made, input="My name is Grace.\n", capture_output=True, text=True, timeout=60, check=False,
+    )  # fmt: skip
+    assert (run.returncode, run.stderr) == (0, "")
+    assert "Nice to meet you, Grace! I am Ada." in run.stdout
+
+    assert call(capsys, "check", "my-agent/agent.yaml")[0] == 0
+
+
+def test_a_folder_further_down_and_one_that_is_empty(folder: Path, capsys: Capture) -> None:
+    (folder / "empty").mkdir()
+    assert call(capsys, "new", "empty")[0] == 0
+    assert call(capsys, "new", "some/where/Robot7")[0] == 0
+    assert (folder / "some" / "where" / "Robot7" / "robot7.py").is_file()
+
+
+@pytest.mark.parametrize(
+    "name", ["", ".", "..", "two words", "1st", "-x-y", "ä", "a/b c", "class", "import", "a.b"]
+)
+def test_what_is_no_name(name: str, folder: Path, capsys: Capture) -> None:
+    code, out, errors = call(capsys, "new", "--", name)
+    assert (code, out) == (2, "")
+    assert "is no name for a project: use letters, digits, '-' and '_', e.g. my-agent" in errors
+    assert list(folder.iterdir()) == []
+
+
+@pytest.mark.parametrize("name", ["json", "test", "tests", "ravestate", "core", "idle", "rawio", "Asyncio"])
+def test_names_of_other_modules_are_refused(name: str, folder: Path, capsys: Capture) -> None:
+    code, out, errors = call(capsys, "new", name)
+    assert (code, out) == (2, "")
+    assert f"a module named {name.lower()!r} exists already: choose another name, e.g. my-{name}" in errors
+    assert list(folder.iterdir()) == []
+
+
+def test_what_is_there_is_not_overwritten(folder: Path, capsys: Capture) -> None:
+    (folder / "taken").mkdir()
+    (folder / "taken" / "precious.txt").write_text("mine", encoding="utf-8")
+    (folder / "file").write_text("mine", encoding="utf-8")
+    for name in ("taken", "file"):
+        code, out, errors = call(capsys, "new", name)
+        assert (code, out, errors) == (2, "", f"ravestate new: {name} exists already, and is not empty\n")
+    assert files(folder) == {"taken/precious.txt", "file"}
+
+
+def test_a_place_that_cannot_be_written(folder: Path, capsys: Capture) -> None:
+    (folder / "file").write_text("", encoding="utf-8")
+    code, _, errors = call(capsys, "new", "file/agent")
+    assert code == 2 and errors.startswith("ravestate new: cannot write file/agent/README.md: ")

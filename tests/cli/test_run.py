@@ -1,0 +1,61 @@
+"""``ravestate run``: until the agent ends by itself, or Ctrl-C."""
+
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from cli.examples import HELLO, call, write
+
+
+def test_it_runs_to_its_end(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    write(folder / "hello.py", HELLO)
+    code, out, _ = call(capsys, "run", "./hello.py")
+    assert code == 0 and out.startswith("Hello")
+
+
+def test_faults_are_1_and_all_told(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    write(
+        folder / "faulty.py",
+        """
+        import ravestate as rs
+        module = rs.Module("faulty")
+        go = module.signal("go")
+
+        @module.rule(when=go.min_age(9), weight=0)
+        async def r(ctx): ...
+        """,
+    )
+    code, out, errors = call(capsys, "run", "./faulty.py")
+    assert (code, out) == (1, "")
+    assert errors.startswith("ravestate run: 2 faults in the declarations:\n  - rule faulty:r (")
+    assert "weight=0.0 must be above 0" in errors and "can never be at least 9 s" in errors
+
+
+def test_ctrl_c_ends_it_in_order(folder: Path) -> None:
+    write(
+        folder / "waits.py",
+        """
+        import asyncio
+        import ravestate as rs
+        module = rs.Module("waits")
+
+        @module.rule(when=rs.startup)
+        async def wait(ctx):
+            print("waiting", flush=True)
+            await asyncio.get_running_loop().create_future()
+
+        @module.rule(when=rs.shutdown)
+        async def end(ctx):
+            print("farewell", flush=True)
+        """,
+    )
+    command = [str(Path(sys.executable).parent / "ravestate"), "run", "./waits.py"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        assert process.stdout is not None
+        assert process.stdout.readline() == "waiting\n"
+        process.send_signal(signal.SIGINT)
+        out, errors = process.communicate(timeout=60)
+    assert (process.returncode, out, errors) == (0, "farewell\n", "")
