@@ -65,18 +65,26 @@ def test_a_module_by_the_name_of_its_package_or_file_here(folder: Path, capsys: 
 def test_a_module_by_its_entry_point(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     write(folder / "plugin.py", "import ravestate as rs\nweather = rs.Module('weather')\nbroken = 3")
     install(
-        monkeypatch, weather="plugin:weather", bad="plugin:broken", gone="plugin:gone", lost="no_such_package"
+        monkeypatch,
+        weather="plugin:weather",
+        bad="plugin:broken",
+        gone="plugin:gone",
+        lost="no_such_package",
+        wrong="two:words",
     )
+    write(folder / "two.py", "import ravestate as rs\nwords = rs.Module('two words')")
     monkeypatch.syspath_prepend(folder)
     assert agent.load_module("weather").name == "weather"
     for name, text in {
         "bad": "bad: expected an rs.Module (or a Python module that holds one), not 3",
         "gone": "entry point 'gone' (plugin:gone) fails: ",
         "lost": "entry point 'lost' (no_such_package) fails: ModuleNotFoundError",
+        "wrong": "Module: 'two words' is no name",
         "wether": "there is no module 'wether'; did you mean 'weather'?",
     }.items():
-        with pytest.raises(UsageError) as caught:
+        with pytest.raises(rs.RavestateError) as caught:
             agent.load_module(name)
+        assert isinstance(caught.value, UsageError) == (name != "wrong")
         assert text in str(caught.value)
 
 
@@ -143,7 +151,8 @@ def test_a_package_that_is_missing_is_named(folder: Path, capsys: Capture) -> No
 
 def test_a_wrong_declaration_is_a_fault_and_says_where(folder: Path, capsys: Capture) -> None:
     write(folder / "wrong.py", "import ravestate as rs\nm = rs.Module('two words')\n")
-    assert refused(capsys, "./wrong.py", code=1).startswith("Module: 'two words' is no name")
+    for way in ("./wrong.py", "wrong", "wrong:m"):
+        assert refused(capsys, way, code=1).startswith("Module: 'two words' is no name")
 
 
 def test_a_file_without_a_module(folder: Path, capsys: Capture) -> None:

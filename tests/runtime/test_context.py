@@ -544,6 +544,29 @@ async def test_nobody_who_refuses_keeps_the_process() -> None:
 
 
 @on_loop
+async def test_cancelling_the_end_breaks_off() -> None:
+    ending = Ending()
+
+    @ending.rule(rs.shutdown)
+    async def slow(ctx: rs.RuleContext) -> None:
+        try:
+            await asyncio.get_running_loop().create_future()
+        finally:
+            ending.told.append("broken off")
+
+    context = rs.Context(ending.module)
+    await context.__aenter__()
+    end = asyncio.create_task(context.stop())
+    await turns()
+    assert not end.done() and ending.told == []
+    end.cancel()
+    with pytest.raises(asyncio.CancelledError):
+        await end
+    assert ending.told == ["broken off"]
+    assert len(asyncio.all_tasks()) == 1
+
+
+@on_loop
 async def test_the_last_acts_are_still_seen() -> None:
     ending = Ending()
     goodbye = ending.module.slot("goodbye", "")

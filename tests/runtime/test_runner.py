@@ -112,6 +112,18 @@ async def test_a_rule_that_raises_is_logged_once_and_the_next_best_answers(
             assert await talk.ask(context) == "fallback"  # and the conversation goes on
 
 
+@on_loop
+async def test_when_the_world_fails_the_message_says_all() -> None:
+    talk = Talk()
+    talk.rule(raising(rs.PlatformError("no microphone: plug one in"), "at once"), name="hears")
+    with Records() as log:
+        async with rs.Context(talk.module) as context:
+            assert await talk.ask(context) == "fallback"
+    (record,) = log.records
+    assert record.getMessage() == "rule m:hears failed: no microphone: plug one in"
+    assert record.exc_info is None
+
+
 class Records(logging.Handler):
     """What is logged for ravestate while it is entered."""
 

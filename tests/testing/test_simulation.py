@@ -234,6 +234,24 @@ def test_plain_functions_take_no_virtual_time() -> None:
         assert sim.failures == []
 
 
+def test_plain_functions_take_turns_so_that_runs_repeat() -> None:
+    module, go, _ = clock()
+    inside: list[str] = []
+    order: list[str] = []
+    for name in "abcdef":
+
+        def plain(ctx: rs.RuleContext, name: str = name) -> None:
+            inside.append(name)
+            order.append(name)
+            assert inside == [name]
+            inside.remove(name)
+
+        module.rule(when=go, name=name)(plain)
+    with simulate(module) as sim:
+        sim.emit(go)
+        assert order == list("abcdef") and sim.failures == []
+
+
 def test_a_plain_function_that_keeps_time_waiting_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     import threading
 
