@@ -32,6 +32,11 @@ def write(path: Path, text: str) -> Path:
     return path
 
 
+def complaints(errors: str) -> str:
+    """What was complained of, but for warnings that the machine was busy."""
+    return "".join(line for line in errors.splitlines(keepends=True) if "blocked the loop" not in line)
+
+
 def call(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, str, str]:
     """Call the command line: exit code, what it printed, and what it complained of, in which is no traceback."""
     try:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from cli.examples import HELLO, call, write
+from cli.examples import HELLO, call, complaints, write
 
 
 def test_it_runs_to_its_end(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -58,4 +58,4 @@ def test_ctrl_c_ends_it_in_order(folder: Path) -> None:
         assert process.stdout.readline() == "waiting\n"
         process.send_signal(signal.SIGINT)
         out, errors = process.communicate(timeout=60)
-    assert (process.returncode, out, errors) == (0, "farewell\n", "")
+    assert (process.returncode, out, complaints(errors)) == (0, "farewell\n", "")

@@ -545,6 +545,7 @@ async def test_a_rule_that_blocks_the_loop_is_named(waits: bool) -> None:
     talk.rule(heavy)
     talk.rule(light, writes=talk.note)
     with pytest.MonkeyPatch.context() as patch, Records() as log:
+        patch.setattr(runner_file, "BLOCKING", 0.1)
         patch.setattr(runner_file, "perf_counter", lambda: clock[0])
         patch.setattr(nest_file, "perf_counter", lambda: clock[0])
         async with rs.Context(talk.module) as context:
