@@ -93,7 +93,7 @@ class Engine(Waves):
                 error = self.policy.signal_of["core:error"]
                 self._birth(error, self._errors.pop(0), (), self._new_group(), None)
             elif self._busy and not self.read(self._activity.index):
-                self._change(self._activity, True, (), None)
+                self._set_flag(self._activity, True)
             elif self._free:
                 self._start_free()
             elif self._line or self._asking or self._dirty or self._stirred:

@@ -23,7 +23,7 @@ from ravestate.engine.group import Group
 from ravestate.engine.horizon import FIRM, Horizon
 from ravestate.engine.slots import Slots
 from ravestate.engine.watch import Watch
-from ravestate.policy.plan import Clause
+from ravestate.policy.plan import Clause, SlotPlan
 from ravestate.policy.policy import Policy
 
 __all__ = ["Waves"]
@@ -265,14 +265,21 @@ class Waves(Slots):
         self._acts = True
         self._out.append(Run(activation.id, rule.rule, payloads, values))
 
+    def _set_flag(self, flag: SlotPlan, value: bool) -> None:
+        """Change a built-in flag; the agent may well have no rule that hears it."""
+        if flag.heard or self.tracer is not None or self.watched or self.policy.guarded:
+            self._change(flag, value, (), None)
+        else:
+            self.values[flag.index] = value
+
     def _settle_flags(self) -> bool:
         """Bring ``core:activity`` and ``core:pressure`` up to date (L22); whether one has changed."""
         pressure = bool(self.waiting) or bool(self.benches)
         if pressure != self.read(self._pressure.index):
-            self._change(self._pressure, pressure, (), None)
+            self._set_flag(self._pressure, pressure)
             return True
         activity = self._busy > 0
         if activity != self.read(self._activity.index):
-            self._change(self._activity, activity, (), None)
+            self._set_flag(self._activity, activity)
             return True
         return False

@@ -197,7 +197,7 @@ class Context:
         runner.futures.setdefault(signal.name, []).append(future)
         runner.engine.watched[signal.name] = 1
         try:
-            return await asyncio.wait_for(future, timeout)
+            return await (future if timeout is None else asyncio.wait_for(future, timeout))
         except TimeoutError:
             raise TimeoutError(f"no {signal.name} within {timeout:g} s") from None
         finally:

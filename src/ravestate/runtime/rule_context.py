@@ -114,9 +114,13 @@ class RuleContext:
             UndeclaredError: The rule does not declare ``emits`` of it.
             RunEnded: The run is over.
         """
-        if not any(signal is declared for declared in self.rule.emits):
+        for declared in self.rule.emits:
+            if declared is signal:
+                break
+        else:
             self._refuse("emitted", "emits", signal, self.rule.emits)
-        self._alive()
+        if self.ended:
+            self._alive()
         self._runner.receive(Emit(signal.name, payload, self._run))
 
     def wipe(self, signal: Signal[Any]) -> None:

@@ -79,6 +79,7 @@ class Runner:
         self._origin = loop.time()
         self._scheduled = False
         self._pumping = False
+        self._instant = 0.0
         self._timer: asyncio.TimerHandle | None = None
         self._timer_due = 0.0
         self._contexts: dict[int, RuleContext] = {}
@@ -103,7 +104,8 @@ class Runner:
             return
         if self.closed:
             return
-        now = self.now()
+        # What happens while effects are performed happens in one instant.
+        now = self._instant if self._pumping else self.now()
         if self.on_event is not None:
             self.on_event(event, now)
         self.engine.receive(event, now)
@@ -127,6 +129,7 @@ class Runner:
         if self.closed:
             return
         engine = self.engine
+        self._instant = self.now()
         self._pumping = True
         try:
             for _ in range(BATCH):
@@ -236,7 +239,8 @@ class Runner:
             self._spare = None
             self._nests[effect.run] = nest
             nest.task.add_done_callback(functools.partial(self._task_done, effect.run, rule))
-        self._blocked(rule, perf_counter() - began)
+        if (took := perf_counter() - began) > BLOCKING:
+            self._blocked(rule, took)
         if nest.spoilt and nest is self._spare:
             nest.close()
             self._spare = None
