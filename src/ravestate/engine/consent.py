@@ -102,7 +102,7 @@ def _rivals(
     worth = engine.effective(clause)
     seen: set[Clause] = {clause}
     rules: dict[RulePlan, None] = {}
-    for member in group.members:
+    for member in tuple(group.members):  # judging one may unfold the bench of this activation
         theirs = member.clause
         rules[theirs.rule] = None
         if theirs is clause or theirs.rule.slotset.isdisjoint(slots) or member.state >= RUNNING:

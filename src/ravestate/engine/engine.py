@@ -205,6 +205,9 @@ class Engine(Waves):
         fired = outcome not in ("resigned", "failed") or run.wrote or told in ("interrupted", "wiped")
         if rule.cooldown and fired:
             self.ran[rule.index] = self.now
+            self._asking.update(
+                (a, None) for a in self.waiting if rule.name in a.waits_for
+            )  # it is worth less now
         spikes = run.stands_on
         for clause in rule.until:
             self._watches.get(clause, {}).pop(run, None)
@@ -255,9 +258,11 @@ class Engine(Waves):
         """Done: the slots are consumed in its groups, and everybody else gives up these spikes for them (L18)."""
         rule = run.clause.rule
         if rule.slots:
-            for group in _roots(run):
+            groups = _roots(run)
+            for group in groups:
                 for slot in rule.slots:
                     group.take(slot, None)
+            for group in groups:
                 for other in list(group.members):
                     if (
                         other is not run
@@ -280,14 +285,14 @@ class Engine(Waves):
     def _give_up(self, run: Activation, spikes: tuple[Spike, ...], reason: str) -> None:
         """Every other activation of the rule gives up these spikes, and it never takes them again."""
         rule = run.clause.rule
-        for spike in spikes:
+        for spike in spikes:  # all of them first: whoever loses one looks for others at once
             if spike.claims is not None and rule.index in spike.claims:
                 spike.claims[rule.index] = None
-            if len(spike.holders) > 1:
-                for other in list(spike.holders):
-                    if other is not run and other.clause.rule is rule and other.state < RUNNING:
-                        self._lose(other, self._of_spike(other, spike), reason, rule.name)
             spike.refuse(rule.index)
+        for spike in spikes:
+            for other in list(spike.holders) if len(spike.holders) > 1 else ():
+                if other is not run and other.clause.rule is rule and other.state < RUNNING:
+                    self._lose(other, self._of_spike(other, spike), reason, rule.name)
 
     def _retire(self, rule: RulePlan) -> None:
         self.unfold_all()
@@ -333,7 +338,7 @@ class Engine(Waves):
         elif kind is WATCH:
             owner.due = NEVER
             self._judge(owner)
-        else:
+        elif not owner.holders:
             self._forget(owner)
 
 

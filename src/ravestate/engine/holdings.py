@@ -102,7 +102,7 @@ class Holdings:
         if active is None:
             active = self.active[rule.index] = {}
         active[activation] = None
-        if not rule.background:
+        if not (rule.background or clause.reflexive):
             self._busy += 1
         return activation
 
@@ -336,6 +336,7 @@ class Holdings:
             return
         for need in needs:
             self._release(activation, need, reason, by)
+        self._stir(activation)
         self._unready(activation)
         for need in needs:
             self.lacking.setdefault(need, {})[activation] = None
@@ -343,6 +344,12 @@ class Holdings:
             if need.bit & activation.missing:
                 self._rematch(activation, need)
         self._update(activation)
+
+    def _stir(self, activation: Activation) -> None:
+        """What it holds has changed: whoever waits for it may wait for it no longer."""
+        for group in activation.firm_groups():
+            if group.interested:
+                self._dirty[group] = None
 
     def _unready(self, activation: Activation) -> None:
         activation.step(LOSE)
@@ -388,7 +395,7 @@ class Holdings:
         if not active:
             del self.active[clause.rule.index]
             self._stirred = bool(self.waiting)
-        if not clause.rule.background:
+        if not (clause.rule.background or clause.reflexive):
             self._busy -= 1
 
     def _lose_interest(self, activation: Activation) -> None:

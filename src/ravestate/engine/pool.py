@@ -117,6 +117,7 @@ class Pool(Contests):
                     continue
                 if activation.missing & need.bit:  # still: an earlier one may have changed it
                     self._acquire(activation, need, spike)
+                    self._stir(activation)
                     self._update(activation)
         if need.detached and clause.asks_detached:
             return  # it is looked at; it makes no activation of its own

@@ -274,7 +274,7 @@ class Waves(Slots):
 
     def _settle_flags(self) -> bool:
         """Bring ``core:activity`` and ``core:pressure`` up to date (L22); whether one has changed."""
-        pressure = bool(self.waiting) or bool(self.benches)
+        pressure = any(not a.clause.reflexive for a in (*self.benches, *self.waiting))
         if pressure != self.read(self._pressure.index):
             self._set_flag(self._pressure, pressure)
             return True

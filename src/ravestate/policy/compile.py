@@ -8,7 +8,7 @@ from types import ModuleType
 from typing import Any
 
 from ravestate.declare.condition import Condition, Constraint
-from ravestate.declare.core import core
+from ravestate.declare.core import activity, core, pressure
 from ravestate.declare.module import Module, as_module
 from ravestate.declare.rule import Rule
 from ravestate.declare.settings import Number, SettingRef
@@ -104,6 +104,11 @@ def _in_order(given: Iterable[Module], faults: list[DeclarationError]) -> list[M
     for module in given:
         visit(module, ())
     return list(ordered.values())
+
+
+FLAGS = (f"{activity.name}:", f"{pressure.name}:")
+"""How the signals of the built-in flags begin. An activation that stands on one of them is neither activity nor pressure:
+else it would withdraw what it stands on, come back, and so on, all in one instant."""
 
 
 class _Compilation:
@@ -255,6 +260,7 @@ class _Compilation:
         clause.signals = tuple(need.signal.signal for need in needs)
         clause.all_bits = (1 << len(needs)) - 1
         clause.firm_bits = sum(need.bit for need in needs if not need.detached)
+        clause.reflexive = any(need.signal.name.startswith(FLAGS) for need in needs)
         clause.simple = len(needs) == 1 and not clause.guards and not needs[0].min_age
         clause.asks_detached = 0 < clause.firm_bits < clause.all_bits
         return clause

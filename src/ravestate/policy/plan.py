@@ -138,6 +138,7 @@ class Clause:
         "needs",
         "number",
         "pathways",
+        "reflexive",
         "rule",
         "signals",
         "simple",
@@ -160,6 +161,7 @@ class Clause:
         self.firm_bits = 0  # of the non-detached needs
         self.asks_detached = False  # some, but not all, of its needs are detached
         self.simple = False  # one need, of any age, and no gate: whoever takes a spike is ready
+        self.reflexive = False  # it hears the built-in flags: what it does changes neither (L22)
         self.cyclic = False  # its rule may cause, without detachment, one of its own needs
 
     def __repr__(self) -> str:
