@@ -473,6 +473,23 @@ def test_rules_for_shutdown_finish_and_long_runs_are_cancelled_and_clean_up() ->
     assert sim.failures == []
 
 
+def test_a_rule_for_shutdown_may_be_kept_waiting_first() -> None:
+    ending = Ending()
+    out = ending.module.slot("out", "")
+
+    @ending.rule(rs.shutdown, writes=out)
+    async def farewell(ctx: rs.RuleContext) -> None:
+        ending.told.append(f"farewell at {ctx.now:g} s")
+
+    @ending.rule(rs.shutdown & ending.go, writes=out)
+    async def better(ctx: rs.RuleContext) -> None:
+        ending.told.append("never")
+
+    with simulate(ending.module):
+        pass
+    assert ending.told == ["farewell at 1 s"]
+
+
 def test_shutdown_is_given_so_much_time_and_no_more() -> None:
     ending = Ending()
 

@@ -118,7 +118,7 @@ class Context:
         cancelled and may clean up. Cancelling this breaks off: nothing is waited for any more."""
         runner = self._running()
         self.ask_to_stop()
-        last = max(runner.engine.running, default=0)
+        last = runner.newest()
         runner.receive(Stop())
         try:
             await asyncio.sleep(0)  # the pump runs: whoever hears rs.shutdown starts

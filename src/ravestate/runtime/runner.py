@@ -357,10 +357,14 @@ class Runner:
             self.loop.call_soon(self._pump)
             await future
 
+    def newest(self) -> int:
+        """The greatest number of an activation that runs, or is ready and waits; 0 if there is none."""
+        return max((*self._contexts, *(activation.id for activation in self.engine.waiting)), default=0)
+
     async def wait_for_runs(self, since: int, seconds: float) -> None:
-        """Wait, for some seconds at most, for the runs with a number above `since`."""
+        """Wait, for some seconds at most, for what runs, or is ready and waits, with a number above `since`."""
         end = self.loop.time() + seconds
-        while any(run > since for run in self._contexts) and self.loop.time() < end:
+        while self.newest() > since and self.loop.time() < end:
             tasks = [nest.task for run, nest in self._nests.items() if run > since]
             if tasks:
                 await asyncio.wait(tasks, timeout=end - self.loop.time())
