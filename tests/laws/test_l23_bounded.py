@@ -78,7 +78,7 @@ def census() -> Counter[str]:
     """The live objects of the engine, by kind."""
     gc.collect()
     kinds = (type(one) for one in gc.get_objects())
-    return Counter(k.__qualname__ for k in kinds if k.__module__.startswith("ravestate.engine"))
+    return Counter(k.__qualname__ for k in kinds if str(k.__module__).startswith("ravestate.engine"))
 
 
 def test_when_all_has_settled_and_aged_nothing_is_left(play: Any) -> None:
