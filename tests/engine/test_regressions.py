@@ -1,0 +1,200 @@
+"""What random worlds have found, each with the smallest example and the law that it broke.
+
+Every world here was shrunk from one that a property test had made.
+"""
+
+from __future__ import annotations
+
+import pytest
+
+from properties.oracle import Exclusion, bounded, empty
+from properties.worlds import Act, Gate, Play, RuleOf, SignalOf, SlotOf, Want, World
+from ravestate.engine.engine import Engine
+from ravestate.runtime.journal import Entry, replay
+
+S3 = (SignalOf(), SignalOf(), SignalOf())
+V1 = (SlotOf(),)
+
+
+def on(*signals: str) -> tuple[tuple[Want, ...], ...]:
+    """A condition of one conjunction."""
+    return (tuple(Want(signal) for signal in signals),)
+
+
+def runs(play: Play) -> list[str]:
+    """The rules that were called, in order."""
+    return [line.split("<rule m:")[1].split(">")[0] for line in play.heard if "< Run(" in line]
+
+
+def test_a_spike_that_is_held_is_wiped_even_if_detached_needs_have_forgotten_it() -> None:
+    # L20: wiping withdraws the live spikes. A detached need looks back 1 s; the first rule holds the spike longer.
+    looking = RuleOf(when=((Want("s2"), Want("s0", max_age=1.0, detached=True)),))
+    world = World(
+        S3,
+        rules=(RuleOf(when=on("s0", "s1")), looking),
+        inputs=((0.0, ("emit", "s0", 1)), (2.0, ("wipe", "s0")), (0.5, ("emit", "s1", 1))),
+    )
+    play = Play(world, before=bounded)
+    assert runs(play.play()) == []
+
+
+def test_a_held_spike_counts_against_its_limit_after_detached_needs_have_forgotten_it() -> None:
+    # L23: at most one live spike of s0, so the second pushes the first out of the first rule's hands.
+    looking = RuleOf(when=((Want("s2"), Want("s0", max_age=1.0, detached=True)),))
+    world = World(
+        (SignalOf(limit=1), SignalOf(), SignalOf()),
+        rules=(RuleOf(when=on("s0", "s1")), looking),
+        inputs=(
+            (0.0, ("emit", "s0", 1)),
+            (2.0, ("emit", "s0", 2)),
+            (0.5, ("emit", "s1", 1)),
+            (0.5, ("emit", "s1", 1)),
+        ),
+    )
+    play = Play(world)
+    assert runs(play.play()) == ["r0"]
+    assert play.engine.dropped == {"m:s0": 1}
+
+
+@pytest.mark.parametrize("end", ["resigned", "failed"])
+def test_who_resigned_does_not_take_the_same_spikes_again(end: str) -> None:
+    # L18: the rule gives up these spikes. Another activation of it held the older s0 and the same s1.
+    world = World(
+        (SignalOf(), SignalOf(), SignalOf()),
+        V1,
+        (RuleOf(when=on("s0", "s1", "s2"), writes=("v0",), acts=(Act(end=end),)),),
+        (
+            (0.0, ("emit", "s0", 1)),
+            (1.0, ("emit", "s0", 2)),
+            (1.0, ("emit", "s1", 1)),
+            (1.0, ("emit", "s0", 3)),
+            (2.0, ("emit", "s2", 1)),
+        ),
+    )
+    Play(world, started=Exclusion()).play()
+
+
+def test_a_rule_that_hears_pressure_end_may_itself_be_kept_waiting() -> None:
+    # L22, L24: holding the spike of pressure:false makes it wait, which makes pressure true, which withdraws the
+    # spike, which makes pressure false, ... all in one instant: `effects` never returned.
+    world = World(
+        S3,
+        V1,
+        (
+            RuleOf(when=on("s0"), writes=("v0",)),  # waits 1 s for the next rule
+            RuleOf(when=on("s0", "s1"), writes=("v0",)),
+            RuleOf(when=on("core:pressure:false", "s2"), writes=("v0",)),  # waits for the last
+            RuleOf(when=on("core:pressure:false", "s2", "s1"), writes=("v0",)),
+        ),
+        ((0.0, ("emit", "s2", 1)), (0.0, ("emit", "s0", 1))),
+    )
+    Play(world, before=bounded).play()
+
+
+def test_a_foreground_rule_may_wait_for_the_end_of_activity_and_more() -> None:
+    # L22, L24: as above; holding the spike of activity:false is activity.
+    world = World(
+        S3,
+        rules=(RuleOf(when=on("s0")), RuleOf(when=on("core:activity:false", "s1"))),
+        inputs=((0.0, ("emit", "s0", 1)),),
+    )
+    Play(world, before=bounded).play()
+
+
+def test_the_best_of_a_bench_may_be_judged_against_a_rival() -> None:
+    # Making the activations of a bench while the members of its group are looked at was a RuntimeError.
+    world = World(
+        S3,
+        V1,
+        (
+            RuleOf(when=on("s0"), writes=("v0",)),
+            RuleOf(when=on("s0"), writes=("v0",)),
+            RuleOf(when=((Want("s0"), Gate("v0")),), writes=("v0",)),
+        ),
+        ((0.0, ("emit", "s0", 1)),),
+    )
+    play = Play(world, before=bounded, started=Exclusion())
+    assert runs(play.play()) == ["r0"]
+    empty(play)
+
+
+def test_who_waits_for_a_rival_is_asked_again_when_the_rival_begins_to_cool_down() -> None:
+    # L9, L15: r1 waits to ripen on v0:changed and is worth more, so r0 waits; then r1 runs on another cause, is worth
+    # nothing from then on, and nobody is left for whom r0 would have to wait.
+    world = World(
+        S3,
+        V1,
+        (
+            RuleOf(when=on("s1"), writes=("v0",)),
+            RuleOf(when=(*on("s0"), (Want("s1", min_age=1.0),)), writes=("v0",), weight=2.0, cooldown=5.0),
+        ),
+        ((0.0, ("emit", "s1", 1)), (0.5, ("emit", "s0", 1))),
+    )
+    play = Play(world, before=bounded).play()
+    assert next(line for line in play.heard if "<rule m:r0>" in line).startswith("0.5 s < Run(")
+
+
+def test_who_waits_for_a_ready_rival_is_asked_again_when_the_rival_loses_a_spike_of_another_cause() -> None:
+    # L15, L16: r1 holds s0 and s1 and waits for r2, which writes for s1; r0 waits for r1. When r2 is done, s1 is
+    # consumed, and r1 lacks it: it has its patience of 1 s. But nobody asked again on behalf of r0, whose group is
+    # that of s0 alone, so r1 was never under pressure, and r0 waited for ever.
+    def lasting(*signals: str) -> tuple[tuple[Want, ...], ...]:
+        return (tuple(Want(signal, max_age=None) for signal in signals),)
+
+    world = World(
+        S3,
+        V1,
+        (
+            RuleOf(when=lasting("s0"), writes=("v0",)),
+            RuleOf(when=lasting("s0", "s1"), writes=("v0",)),
+            RuleOf(when=lasting("s1", "s2"), writes=("v0",), acts=(Act(seconds=3.0),), weight=3.0),
+        ),
+        (
+            (0.0, ("emit", "s0", 1)),
+            (0.5, ("emit", "s2", 1)),
+            (0.0, ("emit", "s1", 1)),
+            (0.5, ("emit", "s2", 1)),
+        ),
+    )
+    play = Play(world).play()
+    assert runs(play) == ["r2", "r0"]
+    assert next(line for line in play.heard if "<rule m:r0>" in line).startswith("4.5 s < Run(")
+    assert not play.engine.waiting
+
+
+def test_who_waits_for_a_rival_is_asked_again_when_the_rival_binds_itself_to_a_cause_that_cannot_do() -> None:
+    # L12, L16: two constraints on s1 want one causal group. With an s1 that fulfils one of them and not the other, the
+    # rival is viable no longer: an input cannot come into a group that is there already.
+    world = World(
+        S3,
+        V1,
+        (
+            RuleOf(when=on("s0"), writes=("v0",)),
+            RuleOf(when=((Want("s0"), Want("s1", where="odd"), Want("s1")),), writes=("v0",)),
+        ),
+        ((0.0, ("emit", "s0", 1)), (0.5, ("emit", "s1", 2))),
+    )
+    play = Play(world, before=bounded).play()
+    assert next(line for line in play.heard if "<rule m:r0>" in line).startswith("0.5 s < Run(")
+
+
+def test_replay_takes_effects_when_the_runtime_took_them() -> None:
+    # L24. The classifier ends within its first step, so nobody is ever kept waiting, and pressure stays false; a
+    # replay that asks for effects once more before it feeds the end makes the fallback wait, and pressure true.
+    world = World(
+        S3,
+        V1,
+        (
+            RuleOf(when=on("s0"), emits=("s1",)),
+            RuleOf(when=on("s1"), writes=("v0",)),
+            RuleOf(when=on("s0"), writes=("v0",)),
+            RuleOf(when=on("core:pressure:true")),
+        ),
+        ((0.0, ("emit", "s0", 1)),),
+    )
+    play = Play(world).play()
+    assert play.policy is not None
+    engine = Engine(play.policy, patience=world.patience, report_ends=True)
+    taken = replay(engine, [Entry(time, event) for time, event in play.journal])
+    assert repr(taken) == repr(play.taken)
+    assert "r3" not in runs(play)

@@ -1,0 +1,266 @@
+"""What must be true of every play, judged from what can be observed of the engine, and not by its own bookkeeping."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from properties.worlds import PREDICATES, Play
+from ravestate.engine.activation import NEVER, State
+from ravestate.engine.consent import ask
+from ravestate.engine.effects import Effect, Ended, Run
+
+__all__ = ["Exclusion", "bounded", "consistent", "empty", "pressed_in_time", "still", "waits_for_a_reason"]
+
+
+@dataclass
+class Started:
+    """A run, as it was when it started."""
+
+    run: int
+    rule: str
+    slots: frozenset[int]
+    groups: tuple[Any, ...]
+    spikes: tuple[int, ...]
+    over: bool = False
+    fired: bool = False
+
+    @property
+    def counts(self) -> bool:
+        """Whether it still excludes others: it runs, or it has fired."""
+        return self.fired or not self.over
+
+
+class Exclusion:
+    """Whoever starts excludes nobody, and is excluded by nobody, who runs or has fired (L10, L15, L18)."""
+
+    def __init__(self) -> None:
+        self.runs: dict[int, Started] = {}
+        self.seen: set[tuple[int, tuple[int, ...]]] = set()
+
+    def __call__(self, play: Play, effect: Effect) -> None:
+        if isinstance(effect, Ended):
+            run = self.runs[effect.run]
+            assert not run.over, f"run {effect.run} of {effect.rule} ended twice"
+            run.over, run.fired = True, effect.fired
+        elif isinstance(effect, Run):
+            self.start(play, effect)
+
+    def start(self, play: Play, effect: Run) -> None:
+        engine = play.engine
+        activation = engine.running[effect.run]
+        clause, rule = activation.clause, activation.clause.rule
+        name = rule.name
+        assert rule.index not in engine.retired, f"{name} has retired, and runs"
+        held = list(zip(clause.needs, activation.spikes, strict=True))
+        firm: list[Any] = []
+        for need, spike in held:
+            assert spike is not None, f"{name} runs without {need.signal}"
+            assert spike.signal is need.signal, f"{name} holds {spike} as {need.signal}"
+            assert spike.born + need.min_age <= engine.now, f"{name} runs on {spike}, which is too young"
+            for predicate in need.predicates:
+                assert predicate(spike.payload), f"{name} runs on {spike}, which does not fulfil {predicate}"
+            if not need.detached:
+                firm.append(spike)
+        for slot, guard in clause.guards:
+            assert guard.predicate(engine.read(slot.index)), f"{name} runs although {guard} is false"
+        for one in clause.needs:  # coherence (L12)
+            for other in clause.needs:
+                if one.kin & other.bit and not one.detached and not other.detached:
+                    a, b = activation.spikes[one.index], activation.spikes[other.index]
+                    assert a.group.root() is b.group.root(), f"{name} joins {a} and {b} of different groups"
+        key = (clause.index, tuple(spike.id for _, spike in held))
+        assert key not in self.seen, f"{name} runs twice on {activation.spikes}"
+        self.seen.add(key)
+        groups = tuple(dict.fromkeys(spike.group.root() for spike in firm)) if rule.slots else ()
+        mine = Started(effect.run, name, rule.slotset, groups, tuple(spike.id for spike in firm))
+        for run in self.runs.values():
+            if not run.counts:
+                continue
+            if not rule.slots and run.rule == name:
+                both = set(run.spikes) & set(mine.spikes)
+                assert not both, f"{name} runs twice on the same spike {both}"
+            shared = {g.root() for g in run.groups} & set(groups)
+            taken = run.slots & mine.slots
+            assert not (shared and taken), (
+                f"{name} (run {mine.run}) starts although {run.rule} (run {run.run}) "
+                f"{'has fired' if run.over else 'runs'} in {shared} on the same slot"
+            )
+        for other in engine.waiting:
+            if (
+                other is not activation
+                and other.state is State.WAITING
+                and not other.clause.rule.slotset.isdisjoint(rule.slotset)
+                and any(group in groups for group in other.firm_groups())
+                and engine.effective(other.clause) > engine.effective(clause)
+            ):
+                raise AssertionError(f"{name} starts before {other}, which is ready and worth more")
+        self.runs[effect.run] = mine
+
+
+def waits_for_a_reason(play: Play) -> None:
+    """No ready rule waits without a viable rival or a taken slot, and nobody waits for ever (L15, L16)."""
+    engine = play.engine
+    due = engine.next_deadline()
+    if engine.waiting and not engine.running:
+        assert due is not None, f"{list(engine.waiting)} wait, and nothing will ever happen"
+    if due is not None:
+        assert due >= engine.now, f"a deadline at {due} s is past at {engine.now} s"
+    moving: set[Any] = set()
+    asked: dict[Any, Any] = {}
+    for waiter in list(engine.waiting):
+        rule = waiter.clause.rule
+        assert waiter.state is State.WAITING
+        if not rule.slots:
+            claimed = engine._claimed(waiter)
+            assert claimed is not None, f"{waiter} waits, and nobody runs on its spikes"
+            moving.add(waiter)
+            continue
+        refusal = asked[waiter] = ask(engine, waiter)
+        assert refusal, f"{waiter} waits, and no group would refuse consent"
+        for group, rival, member in refusal.pressed:
+            until = (group.pressed or {}).get(rival.index) if member is None else member.pressed
+            assert until is not None and until != NEVER, f"{waiter} waits for {rival}, which has for ever"
+            assert until > engine.now, f"{waiter} waits for {rival}, whose patience is over"
+            moving.add(waiter)
+    grew = True
+    while grew:
+        grew = False
+        for waiter, refusal in asked.items():
+            if waiter in moving:
+                continue
+            for blocker in refusal.blockers:
+                if (
+                    blocker in moving
+                    or blocker.state in (State.RUNNING, State.CANCELLING)
+                    or engine.now < blocker.ripens < NEVER
+                ):
+                    moving.add(waiter)
+                    grew = True
+    still_there = [waiter for waiter in engine.waiting if waiter not in moving]
+    assert not still_there, f"{still_there} wait for each other, or for nothing that moves"
+
+
+def pressed_in_time(play: Play) -> None:
+    """Nobody is under pressure past its patience (L16)."""
+    engine = play.engine
+    groups: dict[Any, None] = {}
+    for activation in play.active():
+        assert activation.pressed > engine.now, f"{activation} is pressed past its patience"
+        assert activation.state is State.GATHERING or activation.pressed == NEVER, f"{activation} is ready"
+        groups.update(dict.fromkeys(activation.firm_groups()))
+    for group in groups:
+        for clause, until in (group.pressed or {}).items():
+            assert until > engine.now, f"{engine.policy.clause_plans[clause]} is pressed past its patience"
+
+
+def still(play: Play) -> dict[str, Any]:
+    """A snapshot without what time alone changes."""
+    from ravestate.engine.snapshot import snapshot
+
+    found = snapshot(play.engine)
+    del found["now"]
+    for spike in found["spikes"]:
+        del spike["age"]
+    for activation in found["activations"]:
+        activation["holds"] = [held["signal"] for held in activation["holds"]]
+        activation["waits_for"] = [waits["rule"] for waits in activation["waits_for"]]
+    return found
+
+
+def consistent(engine: Any) -> None:
+    """The indices of the engine agree with one another."""
+    activations = [a for rule in engine.active.values() for a in rule]
+    assert all(engine.active.values()), "an empty set of activations is kept"
+    for activation in activations:
+        clause = activation.clause
+        state = activation.state
+        assert state is not State.ENDED, f"{activation} has ended, and is kept"
+        for need in clause.needs:
+            spike = activation.spikes[need.index]
+            assert (spike is None) == bool(activation.missing & need.bit), f"{activation} misses {need}?"
+            lacks = activation in engine.lacking.get(need, ())
+            assert lacks == (spike is None), (
+                f"{activation} is{'' if lacks else ' not'} listed as lacking {need}"
+            )
+            if spike is not None:
+                assert activation in spike.holders, f"{spike} does not know of {activation}"
+                if state < State.RUNNING:
+                    assert spike in engine.live.get(spike.signal.index, ()), (
+                        f"{activation} holds dead {spike}"
+                    )
+        assert activation.missing != clause.all_bits, f"{activation} holds nothing"
+        assert (state is State.WAITING) == (activation in engine.waiting), f"{activation} waits?"
+        assert (state >= State.RUNNING) == (engine.running.get(activation.id) is activation)
+        for group in activation.firm_groups():
+            count = sum(
+                1
+                for need, spike in zip(clause.needs, activation.spikes, strict=True)
+                if spike is not None and not need.detached and spike.group.root() is group
+            )
+            assert group.members.get(activation) == count, f"{group} counts {activation} wrongly"
+            for member in group.members:
+                assert member.state is not State.ENDED, f"{member} has ended, and is in {group}"
+            for waiter in group.interested:
+                assert waiter in engine.waiting, f"{waiter} does not wait, and is in {group}"
+            for slot, holders in group.taken.items():
+                assert holders is None or (holders and all(h.state >= State.RUNNING for h in holders)), slot
+    known = set(activations)
+    for where in (engine.waiting, engine.gated, engine.benches, engine.running.values()):
+        assert known.issuperset(where)
+    for need, lacking in engine.lacking.items():
+        assert lacking, f"an empty set of those who lack {need} is kept"
+        assert known.issuperset(lacking)
+    for index, spikes in engine.live.items():
+        assert spikes, f"an empty set of {engine.policy.signal_plans[index]} is kept"
+        for spike in spikes:
+            assert known.issuperset(spike.holders), f"{spike} is held by {list(spike.holders)}"
+            signal = spike.signal
+            assert spike.holders or (signal.retain >= 0 and spike.born + signal.retain >= engine.now), (
+                f"{spike} is kept for nobody"
+            )
+        assert len(spikes) <= engine.policy.signal_plans[index].limit
+    assert engine._busy == sum(not (a.clause.rule.background or a.clause.reflexive) for a in activations)
+
+
+def bounded(play: Play) -> None:
+    """All that must be true whenever the engine is quiet."""
+    play.engine.unfold_all()
+    play.engine.settle()
+    assert not play.engine._out, "looking has made somebody run"
+    consistent(play.engine)
+    pressed_in_time(play)
+    waits_for_a_reason(play)
+    engine = play.engine
+    policy = engine.policy
+    activity = any(not (a.clause.rule.background or a.clause.reflexive) for a in play.active())
+    assert engine.read(policy.slot_of["core:activity"].index) == activity, "core:activity lies"
+    pressure = any(not a.clause.reflexive for a in engine.waiting)
+    assert engine.read(policy.slot_of["core:pressure"].index) == pressure, "core:pressure lies"
+    for waiter in engine.gated:
+        assert not all(
+            g.predicate in PREDICATES.values() and _holds(engine, s, g) for s, g in waiter.clause.guards
+        )
+
+
+def _holds(engine: Any, slot: Any, guard: Any) -> bool:
+    try:
+        return bool(guard.predicate(engine.read(slot.index)))
+    except ValueError:
+        return False
+
+
+def empty(play: Play) -> None:
+    """Nothing is left (L23)."""
+    engine = play.engine
+    assert not engine.running, f"{engine.running} run"
+    for name in ("active", "live", "lacking", "gated", "waiting", "benches", "_free", "_asking", "_dirty"):
+        assert not getattr(engine, name), f"{name}: {getattr(engine, name)}"
+    for name in ("_watches", "_errors", "_out"):
+        assert not getattr(engine, name), f"{name}: {getattr(engine, name)}"
+    assert engine.next_deadline() is None
+    assert len(engine._deadlines) == 0
+    assert engine._busy == 0
+    slots = engine.policy.slot_of
+    assert engine.read(slots["core:activity"].index) is False
+    assert engine.read(slots["core:pressure"].index) is False

@@ -1,0 +1,482 @@
+"""Worlds: a policy, what its rules do, and what happens to it, as plain data that prints as the code that makes it.
+
+`compiled` makes the policy, `Play` plays the world on a bare engine in virtual time, as the runtime would: a rule
+function's first steps are done at once, later ones when their time has come. No Hypothesis in here: a subprocess
+imports this file too.
+"""
+
+from __future__ import annotations
+
+import heapq
+from collections.abc import Callable, Iterator
+from dataclasses import MISSING, dataclass, field, fields, replace
+from typing import Any
+
+import ravestate as rs
+from ravestate.engine import events
+from ravestate.engine.effects import Cancel, Effect, Ended, Run
+from ravestate.engine.engine import Engine
+from ravestate.engine.events import Event
+from ravestate.policy.policy import Policy
+from ravestate.runtime.journal import Taken
+
+__all__ = [
+    "PREDICATES",
+    "Act",
+    "Clause",
+    "Gate",
+    "Op",
+    "Play",
+    "RuleOf",
+    "SignalOf",
+    "SlotOf",
+    "Want",
+    "World",
+    "compiled",
+    "rule_of",
+]
+
+BUDGET = 8
+"""Runs after which a rule retires, so that every loop ends."""
+
+BIRTHS = 2_000
+"""Spikes that one instant may see before it counts as endless."""
+
+STEPS = 5_000
+"""Moments that a whole play may have before it counts as endless."""
+
+
+def odd(value: Any) -> bool:
+    """True of odd numbers, and of items that are."""
+    return bool(getattr(value, "item", value) in (1, 3, True))
+
+
+def never(_: Any) -> bool:
+    """Always false."""
+    return False
+
+
+def fussy(value: Any) -> bool:
+    """Fails on 2."""
+    if value == 2:
+        raise ValueError("two")
+    return True
+
+
+PREDICATES: dict[str, Callable[[Any], bool]] = {"odd": odd, "never": never, "fussy": fussy}
+
+Op = tuple[Any, ...]
+"""(``emit``, signal, payload), (``write``, slot, value), (``store``, slot, key, item), (``discard``, slot, key),
+(``wipe``, signal), (``start``,), (``stop``,) or (``add``, rule)."""
+
+
+class Brief:
+    """Prints as the call that makes it, without what is as always."""
+
+    def __repr__(self) -> str:
+        told: list[str] = []
+        for one in fields(self):  # type: ignore[arg-type]  # every subclass is a dataclass
+            value = getattr(self, one.name)
+            if one.default is MISSING or value != one.default:
+                told.append(f"{one.name}={value!r}")
+        return f"{type(self).__name__}({', '.join(told)})"
+
+
+@dataclass(frozen=True, repr=False)
+class Want(Brief):
+    """A constraint on a signal."""
+
+    signal: str
+    min_age: float = 0.0
+    max_age: float | None = 5.0
+    detached: bool = False
+    where: str = ""
+
+
+@dataclass(frozen=True, repr=False)
+class Gate(Brief):
+    """A predicate on a slot."""
+
+    slot: str
+    predicate: str = "odd"
+
+
+Clause = tuple[Want | Gate, ...]
+
+
+@dataclass(frozen=True, repr=False)
+class Act(Brief):
+    """What a rule's function does when called: steps, each after some seconds; then it ends."""
+
+    steps: tuple[tuple[float, Op], ...] = ()
+    seconds: float = 0.0
+    end: str = "done"
+    cleanup: float = 0.0
+    last: tuple[Op, ...] = ()
+    """What it does while it cleans up after having been cancelled."""
+    cancelled: str = "done"
+    """How it ends then."""
+
+
+@dataclass(frozen=True, repr=False)
+class RuleOf(Brief):
+    """A rule, and what its function does at the first call, the second, ..."""
+
+    when: tuple[Clause, ...]
+    writes: tuple[str, ...] = ()
+    emits: tuple[str, ...] = ()
+    acts: tuple[Act, ...] = (Act(),)
+    detached: bool = False
+    background: bool = False
+    thread: bool = False
+    weight: float = 1.0
+    cooldown: float = 0.0
+    patience: float | None = None
+    until: tuple[Clause, ...] = ()
+    timeout: float | None = None
+
+
+@dataclass(frozen=True, repr=False)
+class SignalOf(Brief):
+    """A signal."""
+
+    keep: str = "all"
+    limit: int = 100
+    input: bool = False
+
+
+@dataclass(frozen=True, repr=False)
+class SlotOf(Brief):
+    """A slot: a ``value``, a ``flag`` or a ``collection``."""
+
+    kind: str = "value"
+    always: bool = False
+    keep: str = "all"
+    limit: int = 100
+    input: bool = False
+
+
+@dataclass(frozen=True, repr=False)
+class World(Brief):
+    """Signals ``s0, s1, ...``, slots ``v0, v1, ...``, rules ``r0, r1, ...``; and inputs, each after some seconds."""
+
+    signals: tuple[SignalOf, ...] = ()
+    slots: tuple[SlotOf, ...] = ()
+    rules: tuple[RuleOf, ...] = ()
+    inputs: tuple[tuple[float, Op], ...] = ()
+    patience: float = 1.0
+    together: bool = False
+    """Whether what happens at one moment is told before the effects are taken."""
+
+
+class Names:
+    """The signals and slots of a world's module by name."""
+
+    def __init__(self, world: World) -> None:
+        self.module = module = rs.Module("m")
+        self.signals: dict[str, Any] = {}
+        self.slots: dict[str, Any] = {}
+        for number, signal in enumerate(world.signals):
+            self.signals[f"s{number}"] = module.signal(
+                f"s{number}", keep=signal.keep, limit=signal.limit, input=signal.input
+            )
+        for number, slot in enumerate(world.slots):
+            name = f"v{number}"
+            options: dict[str, Any] = {"keep": slot.keep, "limit": slot.limit, "input": slot.input}
+            if slot.kind == "value":
+                made: Any = module.slot(name, 0, always=slot.always, **options)
+            elif slot.kind == "flag":
+                made = module.flag(name, always=slot.always, **options)
+            else:
+                made = module.collection(name, **options)
+            self.slots[name] = made
+            for own in made.signals:
+                self.signals[own.name.removeprefix("m:")] = own
+        self.signals["never"] = module.signal("never", input=True)
+        for own in (rs.startup, rs.shutdown, rs.error, *rs.activity.signals, *rs.pressure.signals):
+            self.signals[own.name] = own
+
+    def condition(self, clauses: tuple[Clause, ...]) -> Any:
+        found: Any = None
+        for clause in clauses:
+            whole: Any = None
+            for part in clause:
+                if isinstance(part, Gate):
+                    one: Any = self.slots[part.slot].holds(PREDICATES[part.predicate])
+                else:
+                    one = self.signals[part.signal].min_age(part.min_age).max_age(part.max_age)
+                    one = one.detached() if part.detached else one
+                    one = one.where(PREDICATES[part.where]) if part.where else one
+                whole = one if whole is None else whole & one
+            found = whole if found is None else found | whole
+        return found
+
+
+def rule_of(names: Names, spec: RuleOf, name: str) -> rs.Rule[Any, Any]:
+    """Declare a rule."""
+
+    async def coroutine(ctx: Any) -> None:
+        raise NotImplementedError  # a bare engine calls nothing
+
+    def plain(ctx: Any) -> None:
+        raise NotImplementedError
+
+    declare = names.module.rule(
+        when=names.condition(spec.when),
+        writes=[names.slots[slot] for slot in spec.writes],
+        emits=[names.signals[signal] for signal in spec.emits],
+        weight=spec.weight,
+        cooldown=spec.cooldown,
+        patience=spec.patience,
+        until=names.condition(spec.until) if spec.until else None,
+        timeout=spec.timeout,
+        detached=spec.detached,
+        background=spec.background,
+        name=name,
+    )
+    return declare(plain if spec.thread else coroutine)
+
+
+def compiled(world: World) -> tuple[Names, Policy]:
+    """Compile a world's module; ``names`` allows to declare more rules later."""
+    names = Names(world)
+    for number, rule in enumerate(world.rules):
+        rule_of(names, rule, f"r{number}")
+    return names, rs.compile(names.module)
+
+
+class Endless(AssertionError):
+    """The engine would not come to rest within one instant."""
+
+
+class Counted(Engine):
+    """An engine that notices when an instant has no end."""
+
+    births = 0
+
+    def _birth(self, *args: Any) -> None:
+        self.births += 1
+        if self.births > BIRTHS:
+            raise Endless(f"more than {BIRTHS} spikes at {self.now} s")
+        super()._birth(*args)
+
+
+@dataclass
+class Play:
+    """One performance of a world.
+
+    Attributes:
+        heard: The effects, in words, with the time (seconds) of each.
+        taken: The effects of each time that they were asked for.
+        journal: The events, and when effects were taken, each with its time (seconds).
+    """
+
+    world: World
+    policy: Policy | None = None
+    names: Names | None = None
+    traced: bool = False
+    before: Callable[[Play], None] | None = None
+    """Called before time passes: `self.engine` is quiet, and nothing happens until `self.next_time()`."""
+    started: Callable[[Play, Effect], None] | None = None
+    """Called with each effect, all those of one batch before the first is performed."""
+    now: float = 0.0
+    heard: list[str] = field(default_factory=list)
+    taken: list[list[Effect]] = field(default_factory=list)
+    journal: list[tuple[float, Event | Taken]] = field(default_factory=list)
+    trace: list[str] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        if self.policy is None:
+            self.names, self.policy = compiled(self.world)
+        self.engine = Counted(self.policy, patience=self.world.patience, report_ends=True)
+        if self.traced:
+            self.engine.tracer = lambda record: self.trace.append(repr(record))
+        self.specs = {f"m:r{number}": rule for number, rule in enumerate(self.world.rules)}
+        self.calls: dict[str, int] = {}
+        self.acts: dict[int, tuple[str, Act]] = {}  # of the runs that are alive
+        self.todo: list[tuple[float, int, int, Op]] = []  # time, number, run, what
+        self.count = 0
+        time = 0.0
+        for seconds, op in self.world.inputs:
+            time += seconds
+            self.plan(time, 0, op)
+
+    # -------------------------------------------------------------------------------- time
+
+    def play(self) -> Play:
+        """From the first input until nothing is left to happen."""
+        for _ in range(STEPS):
+            if not self.step():
+                return self
+        raise Endless(f"there is no end to it at {self.now} s")
+
+    def next_time(self) -> float | None:
+        """When something happens next (seconds)."""
+        times = [self.todo[0][0]] if self.todo else []
+        due = self.engine.next_deadline()
+        if due is not None:
+            times.append(due)
+        return min(times, default=None)
+
+    def step(self) -> bool:
+        """Let happen what happens next; False when nothing does."""
+        time = self.next_time()
+        if time is None:
+            return False
+        if self.before is not None:
+            self.before(self)
+        self.now = max(self.now, time)
+        self.engine.births = 0
+        self.engine.advance(self.now)
+        self.pump()
+        while self.todo and self.todo[0][0] <= self.now:
+            _, _, run, op = heapq.heappop(self.todo)
+            self.do(run, op)
+            if not self.world.together:
+                self.pump()
+        self.pump()
+        return True
+
+    def settle(self, seconds: float) -> None:
+        """Let time pass, with nothing from outside."""
+        end = self.now + seconds
+        for _ in range(STEPS):
+            time = self.next_time()
+            if time is None or time > end:
+                break
+            self.step()
+        else:
+            raise Endless(f"there is no end to it at {self.now} s")
+        self.now = end
+        self.engine.advance(end)
+        self.pump()
+
+    def tell(self, *ops: Op) -> None:
+        """Something happens now."""
+        for op in ops:
+            self.do(0, op)
+            self.pump()
+
+    # -------------------------------------------------------------------------------- events in
+
+    def plan(self, time: float, run: int, op: Op) -> None:
+        self.count += 1
+        heapq.heappush(self.todo, (time, self.count, run, op))
+
+    def receive(self, event: Event) -> None:
+        self.journal.append((self.now, replace(event)))
+        self.heard.append(f"{self.now:g} s > {event!r}")
+        self.engine.receive(event, self.now)
+
+    def do(self, run: int, op: Op) -> None:
+        """Do one step, of a run (by number) or from outside (0)."""
+        if run and run not in self.acts:
+            return  # it has ended, or was given up
+        by = run or None
+        match op:
+            case ("emit", name, payload):
+                self.receive(events.Emit(self.signal(name), payload, by))
+            case ("write", name, value):
+                self.receive(
+                    events.Write(f"m:{name}", dict(value) if isinstance(value, tuple) else value, by)
+                )
+            case ("store", name, key, item):
+                self.receive(events.Store(f"m:{name}", key, item, by))
+            case ("discard", name, key):
+                self.receive(events.Discard(f"m:{name}", key, by))
+            case ("wipe", name):
+                self.receive(events.Wipe(self.signal(name), by))
+            case ("start",):
+                self.receive(events.Start())
+            case ("stop",):
+                self.receive(events.Stop())
+            case ("add", spec):
+                assert self.names is not None
+                number = len(self.engine.policy.declared)
+                name = f"r{number}"
+                self.specs[f"m:{name}"] = spec
+                rule = rule_of(self.names, spec, name)
+                self.receive(events.AddRule(self.engine.policy.with_rule(rule)))
+            case ("finish", kind, reason):
+                self.finish(run, kind, reason)
+            case _:
+                raise ValueError(op)
+
+    def signal(self, name: str) -> str:
+        return name if name.startswith("core:") else f"m:{name}"
+
+    def finish(self, run: int, kind: str, reason: str = "") -> None:
+        del self.acts[run]
+        exception = ValueError("failed on purpose") if kind == "failed" else None
+        self.receive(events.Finish(run, kind, reason, exception))  # type: ignore[arg-type]
+
+    # -------------------------------------------------------------------------------- effects out
+
+    def pump(self) -> None:
+        while effects := self.take():
+            self.heard += [f"{self.now:g} s < {effect!r}" for effect in effects]
+            if self.started is not None:
+                for effect in effects:
+                    self.started(self, effect)
+            for effect in effects:
+                if isinstance(effect, Run):
+                    self.run(effect)
+                elif isinstance(effect, Cancel):
+                    self.cancel(effect)
+                else:
+                    assert not isinstance(effect, Ended) or effect.run not in self.acts
+
+    def take(self) -> list[Effect]:
+        """Ask for effects, as the journal will tell."""
+        self.journal.append((self.now, Taken()))
+        effects = self.engine.effects()
+        self.taken.append(effects)
+        return effects
+
+    def run(self, effect: Run) -> None:
+        name = effect.rule.name
+        spec = self.specs[name]
+        calls = self.calls[name] = self.calls.get(name, 0) + 1
+        act = spec.acts[(calls - 1) % len(spec.acts)] if calls <= BUDGET else Act(end="retired")
+        run = effect.run
+        self.acts[run] = (name, act)
+        time = self.now
+        suspended = spec.thread  # a thread reports later, even if at once
+        for seconds, op in act.steps:
+            suspended = suspended or seconds > 0
+            time += seconds
+            if suspended:
+                self.plan(time, run, op)
+            else:
+                self.do(run, op)
+        end: Op = ("finish", act.end, "")
+        if suspended or act.seconds:
+            self.plan(time + act.seconds, run, end)
+        else:
+            self.do(run, end)
+
+    def cancel(self, effect: Cancel) -> None:
+        held = self.acts.get(effect.run)
+        if held is None:
+            return  # it has ended in the meantime
+        name, act = held
+        if self.specs[name].thread:
+            self.finish(effect.run, "done", effect.reason)
+            return
+        self.todo = [entry for entry in self.todo if entry[2] != effect.run]
+        heapq.heapify(self.todo)
+        for op in act.last:
+            self.plan(self.now, effect.run, op)
+        self.plan(self.now + act.cleanup, effect.run, ("finish", act.cancelled, effect.reason))
+
+    def wipe_all(self) -> None:
+        """Withdraw everything, and let what runs come to its end."""
+        for signal in list(self.engine.policy.signals):
+            self.engine.births = 0
+            self.receive(events.Wipe(signal))
+            self.pump()
+
+    def active(self) -> Iterator[Any]:
+        """All activations."""
+        for activations in self.engine.active.values():
+            yield from activations
