@@ -178,6 +178,60 @@ def test_who_waits_for_a_rival_is_asked_again_when_the_rival_binds_itself_to_a_c
     assert next(line for line in play.heard if "<rule m:r0>" in line).startswith("0.5 s < Run(")
 
 
+def test_who_waits_for_a_rule_that_was_live_elsewhere_is_asked_again_when_it_is_not() -> None:
+    # L16 (iii): r1 lacks v0:false, which r0 and r1 might cause as long as they are live for another cause. At 3 s they have
+    # had their patience there, and r0 runs; from then on they are live nowhere else. Only the end of a rule's last
+    # activation was noticed, and there is still the one that waits.
+    world = World(
+        S3,
+        (SlotOf("flag"),),
+        (
+            RuleOf(when=on("s0"), writes=("v0",)),
+            RuleOf(when=((Want("s0"), Want("v0:false", detached=True)),), writes=("v0",), patience=3.0),
+        ),
+        ((0.0, ("emit", "s0", 0)), (0.0, ("emit", "s0", 1)), (1.0, ("emit", "s0", 2))),
+        together=True,
+    )
+    play = Play(world).play()
+    assert [line.split(" s <")[0] for line in play.heard if "< Run(" in line] == ["3", "3", "3"]
+
+
+@pytest.mark.parametrize("traced", [False, True])
+@pytest.mark.parametrize("wiped", [False, True])
+def test_who_sits_on_a_bench_gives_up_a_spike_that_is_withdrawn(traced: bool, wiped: bool) -> None:
+    # L20, L25: r1 would have lost the spike if its activation had been made, as it is when somebody traces.
+    world = World(
+        (SignalOf(keep="latest"),),
+        V1,
+        (
+            RuleOf(
+                when=on("s0"), writes=("v0",), thread=True, acts=(Act(seconds=1.0, end="resigned"), Act())
+            ),
+            RuleOf(when=on("s0"), writes=("v0",)),
+        ),
+        ((0.0, ("emit", "s0", 1)), (0.5, ("wipe", "s0") if wiped else ("emit", "s0", 2))),
+    )
+    play = Play(world, traced=traced).play()
+    assert runs(play) == (["r0"] if wiped else ["r0", "r0"])
+
+
+def test_a_stand_by_rival_is_not_made_firm_by_a_spike_of_another_cause() -> None:
+    # L15, L16: for the cause of s1, r0 is a rival only if r1 raises s2, which wants an input; so patience bounds it. The
+    # s2 on which it runs for another cause does not give it a stake here.
+    world = World(
+        S3,
+        V1,
+        (
+            RuleOf(when=on("s2"), writes=("v0",), acts=(Act(seconds=10.0),)),
+            RuleOf(when=((Want("s1"), Want("s0", detached=True)),), emits=("s2",)),
+            RuleOf(when=on("s1"), writes=("v0",)),
+        ),
+        ((0.0, ("emit", "s2", 1)), (0.0, ("emit", "s1", 1))),
+    )
+    play = Play(world).play()
+    assert next(line for line in play.heard if "<rule m:r2>" in line).startswith("1 s < Run(")
+
+
 def test_replay_takes_effects_when_the_runtime_took_them() -> None:
     # L24. The classifier ends within its first step, so nobody is ever kept waiting, and pressure stays false; a
     # replay that asks for effects once more before it feeds the end makes the fallback wait, and pressure true.
