@@ -29,14 +29,16 @@ class Refusal:
         names: For whom: names of rules.
         blockers: The live activations on whose progress it depends.
         pressed: The rivals that only patience bounds, each with the group.
+        hopes: Whether it depends on live rules of other groups.
         interests: The groups whose changes may lift the refusal.
         recheck: When recovering utilities change the order, at the earliest (seconds).
     """
 
-    __slots__ = ("blockers", "interests", "names", "pressed", "recheck")
+    __slots__ = ("blockers", "hopes", "interests", "names", "pressed", "recheck")
 
     def __init__(self) -> None:
         self.interests: dict[Group, None] = {}
+        self.hopes = False
         self.names: dict[str, None] = {}
         self.blockers: dict[Activation, None] = {}
         self.pressed: list[tuple[Group, Clause, Activation | None]] = []
@@ -90,6 +92,7 @@ def ask(engine: Engine, activation: Activation) -> Refusal:
                 refusal.recheck = min(refusal.recheck, _crossing(engine, clause, rival))
     if horizon is not None:
         refusal.interests.update(horizon.visited)
+        refusal.hopes = horizon.hopes
     return refusal
 
 

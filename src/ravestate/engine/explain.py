@@ -122,7 +122,7 @@ def _clause(engine: Engine, clause: Clause) -> ClauseState:
         tuple(tuple(sorted(signal.name for signal in pathway)) for pathway in clause.pathways),
         clause.utility,
         engine.effective(clause),
-        tuple((str(guard), engine.holds(slot, guard, clause.rule)) for slot, guard in clause.guards),
+        tuple((str(guard), engine.opens(slot, guard)) for slot, guard in clause.guards),
     )
 
 

@@ -72,6 +72,8 @@ class Holdings:
         self.benches: dict[Activation, tuple[tuple[Clause, ...], int, int]] = {}
         """Activations that stand for others besides themselves (``contests.py``): the contest, how many of it are made,
         and the number before its first."""
+        self.hoping: dict[Activation, None] = {}
+        """Those of them that wait for what a live rule of another causal group might bring."""
         self.running: dict[int, Activation] = {}
         """Activations whose function runs, by the number of the run."""
         self.retired: set[int] = set()
@@ -162,6 +164,13 @@ class Holdings:
     def holds(self, slot: SlotPlan, guard: Holds, rule: RulePlan) -> bool:
         """Whether a predicate on a slot's present value is true; one that fails is false, and is reported."""
         return self._test(guard.predicate, self.read(slot.index), rule)
+
+    def opens(self, slot: SlotPlan, guard: Holds) -> bool:
+        """As `holds`, for who only looks: a predicate that fails is reported to nobody."""
+        try:
+            return bool(guard.predicate(self.read(slot.index)))
+        except Exception:  # foreign code, as in `_test`
+            return False
 
     def _test(self, predicate: Any, value: Any, rule: RulePlan) -> bool:
         try:
@@ -394,13 +403,14 @@ class Holdings:
         del active[activation]
         if not active:
             del self.active[clause.rule.index]
-            self._stirred = bool(self.waiting)
+        self._stirred = bool(self.hoping)
         if not (clause.rule.background or clause.reflexive):
             self._busy -= 1
 
     def _lose_interest(self, activation: Activation) -> None:
         """It waits no longer: what happens in those groups does not concern it."""
         self.waiting.pop(activation, None)
+        self.hoping.pop(activation, None)
         for group in activation.interests:
             group.root().forget(activation)
         activation.interests = ()
@@ -430,6 +440,8 @@ class Holdings:
         for holder in list(spike.holders):
             if holder.state < RUNNING:
                 self._lose(holder, self._of_spike(holder, spike), "withdrawn")
+            else:
+                self.benches.pop(holder, None)  # who sits there would have given it up
 
     def _withdraw(self, signal: SignalPlan, reason: str) -> None:
         live = self.live.get(signal.index)

@@ -41,13 +41,15 @@ class Horizon:
     Attributes:
         roots: The live activations on which the latest firm derivation rests.
         visited: The groups that were looked at.
+        hopes: Whether something was found that only a live rule of another group may bring.
     """
 
-    __slots__ = ("_by_rule", "engine", "roots", "visited")
+    __slots__ = ("_by_rule", "engine", "hopes", "roots", "visited")
 
     def __init__(self, engine: Engine) -> None:
         self.engine = engine
         engine.unfold_all()
+        self.hopes = False
         self.roots: list[Activation] = []
         self.visited: dict[Group, None] = {}
         self._by_rule: dict[Group, dict[int, list[Activation]]] = {}
@@ -68,8 +70,6 @@ class Horizon:
         if rule.index in self.engine.retired:
             return NO
         mark = len(self.roots)
-        strength = FIRM
-        stake = activation is not None
         if activation is None:
             missing = clause.all_bits
             if group.finished(rule.slots):
@@ -78,58 +78,69 @@ class Horizon:
             missing = activation.missing
             if not missing:
                 self.roots.append(activation)  # it is ready, or will ripen
+        # For each need, or needs that one group must meet: how firmly this group may meet it, and how firmly anything.
+        here: list[int] = []
+        best: list[int] = []
         answered = 0
         for need in clause.needs:
             if not need.bit & missing or need.bit & answered:
                 continue
             if need.detached:
-                met, here = self._detached(need, group, slots, path)
+                mine, other = NO, self._detached(need, group, slots, path)
             elif need.kin == need.bit:
-                met, here = self._single(need, group, slots, path)
+                mine = self.comes(need.signal.index, group, slots, path)
+                other = NO if mine == FIRM else self._anywhere(need, group)
             else:
                 answered |= need.kin
-                met, here = self._kin(need, activation, missing, group, slots, path)
-            stake = stake or here
-            if met == NO:
+                mine, other = self._kin(need, activation, missing, group, slots, path)
+            if mine == NO and other == NO:
                 del self.roots[mark:]
                 return NO
-            strength = min(strength, met)
-        if not stake or not self._guards(clause, group, slots, path):
+            here.append(mine)
+            best.append(max(mine, other))
+        strength = min(best, default=FIRM)
+        if activation is None:  # one of them must be met here: what comes from elsewhere gives no stake
+            strength = max(
+                (
+                    min(mine, *best[:k], *best[k + 1 :]) if len(best) > 1 else mine
+                    for k, mine in enumerate(here)
+                ),
+                default=NO,
+            )
+        if strength == NO or not self._guards(clause, group, slots, path):
             del self.roots[mark:]
             return NO
         return strength
 
-    def _single(self, need: Need, group: Group, slots: Slots, path: Path) -> tuple[int, bool]:
-        """A need that any causal group may meet."""
-        met = self.comes(need.signal.index, group, slots, path)
-        if met == FIRM:
-            return FIRM, True
+    def _anywhere(self, need: Need, group: Group) -> int:
+        """How firmly what is live, an input, or a rule of another group may meet a need."""
         if self._live(need):
-            return FIRM, met != NO
-        if met != NO:
-            return met, True
-        return (SPECULATIVE if self._elsewhere(need, group) else NO), False
+            return FIRM
+        return SPECULATIVE if self._elsewhere(need, group) else NO
 
-    def _detached(self, need: Need, group: Group, slots: Slots, path: Path) -> tuple[int, bool]:
-        """A need that looks only: no stake."""
+    def _detached(self, need: Need, group: Group, slots: Slots, path: Path) -> int:
+        """A need that looks only."""
         if self._live(need):
-            return FIRM, False
-        met = self.comes(need.signal.index, group, slots, path)
-        return (met or (SPECULATIVE if self._elsewhere(need, group) else NO)), False
+            return FIRM
+        return self.comes(need.signal.index, group, slots, path) or self._anywhere(need, group)
 
     def _kin(
-        self, need: Need, activation: Activation | None, missing: int, group: Group, slots: Slots, path: Path
-    ) -> tuple[int, bool]:
+        self,
+        need: Need,
+        activation: Activation | None,
+        missing: int,
+        group: Group,
+        slots: Slots,
+        path: Path,
+    ) -> tuple[int, int]:
         """Needs that one causal group must meet together (coherence, L12)."""
         kin = [n for n in need.clause.needs if n.bit & need.kin & missing]
         held = activation.held(need.kin) if activation is not None else None
-        if held is not None:
-            home = held.group.root()
-            return min(self.comes(n.signal.index, home, slots, path) for n in kin), True
-        here = min(self.comes(n.signal.index, group, slots, path) for n in kin)
-        if here != NO:
-            return here, True
-        return (SPECULATIVE if all(self._elsewhere(n, group) for n in kin) else NO), False
+        home = group if held is None else held.group.root()
+        mine = min(self.comes(n.signal.index, home, slots, path) for n in kin)
+        if held is not None or mine == FIRM:
+            return mine, NO
+        return mine, (SPECULATIVE if all(self._elsewhere(n, group) for n in kin) else NO)
 
     def _guards(self, clause: Clause, group: Group, slots: Slots, path: Path) -> bool:
         """Whether its predicates on slots hold, or a slot may yet change in this group."""
@@ -195,5 +206,6 @@ class Horizon:
             narrow = causes.ancestors(signal.index)
             for rule, activations in self.engine.active.items():
                 if rule in wide and (rule not in narrow or any(a not in group.members for a in activations)):
+                    self.hopes = True
                     return True
         return False

@@ -120,7 +120,7 @@ class Waves(Slots):
                 again.update(group.interested)
             self._dirty.clear()
             if self._stirred:
-                again.update((a, None) for a in self.waiting if a.speculative)
+                again.update(self.hoping)
                 self._stirred = False
             for activation in again:
                 heapq.heappush(line, (*self._turn(activation), activation))
@@ -178,6 +178,8 @@ class Waves(Slots):
         activation.waits_for = names
         activation.blockers = tuple(refusal.blockers)
         activation.speculative = bool(refusal.pressed)
+        if refusal.hopes:
+            self.hoping[activation] = None
         activation.interests = tuple(refusal.interests)
         for group in activation.interests:
             group.concern(activation)
