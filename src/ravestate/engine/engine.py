@@ -224,7 +224,7 @@ class Engine(Waves):
         if self.report_ends:
             self._out.append(Ended(run.id, rule.name, outcome, fired))
         on_error = event.kind == "failed" and any(
-            spike is not None and spike.signal.name == "core:error" for spike in run.spikes
+            spike is not None and spike.comes_from("core:error") for spike in run.spikes
         )
         self._end(run)
         if event.kind == "retired":

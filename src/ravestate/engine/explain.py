@@ -102,8 +102,7 @@ class Explanation:
 
 def explain(engine: Engine, rule: RulePlan, records: Iterable[Record] = (), limit: int = 12) -> Explanation:
     """Explain a rule of an engine; `records` is the trace to tell its recent history from."""
-    engine.unfold_all()
-    engine.settle()
+    engine.look()
     return Explanation(
         rule.name,
         engine.now,

@@ -27,6 +27,7 @@ from ravestate.engine.activation import (
 )
 from ravestate.engine.deadlines import (
     EXPIRE,
+    FORGET,
     PATIENCE,
     RECHECK,
     RIPEN,
@@ -419,6 +420,8 @@ class Holdings:
         """Nobody holds the spike: it is gone, unless detached needs may still look at it."""
         signal = spike.signal
         if signal.retain >= 0 and spike.born + signal.retain > self.now:
+            if signal.retain != NEVER:
+                self._deadlines.add(spike.born + signal.retain, FORGET, spike)
             return
         live = self.live.get(signal.index)
         if live is not None:

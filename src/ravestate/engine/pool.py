@@ -7,7 +7,7 @@ from typing import Any
 from ravestate.engine import trace
 from ravestate.engine.activation import CANCEL, NEVER, RUNNING, Activation
 from ravestate.engine.contests import Contests
-from ravestate.engine.deadlines import FORGET, WATCH
+from ravestate.engine.deadlines import WATCH
 from ravestate.engine.effects import Cancel, CancelReason, Spiked
 from ravestate.engine.group import Group
 from ravestate.engine.spike import Spike
@@ -88,8 +88,6 @@ class Pool(Contests):
             self._offer(need, spike)
         if signal.contests:
             self._contest(signal, spike)
-        if signal.retain >= 0 and signal.retain != NEVER:
-            self._deadlines.add(self.now + signal.retain, FORGET, spike)
         if not spike.holders:
             self._forget(spike)
 
@@ -146,7 +144,9 @@ class Pool(Contests):
                 if run.state == RUNNING and all(
                     self._test(p, spike.payload, run.clause.rule) for p in need.predicates
                 ):
-                    watch.spikes[need.index] = spike
+                    held = watch.spikes[need.index]
+                    if held is None or not need.min_age or held.born + need.max_age < self.now:
+                        watch.spikes[need.index] = spike  # else the older one ripens first
                     self._judge(watch)
 
     def _judge(self, watch: Watch) -> None:

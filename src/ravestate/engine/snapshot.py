@@ -21,8 +21,7 @@ def snapshot(engine: Engine) -> dict[str, Any]:
         ``now`` (seconds), ``slots``, ``spikes``, ``activations``, ``groups``, ``dropped``, ``retired``,
         ``next_deadline`` (seconds or None).
     """
-    engine.unfold_all()
-    engine.settle()
+    engine.look()
     groups = {spike.group.root() for spikes in engine.live.values() for spike in spikes}
     return {
         "now": engine.now,

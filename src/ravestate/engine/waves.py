@@ -46,10 +46,16 @@ class Waves(Slots):
         self._activity = policy.slot_of["core:activity"]
         self._pressure = policy.slot_of["core:pressure"]
 
-    def settle(self) -> None:
-        """Ask those who are ready and have not been asked, so that whoever looks in sees for whom they wait."""
-        if self._asking and not self._free and not self._acts:
-            self._consent_round()
+    def look(self) -> None:
+        """Make all activations visible for somebody who looks in: those on benches wait for the best of their contest."""
+        for best in list(self.benches):
+            spike = best.spikes[0]
+            assert spike is not None  # it is ready, or runs
+            self.unfold(best)
+            for other in list(spike.holders) if best.state >= WAITING else ():
+                if other.state is READY and other.clause.rule.slotset == best.clause.rule.slotset:
+                    self._asking.pop(other, None)
+                    self._refuse(other, Refusal.by(best, other))
 
     def effective(self, clause: Clause) -> float:
         """The effective utility of a clause now (L9): utility x weight x recovery, in nats."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from types import ModuleType
@@ -172,6 +173,16 @@ class _Compilation:
                 index = len(self.slots)
                 plan = SlotPlan(index, slot, tuple(self.number_signal(s, index) for s in slot.signals))
                 self.slots.append(plan)
+                try:
+                    if slot.kind != "collection":
+                        copy.deepcopy(slot.default)
+                except Exception as error:  # whatever the value's own code raises
+                    self.faults.append(
+                        DeclarationError(
+                            f"slot {slot.name} ({slot.origin}): its default cannot be copied for each context ({error}): "
+                            "write default=None, and set it in a rule on rs.startup"
+                        )
+                    )
                 self.slot_of[slot.name] = plan
 
     def number_signal(self, signal: Signal[Any], slot: int | None) -> SignalPlan:
@@ -260,7 +271,9 @@ class _Compilation:
         clause.signals = tuple(need.signal.signal for need in needs)
         clause.all_bits = (1 << len(needs)) - 1
         clause.firm_bits = sum(need.bit for need in needs if not need.detached)
-        clause.reflexive = any(need.signal.name.startswith(FLAGS) for need in needs)
+        clause.reflexive = any(need.signal.name.startswith(FLAGS) for need in needs) or any(
+            guard.slot in (activity, pressure) for guard in conjunction.guards
+        )
         clause.simple = len(needs) == 1 and not clause.guards and not needs[0].min_age
         clause.asks_detached = 0 < clause.firm_bits < clause.all_bits
         return clause

@@ -242,7 +242,9 @@ class Context:
 
     def snapshot(self) -> dict[str, Any]:
         """Everything that is alive, as plain data that JSON can carry."""
-        return snapshot(self._running().engine)
+        runner = self._running()
+        runner.engine.advance(max(runner.engine.now, runner.now()))
+        return snapshot(runner.engine)
 
     def _running(self) -> Runner:
         if self._runner is None:

@@ -13,7 +13,7 @@ from ravestate.declare.module import title_of
 from ravestate.declare.rule import Rule
 from ravestate.declare.signal import Signal
 from ravestate.declare.slot import Collection, Slot
-from ravestate.engine.events import AddRule, Discard, Emit, Store, Wipe, Write
+from ravestate.engine.events import Discard, Emit, Store, Wipe, Write
 from ravestate.errors import RuleError, RunEnded, UndeclaredError, nearest
 
 if TYPE_CHECKING:
@@ -135,8 +135,7 @@ class RuleContext:
             DeclarationErrors: The rule does not fit.
         """
         self._alive()
-        runner = self._runner
-        runner.receive(AddRule(runner.engine.policy.with_rule(rule, runner.settings)))
+        self._runner.add_rule(rule)
 
     async def sleep(self, seconds: float) -> None:
         """Wait on the context's clock."""

@@ -17,7 +17,7 @@ from ravestate.declare.outcome import Resign, Retire
 from ravestate.declare.rule import Rule
 from ravestate.engine.effects import Cancel, Effect, Ended, Failed, Run, Spiked
 from ravestate.engine.engine import Engine
-from ravestate.engine.events import Event, Finish
+from ravestate.engine.events import AddRule, Event, Finish
 from ravestate.errors import EngineError, PlatformError, RuleError
 from ravestate.runtime.journal import Taken
 from ravestate.runtime.nest import Nest
@@ -31,6 +31,9 @@ BLOCKING = 0.1
 
 GRACE = 5.0
 """Seconds that a cancelled rule has for its cleaning up before its run counts as ended."""
+
+ENDLESS = 200_000
+"""Rounds of effects in one instant of virtual time after which it counts as one that does not end."""
 
 BATCH = 512
 """Rounds of effects after which the loop gets a turn, so that a busy agent still hears and sees."""
@@ -79,7 +82,11 @@ class Runner:
         self._origin = loop.time()
         self._scheduled = False
         self._pumping = False
-        self._instant = 0.0
+        self._instant = -1.0
+        self._rounds = 0  # full batches in this very instant
+        self._last_run = ""
+        self.on_endless: Callable[[str], None] | None = None
+        """Told of the rule that ran last when an instant does not end (in virtual time, where it would stand still)."""
         self._timer: asyncio.TimerHandle | None = None
         self._timer_due = 0.0
         self._contexts: dict[int, RuleContext] = {}
@@ -113,6 +120,20 @@ class Runner:
             self._scheduled = True
             self.loop.call_soon(self._pump)
 
+    def add_rule(self, rule: Rule[Any, Any]) -> None:
+        """Add a rule to the engine's policy; from any thread. The policy is made on the loop, so that none is lost.
+
+        Raises:
+            DeclarationErrors: The rule does not fit.
+        """
+        if threading.get_ident() != self._thread:
+            asyncio.run_coroutine_threadsafe(self._add_rule_late(rule), self.loop).result()
+        else:
+            self.receive(AddRule(self.engine.policy.with_rule(rule, self.settings)))
+
+    async def _add_rule_late(self, rule: Rule[Any, Any]) -> None:
+        self.add_rule(rule)
+
     def _receive_late(self, event: Event) -> None:
         """What another thread gave; its run may have ended on the way."""
         run = getattr(event, "run", None)
@@ -129,7 +150,12 @@ class Runner:
         if self.closed:
             return
         engine = self.engine
-        self._instant = self.now()
+        began = self.now()
+        self._rounds = self._rounds + 1 if began == self._instant else 0
+        self._instant = began
+        if self.on_endless is not None and self._rounds * BATCH > ENDLESS:
+            self.on_endless(self._last_run)
+            return
         self._pumping = True
         try:
             for _ in range(BATCH):
@@ -214,6 +240,7 @@ class Runner:
 
     def _run(self, effect: Run) -> None:
         rule = effect.rule
+        self._last_run = rule.name
         ctx = RuleContext(self, effect)
         self._contexts[effect.run] = ctx
         is_async = self._is_async.get(rule)

@@ -65,6 +65,7 @@ class Simulation:
             runner = context._runner  # pyright: ignore[reportPrivateUsage]
             assert runner is not None  # entering makes it
             runner.serial = True
+            runner.on_endless = loop.give_up
             loop.busy = lambda: [rule.name for rule in runner.threads.values()]
             self.settle()
         except BaseException:

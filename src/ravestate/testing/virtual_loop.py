@@ -9,6 +9,8 @@ from collections.abc import Callable
 from contextvars import Context
 from typing import Any
 
+from ravestate.errors import EngineError
+
 __all__ = ["VirtualLoop"]
 
 REAL_LIMIT = 30.0
@@ -40,6 +42,7 @@ class VirtualLoop(asyncio.SelectorEventLoop):
         """Virtual time at which `run_to` stops."""
         self.busy: Callable[[], list[str]] = list
         self._timers = 0
+        self._endless = ""
         self._lent: dict[asyncio.Future[Any], str] = {}
         super().__init__(_Selector(self))
 
@@ -76,6 +79,11 @@ class VirtualLoop(asyncio.SelectorEventLoop):
         timer._scheduled = True  # pyright: ignore[reportAttributeAccessIssue]  # as BaseEventLoop marks it
         return timer
 
+    def give_up(self, rule: str) -> None:
+        """An instant does not end: stop, and let `run_to` raise."""
+        self._endless = rule
+        self.stop()
+
     def run_to(self, goal: float) -> None:
         """Run until all that happens at or before `goal` (virtual seconds) has happened."""
         self.goal = goal
@@ -83,6 +91,11 @@ class VirtualLoop(asyncio.SelectorEventLoop):
             self.run_forever()
         finally:
             self.goal = None
+        if self._endless:
+            raise EngineError(
+                f"at {self._virtual:g} s rules run without end, {self._endless} among them: a detached loop wants an age; "
+                "write .min_age(seconds) behind the signal that it comes back by"
+            )
         self._virtual = max(self._virtual, goal)
 
     def nothing_ready(self) -> None:
