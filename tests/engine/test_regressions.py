@@ -10,6 +10,8 @@ import pytest
 from properties.oracle import Exclusion, bounded, empty
 from properties.worlds import Act, Gate, Play, RuleOf, SignalOf, SlotOf, Want, World
 from ravestate.engine.engine import Engine
+from ravestate.engine.explain import explain
+from ravestate.engine.snapshot import snapshot
 from ravestate.runtime.journal import Entry, replay
 
 S3 = (SignalOf(), SignalOf(), SignalOf())
@@ -230,6 +232,30 @@ def test_a_stand_by_rival_is_not_made_firm_by_a_spike_of_another_cause() -> None
     )
     play = Play(world).play()
     assert next(line for line in play.heard if "<rule m:r2>" in line).startswith("1 s < Run(")
+
+
+def test_a_spike_that_a_new_rule_may_look_back_at_is_forgotten_in_time() -> None:
+    # L23: it was born before the rule that looks back at s0 for 2 s was added, and nobody held it at 2 s.
+    looking = RuleOf(when=((Want("s1"), Want("s0", max_age=2.0, detached=True)),))
+    world = World(
+        S3,
+        rules=(RuleOf(when=on("s0")),),
+        inputs=((0.0, ("emit", "s0", 1)), (0.0, ("add", looking))),
+        together=True,
+    )
+    play = Play(world).play()
+    play.settle(100.0)
+    empty(play)
+
+
+def test_looking_at_a_predicate_that_fails_is_no_failure_of_the_rule() -> None:
+    # L24, L25: a snapshot says of each gate whether it is open; that a predicate cannot tell is not an effect.
+    world = World(S3, V1, (RuleOf(when=((Want("s0"), Gate("v0", "fussy")),)),), ((0.0, ("write", "v0", 2)),))
+    play = Play(world).play()
+    snapshot(play.engine)
+    explain(play.engine, play.engine.policy.rule_plan("m:r0"))
+    play.tell(("write", "v0", 1))
+    assert "Failed" not in "".join(play.heard)
 
 
 def test_replay_takes_effects_when_the_runtime_took_them() -> None:

@@ -226,8 +226,7 @@ def consistent(engine: Any) -> None:
 
 def bounded(play: Play) -> None:
     """All that must be true whenever the engine is quiet."""
-    play.engine.unfold_all()
-    play.engine.settle()
+    play.engine.look()
     assert not play.engine._out, "looking has made somebody run"
     consistent(play.engine)
     pressed_in_time(play)

@@ -78,7 +78,7 @@ def test_a_rule_that_hears_nothing_changes_nothing(world: World, steps: int) -> 
             break
     policy = changed.engine.policy
     assert changed.names is not None
-    deaf = rule_of(changed.names, RuleOf(((Want("never"),),), writes=tuple(changed.names.slots)), "deaf")
+    deaf = rule_of(changed.names, RuleOf(((Want("never"),),)), "deaf")
     more = policy.with_rule(deaf)
     for index, clause in policy.clause_plans.items():
         same = more.clause_plans[index]

@@ -279,6 +279,8 @@ class Play:
     """Called before time passes: `self.engine` is quiet, and nothing happens until `self.next_time()`."""
     started: Callable[[Play, Effect], None] | None = None
     """Called with each effect, all those of one batch before the first is performed."""
+    budget: int = BUDGET
+    """Calls of a rule after which it retires."""
     now: float = 0.0
     heard: list[str] = field(default_factory=list)
     taken: list[list[Effect]] = field(default_factory=list)
@@ -305,7 +307,7 @@ class Play:
 
     def play(self) -> Play:
         """From the first input until nothing is left to happen."""
-        for _ in range(STEPS):
+        for _ in range(STEPS + len(self.todo)):
             if not self.step():
                 return self
         raise Endless(f"there is no end to it at {self.now} s")
@@ -394,9 +396,12 @@ class Play:
                 assert self.names is not None
                 number = len(self.engine.policy.declared)
                 name = f"r{number}"
+                try:
+                    more = self.engine.policy.with_rule(rule_of(self.names, spec, name))
+                except rs.DeclarationErrors:
+                    return  # it does not fit what is there
                 self.specs[f"m:{name}"] = spec
-                rule = rule_of(self.names, spec, name)
-                self.receive(events.AddRule(self.engine.policy.with_rule(rule)))
+                self.receive(events.AddRule(more))
             case ("finish", kind, reason):
                 self.finish(run, kind, reason)
             case _:
@@ -437,7 +442,7 @@ class Play:
         name = effect.rule.name
         spec = self.specs[name]
         calls = self.calls[name] = self.calls.get(name, 0) + 1
-        act = spec.acts[(calls - 1) % len(spec.acts)] if calls <= BUDGET else Act(end="retired")
+        act = spec.acts[(calls - 1) % len(spec.acts)] if calls <= self.budget else Act(end="retired")
         run = effect.run
         self.acts[run] = (name, act)
         time = self.now

@@ -154,6 +154,7 @@ class Runner:
         self._rounds = self._rounds + 1 if began == self._instant else 0
         self._instant = began
         if self.on_endless is not None and self._rounds * BATCH > ENDLESS:
+            self.closed = True
             self.on_endless(self._last_run)
             return
         self._pumping = True
