@@ -44,28 +44,31 @@ class Horizon:
         hopes: Whether something was found that only a live rule of another group may bring.
     """
 
-    __slots__ = ("_by_rule", "engine", "hopes", "roots", "visited")
+    __slots__ = ("_by_rule", "_cuts", "_known", "engine", "hopes", "roots", "visited")
 
     def __init__(self, engine: Engine) -> None:
         self.engine = engine
         engine.unfold_all()
+        self._cuts = 0  # how often a cycle was cut
+        self._known: dict[tuple[int, Group, Slots], tuple[int, tuple[Activation, ...]]] = {}
         self.hopes = False
         self.roots: list[Activation] = []
         self.visited: dict[Group, None] = {}
         self._by_rule: dict[Group, dict[int, list[Activation]]] = {}
 
-    def viable(
-        self,
-        clause: Clause,
-        activation: Activation | None,
-        group: Group,
-        slots: Slots,
-        path: Path = frozenset(),
-    ) -> int:
+    def viable(self, clause: Clause, activation: Activation | None, group: Group, slots: Slots) -> int:
         """How firmly a clause, by an activation of it or (None) in stand-by, may still become ready in a group.
 
         A clause in stand-by has a stake in the group only if a signal of the group's horizon is among its needs.
         """
+        try:
+            return self._viable(clause, activation, group, slots, frozenset())
+        except RecursionError:  # a chain of hundreds of rules: rather than to fail, patience bounds the wait
+            return SPECULATIVE
+
+    def _viable(
+        self, clause: Clause, activation: Activation | None, group: Group, slots: Slots, path: Path
+    ) -> int:
         rule = clause.rule
         if rule.index in self.engine.retired:
             return NO
@@ -162,14 +165,27 @@ class Horizon:
     def comes(self, signal: int, group: Group, slots: Slots, path: Path) -> int:
         """How firmly a signal lies in the horizon of a group."""
         if signal in path:
+            self._cuts += 1
             return NO
-        causes = self.engine.policy.causes
         by_rule = self._rules(group)
-        if by_rule.keys().isdisjoint(causes.ancestors(signal)):
+        if by_rule.keys().isdisjoint(self.engine.policy.causes.ancestors(signal)):
             return NO
+        known = self._known.get((signal, group, slots))
+        if known is not None:
+            self.roots.extend(known[1])
+            return known[0]
+        cuts, mark = self._cuts, len(self.roots)
+        best = self._caused(signal, by_rule, group, slots, path | {signal})
+        if self._cuts == cuts:  # it does not depend on the way by which it was reached
+            self._known[signal, group, slots] = best, tuple(self.roots[mark:])
+        return best
+
+    def _caused(
+        self, signal: int, by_rule: dict[int, list[Activation]], group: Group, slots: Slots, path: Path
+    ) -> int:
+        """How firmly one of the rules that raise a signal may do so."""
         best = NO
-        path = path | {signal}
-        for rule in causes.causes[signal]:
+        for rule in self.engine.policy.causes.causes[signal]:
             if not rule.slotset.isdisjoint(slots) or rule.index in self.engine.retired:
                 continue
             inner = slots | rule.slotset
@@ -177,11 +193,11 @@ class Horizon:
                 if activation.state >= RUNNING:
                     self.roots.append(activation)
                     return FIRM
-                best = max(best, self.viable(activation.clause, activation, group, inner, path))
+                best = max(best, self._viable(activation.clause, activation, group, inner, path))
                 if best == FIRM:
                     return FIRM
             for clause in rule.clauses:
-                best = max(best, self.viable(clause, None, group, inner, path))
+                best = max(best, self._viable(clause, None, group, inner, path))
                 if best == FIRM:
                     return FIRM
         return best
