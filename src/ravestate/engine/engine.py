@@ -120,10 +120,10 @@ class Engine(Waves):
             self._replace(slot, event.value, run)
             return
         self._mark_write(slot, run)
-        old = self.read(slot.index)
-        if not slot.always and equal(old, event.value):
+        value = bool(event.value) if slot.is_flag else event.value
+        if not slot.always and equal(self.read(slot.index), value):
             return
-        self._change(slot, event.value, self._parents(run), run)
+        self._change(slot, value, self._parents(run), run)
 
     def on_store(self, event: events.Store) -> None:
         slot = self._slot(event.slot)

@@ -37,6 +37,7 @@ class Policy:
         "declared",
         "guarded",
         "modules",
+        "plan_of",
         "refers",
         "rule_plans",
         "rules",
@@ -72,6 +73,7 @@ class Policy:
         clauses = [clause for rule in rule_plans for clause in (*rule.clauses, *rule.until)]
         self.clause_plans = {clause.index: clause for clause in clauses}
         self.guarded = any(clause.guards for clause in clauses)
+        self.plan_of = {plan.name: plan for plan in rule_plans}
         self.signal_of = {plan.name: plan for plan in signal_plans}
         self.slot_of = {plan.name: plan for plan in slot_plans}
         self.rules: Mapping[str, Rule[Any, Any]] = MappingProxyType({rule.name: rule for rule in declared})
@@ -85,7 +87,7 @@ class Policy:
             DeclarationError: The policy has no such rule.
         """
         name = rule if isinstance(rule, str) else rule.name
-        found = next((plan for plan in self.rule_plans if plan.name == name), None)
+        found = self.plan_of.get(name)
         if found is None:
             raise DeclarationError(f"the policy has no rule {name!r}{nearest(name, self.rules)}")
         return found

@@ -1,0 +1,116 @@
+"""What would never end is noticed, bounded, or does not happen."""
+
+import asyncio
+import threading
+
+import pytest
+
+import ravestate as rs
+from ravestate.testing import simulate
+
+
+def test_a_loop_without_an_age_is_named_instead_of_standing_still() -> None:
+    m = rs.Module("m")
+    a = m.signal("a")
+
+    @m.rule(when=a, emits=a, detached=True)
+    async def again(ctx: rs.RuleContext) -> None:
+        ctx.emit(a)
+
+    with pytest.raises(rs.EngineError, match=r"m:again.*min_age"), simulate(m, trace=False) as sim:
+        sim.emit(a)
+
+
+def test_a_rule_gated_by_pressure_may_be_kept_waiting() -> None:
+    m = rs.Module("m")
+    x, y, out = m.signal("x"), m.signal("y"), m.slot("out", "")
+
+    @m.rule(when=x & rs.pressure.holds(lambda pressed: not pressed), writes=out)
+    async def calm(ctx: rs.RuleContext) -> None:
+        ctx[out] = "calm"
+
+    @m.rule(when=x & y, writes=out, weight=3)
+    async def both(ctx: rs.RuleContext) -> None:
+        ctx[out] = "both"
+
+    with simulate(m) as sim:
+        sim.emit(x)
+        sim.advance(1.0)
+        assert sim.read(out) == "calm"
+
+
+def test_an_apology_that_fails_is_not_apologised_for() -> None:
+    m = rs.Module("m")
+    said = m.slot("said", "")
+    go = m.signal("go")
+
+    @m.rule(when=rs.error, writes=said)
+    async def apologise(ctx: rs.RuleContext) -> None:
+        ctx[said] = "Sorry."
+
+    @m.rule(when=said.changed)
+    async def speak(ctx: rs.RuleContext) -> None:
+        raise rs.PlatformError("the loudspeaker is gone")
+
+    @m.rule(when=go)
+    async def fail(ctx: rs.RuleContext) -> None:
+        raise ValueError("broken")
+
+    with simulate(m) as sim:
+        sim.emit(go)
+        assert [rule for rule, _ in sim.failures] == ["m:fail", "m:speak"]
+
+
+def test_an_interruption_that_wants_an_age_is_not_put_off_by_more_of_the_same() -> None:
+    m = rs.Module("m")
+    go, tick = m.signal("go"), m.signal("tick")
+
+    @m.rule(when=go, until=tick.min_age(2.0))
+    async def run(ctx: rs.RuleContext) -> None:
+        await ctx.sleep(1_000.0)
+
+    with simulate(m) as sim:
+        sim.emit(go)
+        for _ in range(4):
+            sim.advance(0.5)
+            sim.emit(tick)
+        assert sim.fired == []
+        sim.advance(0.5)
+        assert sim.fired == ["m:run"]
+
+
+def test_rules_added_from_threads_are_all_there() -> None:
+    m, extra = rs.Module("m"), rs.Module("extra")
+    go, heard = m.signal("go"), m.collection("heard")
+
+    def rule_of(number: int) -> rs.Rule[..., object]:
+        async def hear(ctx: rs.RuleContext) -> None:
+            ctx[heard].add(str(number), True)
+
+        return extra.rule(when=go, writes=heard, name=f"r{number}", detached=True)(hear)
+
+    def adder(number: int) -> None:
+        rule = rule_of(number)
+
+        def add(ctx: rs.RuleContext) -> None:
+            ctx.add_rule(rule)
+
+        m.rule(when=rs.startup, name=f"add{number}")(add)
+
+    for number in range(4):
+        adder(number)
+
+    async def main() -> int:
+        async with rs.Context(m) as context:
+            await context.quiet()
+            return len(context.policy.rules)
+
+    assert asyncio.run(main()) == 8
+
+
+def test_a_default_that_cannot_be_copied_is_a_fault() -> None:
+    m = rs.Module("m")
+    m.slot("lock", threading.Lock())
+    with pytest.raises(rs.DeclarationErrors) as caught:
+        rs.compile(m)
+    assert "rs.startup" in str(caught.value.exceptions[0])
