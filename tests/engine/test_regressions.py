@@ -248,6 +248,22 @@ def test_a_spike_that_a_new_rule_may_look_back_at_is_forgotten_in_time() -> None
     empty(play)
 
 
+def test_who_waits_for_a_rule_is_asked_again_when_the_rule_retires() -> None:
+    # L16, L18: r0 runs and may yet raise s0 for r1, for which r2 waits; at 0.25 s r1 retires, after a run for another cause.
+    world = World(
+        (SignalOf(),),
+        V1,
+        (
+            RuleOf(when=on("v0:changed"), emits=("s0",), acts=(Act(seconds=1.0),)),
+            RuleOf(when=on("s0"), writes=("v0",), acts=(Act(seconds=0.25, end="retired"),)),
+            RuleOf(when=on("v0:changed"), writes=("v0",)),
+        ),
+        ((0.0, ("emit", "s0", 1)), (0.0, ("write", "v0", 1))),
+    )
+    play = Play(world).play()
+    assert next(line for line in play.heard if "<rule m:r2>" in line).startswith("0.25 s < Run(")
+
+
 def test_looking_at_a_predicate_that_fails_is_no_failure_of_the_rule() -> None:
     # L24, L25: a snapshot says of each gate whether it is open; that a predicate cannot tell is not an effect.
     world = World(S3, V1, (RuleOf(when=((Want("s0"), Gate("v0", "fussy")),)),), ((0.0, ("write", "v0", 2)),))
