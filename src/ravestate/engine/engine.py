@@ -300,7 +300,7 @@ class Engine(Waves):
         for activation in list(self.active.get(rule.index, ())):
             if activation.state < RUNNING:
                 self._end(activation, "retired")
-        self._stirred = True
+        self._asking.update(self.waiting)  # any of them may have waited for what it might have caused
 
     # ------------------------------------------------------------------------------------ deadlines
 
