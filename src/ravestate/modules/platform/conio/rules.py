@@ -13,7 +13,7 @@ USER = "conio"
 
 
 @module.rule(
-    when=rs.startup,
+    when=rs.startup.detached(),  # so that it keeps no slot from other platforms
     writes=(screen, rawio.input, interloc.users),
     detached=True,  # each line is a cause of its own
     background=True,
