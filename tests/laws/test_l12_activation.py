@@ -168,3 +168,28 @@ def test_a_detached_constraint_need_not_cohere(play: Any) -> None:
         sim.put(text, "you!")
         sim.put(text, "who?")
         assert seen == [("who?", "you!")]
+
+
+def test_who_loses_a_coherent_spike_takes_another_of_the_same_cause(play: Any) -> None:
+    m = rs.Module("m")
+    i, question, about, seal = (
+        m.signal("i"),
+        m.signal("question", payload=int),
+        m.signal("about"),
+        m.signal("seal"),
+    )
+    heard: list[Any] = []
+
+    @m.rule(when=i, emits=(question, about))
+    async def classify(ctx: Any) -> None:
+        ctx.emit(question, 1)
+        ctx.emit(about)
+        await ctx.sleep(0.5)
+        ctx.emit(question, 2)
+
+    hearer(m, "join", question.max_age(1.0) & about.max_age(None) & seal, question, heard)
+    with play(m) as sim:
+        sim.emit(i)
+        sim.advance(1.2)
+        sim.emit(seal)
+        assert heard == [2]

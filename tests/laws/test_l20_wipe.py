@@ -170,3 +170,23 @@ def test_a_signal_may_keep_only_its_latest_spike(play: Any) -> None:
         sim.emit(go)
         sim.emit(go)
         assert heard == [3]
+
+
+def test_what_a_wiped_run_causes_while_it_cleans_up_is_withdrawn_too(play: Any) -> None:
+    m = rs.Module("m")
+    i, x, heard = m.signal("i"), m.signal("x"), list[Any]()
+
+    @m.rule(when=i, emits=x)
+    async def slow(ctx: Any) -> None:
+        try:
+            await ctx.sleep(10.0)
+        finally:
+            ctx.emit(x, "late")
+
+    hearer(m, "hear", x, x, heard)
+    with play(m) as sim:
+        sim.emit(i)
+        sim.advance(1.0)
+        sim.wipe(i)
+        sim.advance(20.0)
+        assert (heard, births(sim, x)) == ([], [])

@@ -8,7 +8,7 @@ stand-by that lie downstream of a live rule of the group.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING
 
 from ravestate.engine.activation import NEVER, RUNNING, Activation
@@ -142,13 +142,24 @@ def _crossing(engine: Engine, mine: Clause, theirs: Clause) -> float:
     return turn if turn > now else NEVER
 
 
-def stalemate(engine: Engine) -> Activation | None:
+def stalemate(engine: Engine, refused: Iterable[Activation]) -> Activation | None:
     """The best of those that wait only for each other, if there are such.
 
     Two ready rules may each wait for a rival that the other might bring about. Nothing would ever move them;
     the one of greater effective utility, or else the first declared, goes first.
+
+    Args:
+        engine: The engine.
+        refused: Who was told to wait since there was no stalemate. A new one has at least one of them in it, and
+            nobody who is not, over those for whom he waits, reached from there.
     """
-    stuck = {a: None for a in engine.waiting if not a.speculative}
+    stuck: dict[Activation, None] = {}
+    reached = [activation for activation in refused if activation in engine.waiting]
+    while reached:
+        activation = reached.pop()
+        if activation not in stuck and activation in engine.waiting and not activation.speculative:
+            stuck[activation] = None
+            reached.extend(activation.blockers)
     while stuck:
         freed = [a for a in stuck if any(blocker not in stuck for blocker in a.blockers)]
         if not freed:

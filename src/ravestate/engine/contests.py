@@ -40,15 +40,23 @@ class Contests(Holdings):
                 for clause in clauses if self.tracer is not None else ():
                     self._pass_by(clause, spike, "consumed")
                 continue  # consumed for all of them
-            if self.retired:
-                clauses = tuple(c for c in clauses if c.rule.index not in self.retired)
-                if not clauses:
-                    continue
+            clauses = tuple(clause for clause in clauses if self._enters(clause, spike))
+            if not clauses:
+                continue
             base = self._activations
             self._activations += len(clauses)
             self._next(clauses, 0, base, spike)
         if self.tracer is not None:
             self.unfold_all()
+
+    def _enters(self, clause: Clause, spike: Spike) -> bool:
+        if self.retired and clause.rule.index in self.retired:
+            return False
+        for predicate in clause.needs[0].predicates:
+            if not self._test(predicate, spike.payload, clause.rule):
+                self._pass_by(clause, spike, "payload")
+                return False
+        return True
 
     def _next(self, clauses: tuple[Clause, ...], position: int, base: int, spike: Spike) -> None:
         """Make an activation of the clause at a position, with the rest of the contest on its bench."""

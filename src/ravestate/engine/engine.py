@@ -10,7 +10,7 @@ It stands on three layers, each a file: ``pool.py`` (spikes and activations), ``
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Any
+from typing import Any, get_args
 
 from ravestate.engine import events, trace
 from ravestate.engine.activation import NEVER, RUNNING, WAITING, Activation
@@ -27,6 +27,8 @@ from ravestate.policy.plan import RulePlan, SlotPlan
 from ravestate.policy.policy import Policy
 
 __all__ = ["DEFAULT_PATIENCE", "Engine"]
+
+OUTCOMES = get_args(events.OutcomeKind)
 
 DEFAULT_PATIENCE = 1.0
 """Seconds that a rival under pressure has to become ready (L16)."""
@@ -64,11 +66,17 @@ class Engine(Waves):
             UndeclaredError: It names a signal or slot that the policy does not have.
             EngineError: It comes from a run that is over.
         """
-        if now > self.now:
+        if not now >= self.now:  # NaN is neither before nor after
+            if now != now:
+                raise EngineError("the time is not a number of seconds: it is NaN")
+        elif now > self.now:
             if self._deadlines.pending(now):
                 self.advance(now)
             self.now = now
-        HANDLERS[type(event)](self, event)
+        handler = HANDLERS.get(type(event))
+        if handler is None:
+            raise EngineError(f"{event!r} is no event: see ravestate.engine.events")
+        handler(self, event)
 
     def advance(self, now: float) -> None:
         """Let time pass until `now`, deadline by deadline. Doing so twice, or too early, changes nothing."""
@@ -126,13 +134,13 @@ class Engine(Waves):
         self._change(slot, value, self._parents(run), run)
 
     def on_store(self, event: events.Store) -> None:
-        slot = self._slot(event.slot)
+        slot = self._collection(event.slot)
         run = self._run(event.run)
         self._mark_write(slot, run)
         self._change_item(slot, event.key, event.item, run, self._origin(run))
 
     def on_discard(self, event: events.Discard) -> None:
-        slot = self._slot(event.slot)
+        slot = self._collection(event.slot)
         run = self._run(event.run)
         self._mark_write(slot, run)
         self._change_item(slot, event.key, ABSENT, run, self._origin(run))
@@ -164,6 +172,11 @@ class Engine(Waves):
 
     def on_add_rule(self, event: events.AddRule) -> None:
         """Replace the policy by one that has the same rules in the same order, and more."""
+        known, plans = self.policy.rule_plans, event.policy.rule_plans
+        if [plan.rule for plan in plans[: len(known)]] != [plan.rule for plan in known]:
+            raise EngineError(
+                "the policy does not continue the one that is running: make it by with_rule() of that one"
+            )
         self.unfold_all()
         clauses = event.policy.clause_plans
         self.policy = event.policy
@@ -186,6 +199,8 @@ class Engine(Waves):
         self._asking.update(self.waiting)
 
     def on_finish(self, event: events.Finish) -> None:
+        if event.kind not in OUTCOMES:
+            raise EngineError(f"a run ends by one of {', '.join(OUTCOMES)}, not by {event.kind!r}")
         run = self.running.pop(event.run, None)
         if run is None:
             raise EngineError(f"run {event.run} is over, or never was")
@@ -236,6 +251,12 @@ class Engine(Waves):
         slot = self.policy.slot_of.get(name)
         if slot is None:
             raise UndeclaredError(self._unknown("slot", name, self.policy.slots))
+        return slot
+
+    def _collection(self, name: str) -> SlotPlan:
+        slot = self._slot(name)
+        if not slot.is_collection:
+            raise EngineError(f"{name} is no collection: tell the engine Write({name!r}, value)")
         return slot
 
     def _run(self, number: int | None) -> Activation | None:

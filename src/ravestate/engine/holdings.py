@@ -86,6 +86,7 @@ class Holdings:
         self._acts = False  # whether there is something to do among it
         self._free: list[Activation] = []  # ready, and in need of nobody's consent
         self._asking: dict[Activation, None] = {}  # ready, and to be asked for consent
+        self._refused: dict[Activation, None] = {}  # told to wait since the last look for a stalemate
         self._dirty: dict[Group, None] = {}  # groups in which something ended
         self._stirred = False  # something ended that those who wait on patience may have waited for
         self._watches: dict[Clause, dict[Activation, Watch]] = {}
@@ -211,11 +212,18 @@ class Holdings:
         """An activation has lost a spike: let it take another that is live, the oldest first (L16 i)."""
         if need.detached:
             self._look(activation)
-        elif need.kin == need.bit:
+        else:
             for spike in self.live.get(need.signal.index, ()):
-                if self._fits(need, spike):
+                if self._fits(need, spike) and self._coherent(activation, need, spike):
                     self._acquire(activation, need, spike)
                     return
+
+    def _coherent(self, activation: Activation, need: Need, spike: Spike) -> bool:
+        """Whether a spike is of the causal group in which the need's kin are met (L12)."""
+        if need.kin == need.bit:
+            return True
+        held = activation.held(need.kin & ~need.bit)
+        return held is None or held.group.root() is spike.group.root()
 
     def _acquire(self, activation: Activation, need: Need, spike: Spike) -> None:
         activation.spikes[need.index] = spike
@@ -411,6 +419,7 @@ class Holdings:
     def _lose_interest(self, activation: Activation) -> None:
         """It waits no longer: what happens in those groups does not concern it."""
         self.waiting.pop(activation, None)
+        self._refused.pop(activation, None)
         self.hoping.pop(activation, None)
         for group in activation.interests:
             group.root().forget(activation)

@@ -66,6 +66,8 @@ class Pool(Contests):
         """A spike is born, and offered to whoever lacks it (L11, L12)."""
         self._spikes += 1
         source = 0 if run is None else run.id
+        if run is not None and run.told == "wiped" and parents:
+            return  # it stands on what has been withdrawn, and so would this (L20)
         if self.tracer is not None:
             ids = tuple(parent.id for parent in parents)
             self.tracer(trace.Born(self.now, self._spikes, signal.name, group.id, ids, source, payload))
@@ -132,10 +134,6 @@ class Pool(Contests):
                 if other.bit & activation.missing:
                     self.lacking.setdefault(other, {})[activation] = None
         self._update(activation)
-
-    def _coherent(self, activation: Activation, need: Need, spike: Spike) -> bool:
-        held = activation.held(need.kin & ~need.bit)
-        return held is None or held.group.root() is spike.group.root()
 
     def _watch(self, spike: Spike) -> None:
         """Show a new spike to the `until` conditions of runs (L21)."""

@@ -44,8 +44,8 @@ class Slots(Pool):
             group = self._group_of(parents)
             for signal in raised:
                 self._birth(signal, value, parents, group, run)
-        if self.policy.guarded:
-            self._regate()
+        if slot.index in self.policy.guarded:
+            self._regate(slot)
 
     def _change_item(
         self,
@@ -77,8 +77,8 @@ class Slots(Pool):
             if signal.keep_latest:
                 self._withdraw(signal, "superseded")
             self._birth(signal, entry, origin[0], origin[1], run)
-        if self.policy.guarded:
-            self._regate()
+        if slot.index in self.policy.guarded:
+            self._regate(slot)
 
     def _replace(self, slot: SlotPlan, value: Any, run: Activation | None) -> None:
         """Give a collection all its items at once: as if each difference had been written."""
@@ -93,11 +93,12 @@ class Slots(Pool):
     def _watched(self, slot: SlotPlan) -> bool:
         return any(signal.name in self.watched for signal in slot.signals)
 
-    def _regate(self) -> None:
-        """A slot has changed: predicates on slots may have become true, or false."""
+    def _regate(self, slot: SlotPlan) -> None:
+        """A slot has changed: predicates on it may have become true, or false."""
         for activation in list(self.gated):
-            del self.gated[activation]
-            self._update(activation)
+            if activation in self.gated and any(guarded is slot for guarded, _ in activation.clause.guards):
+                del self.gated[activation]
+                self._update(activation)
         for activation in self.waiting:
             self._asking[activation] = None
         for clause, watches in list(self._watches.items()):

@@ -146,8 +146,10 @@ class Waves(Slots):
             if self._ask(activation):
                 written.update(rule.slots)
         if self.waiting and not line and not self._acts and not self._free:
-            best = stalemate(self)
-            if best is not None:
+            best = stalemate(self, self._refused)
+            if best is None:
+                self._refused.clear()
+            else:
                 self._start(best)
 
     def _turn(self, activation: Activation) -> tuple[int, float, int, int]:
@@ -178,7 +180,7 @@ class Waves(Slots):
     def _refuse(self, activation: Activation, refusal: Refusal) -> None:
         activation.step(REFUSE)
         self._lose_interest(activation)
-        self.waiting[activation] = None
+        self.waiting[activation] = self._refused[activation] = None
         names = tuple(refusal.names)
         changed = activation.waits_for != names
         activation.waits_for = names
@@ -275,7 +277,7 @@ class Waves(Slots):
 
     def _set_flag(self, flag: SlotPlan, value: bool) -> None:
         """Change a built-in flag; the agent may well have no rule that hears it."""
-        if flag.heard or self.tracer is not None or self.watched or self.policy.guarded:
+        if flag.heard or self.tracer is not None or self.watched or flag.index in self.policy.guarded:
             self._change(flag, value, (), None)
         else:
             self.values[flag.index] = value

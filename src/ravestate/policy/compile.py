@@ -451,7 +451,7 @@ class _Compilation:
             contests: dict[tuple[frozenset[int], bool], list[Clause]] = {}
             for need in signal.listeners:
                 clause, rule = need.clause, need.clause.rule
-                fixed = not (need.detached or need.predicates or clause.cyclic or rule.cooldown)
+                fixed = not (need.detached or clause.cyclic or rule.cooldown)
                 if clause.simple and rule.slots and fixed:
                     contests.setdefault((rule.slotset, rule.background), []).append(clause)
             signal.contests = tuple(

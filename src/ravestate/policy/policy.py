@@ -72,7 +72,7 @@ class Policy:
         self.settings = settings
         clauses = [clause for rule in rule_plans for clause in (*rule.clauses, *rule.until)]
         self.clause_plans = {clause.index: clause for clause in clauses}
-        self.guarded = any(clause.guards for clause in clauses)
+        self.guarded = frozenset(slot.index for clause in clauses for slot, _ in clause.guards)
         self.plan_of = {plan.name: plan for plan in rule_plans}
         self.signal_of = {plan.name: plan for plan in signal_plans}
         self.slot_of = {plan.name: plan for plan in slot_plans}

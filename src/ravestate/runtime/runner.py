@@ -258,16 +258,19 @@ class Runner:
         try:
             nest.first_step(rule.function(ctx), rule)
         except StopIteration as stop:
+            took = perf_counter() - began
             self._finish(effect.run, rule, stop.value, None)
         except BaseException as exception:  # a rule may raise anything
+            took = perf_counter() - began
             self._finish(effect.run, rule, None, exception)
             if isinstance(exception, KeyboardInterrupt):
                 raise
         else:
+            took = perf_counter() - began
             self._spare = None
             self._nests[effect.run] = nest
             nest.task.add_done_callback(functools.partial(self._task_done, effect.run, rule))
-        if (took := perf_counter() - began) > BLOCKING:
+        if took > BLOCKING:
             self._blocked(rule, took)
         if nest.spoilt and nest is self._spare:
             nest.close()

@@ -1,0 +1,63 @@
+"""What no engine should be told, and that it says so clearly."""
+
+from __future__ import annotations
+
+from typing import Any, cast
+
+import pytest
+
+import ravestate as rs
+from ravestate.engine import events
+from ravestate.engine.effects import Run
+from ravestate.engine.engine import Engine
+from ravestate.errors import EngineError
+
+m = rs.Module("m")
+go, lit = m.signal("go"), m.flag("lit")
+
+
+@m.rule(when=go, writes=lit)
+async def light(ctx: rs.RuleContext) -> None:
+    """Only asked for by the engine, never called."""
+
+
+def running() -> tuple[Engine, int]:
+    """An engine, and the number of the run that it has asked for."""
+    engine = Engine(rs.compile(m))
+    engine.receive(events.Emit("m:go"), 0.0)
+    (effect,) = engine.effects()
+    assert isinstance(effect, Run)
+    return engine, effect.run
+
+
+@pytest.mark.parametrize(
+    ("event", "message"),
+    [
+        (events.Store("m:lit", "key", 1), "m:lit is no collection"),
+        (events.Discard("m:lit", "key"), "m:lit is no collection"),
+        (events.AddRule(rs.compile(rs.Module("other"))), r"make it by with_rule\(\)"),
+        (events.Finish(999, "done"), "run 999 is over, or never was"),
+        (cast("Any", "go"), "'go' is no event"),
+    ],
+)
+def test_an_event_that_makes_no_sense_is_refused_and_changes_nothing(event: Any, message: str) -> None:
+    engine, run = running()
+    with pytest.raises(EngineError, match=message):
+        engine.receive(event, 1.0)
+    engine.receive(events.Write("m:lit", True, run), 1.0)
+    engine.receive(events.Finish(run, "done"), 1.0)
+    assert engine.effects() == []
+    assert engine.read(engine.policy.slot_of["m:lit"].index) is True
+
+
+def test_a_run_ends_in_one_of_four_ways() -> None:
+    engine, run = running()
+    with pytest.raises(EngineError, match="done, resigned, failed, retired, not by 'won'"):
+        engine.receive(events.Finish(run, cast("Any", "won")), 1.0)
+    engine.receive(events.Finish(run, "done"), 1.0)  # it was not over
+
+
+def test_a_time_is_a_number() -> None:
+    engine, _ = running()
+    with pytest.raises(EngineError, match="NaN"):
+        engine.receive(events.Emit("m:go"), float("nan"))
