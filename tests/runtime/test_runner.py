@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 
 import ravestate as rs
+from ravestate.engine.engine import Engine
 from ravestate.runtime import nest as nest_file
 from ravestate.runtime import runner as runner_file
 from ravestate.testing import simulate
@@ -606,3 +607,22 @@ async def test_a_loop_of_rules_lets_the_loop_turn() -> None:
         assert count[0] > 0
         context.emit(enough)
         await context.until_stopped()
+
+
+@on_loop
+async def test_a_fault_of_the_engine_ends_the_context_and_is_told(
+    talk: Talk, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    async with rs.Context(talk.module) as context:
+        await talk.ask(context)
+        answer = asyncio.ensure_future(context.next(talk.said.changed))
+        await turns(1)
+
+        def fail(*_: Any) -> None:
+            raise KeyError("a fault of our own")
+
+        monkeypatch.setattr(Engine, "_consent_round", fail)
+        context.put(talk.heard, "hello")
+        for waiting in (answer, context.until_stopped()):
+            with pytest.raises(rs.RavestateError, match="the engine has failed.*a fault of our own"):
+                await waiting

@@ -135,10 +135,16 @@ class Context:
                 self._runner.loop.call_soon_threadsafe(self._stopping.set)
 
     async def until_stopped(self) -> None:
-        """Wait until a rule (``ctx.stop()``) or somebody outside has asked the context to end."""
-        self._running()
+        """Wait until a rule (``ctx.stop()``) or somebody outside has asked the context to end.
+
+        Raises:
+            EngineError: The engine has failed, which is a fault of this library's.
+        """
+        runner = self._running()
         assert self._stopping is not None  # made together with the runner
         await self._stopping.wait()
+        if runner.fault is not None:
+            raise runner.fault
 
     async def quiet(self) -> None:
         """Wait until no rule, apart from those in the background, runs or is kept waiting."""
@@ -192,7 +198,7 @@ class Context:
         self._known(signal, self.policy.signals, "signal")
         runner = self._running()
         if runner.closed:
-            raise EngineError(f"the context has ended: there will be no {signal.name}")
+            raise runner.fault or EngineError(f"the context has ended: there will be no {signal.name}")
         future: asyncio.Future[Any] = runner.loop.create_future()
         runner.futures.setdefault(signal.name, []).append(future)
         runner.engine.watched[signal.name] = 1

@@ -87,6 +87,8 @@ class Runner:
         self._last_run = ""
         self.on_endless: Callable[[str], None] | None = None
         """Told of the rule that ran last when an instant does not end (in virtual time, where it would stand still)."""
+        self.fault: EngineError | None = None
+        """Why the engine is of no more use, if it has failed itself, which is a fault of this library's."""
         self._timer: asyncio.TimerHandle | None = None
         self._timer_due = 0.0
         self._contexts: dict[int, RuleContext] = {}
@@ -165,7 +167,11 @@ class Runner:
                 if not self._todo:
                     if self.on_event is not None:
                         self.on_event(Taken(), engine.now)
-                    self._todo.extend(engine.effects())
+                    try:
+                        self._todo.extend(engine.effects())
+                    except Exception as error:
+                        self._break(error)
+                        return
                     if not self._todo:
                         break
                 while self._todo and not (self.serial and self.threads):
@@ -195,8 +201,24 @@ class Runner:
     def _wake(self) -> None:
         self._timer = None
         if not self.closed:
-            self.engine.advance(max(self.now(), self._timer_due))
-            self._pump()
+            try:
+                self.engine.advance(max(self.now(), self._timer_due))
+            except Exception as error:
+                self._break(error)
+            else:
+                self._pump()
+
+    def _break(self, error: Exception) -> None:
+        """The engine itself has failed: rather than to go on half alive, the context ends, and says why."""
+        self.fault = EngineError(f"the engine has failed, which is a fault of ravestate's: {error!r}")
+        self.fault.__cause__ = error
+        self.closed = True
+        for future in [future for waiting in self.futures.values() for future in waiting] + self._quiet:
+            if not future.done():
+                future.set_exception(self.fault)
+        self.futures.clear()
+        self._quiet.clear()
+        self.ask_to_stop()
 
     def _perform(self, effect: Effect) -> None:
         kind = type(effect)
