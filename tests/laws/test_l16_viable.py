@@ -513,3 +513,17 @@ def test_pressure_on_one_cause_leaves_another_alone(play: Any) -> None:
         assert moments(sim, out) == [(1.0, "plain")]
         sim.emit(point)
         assert moments(sim, out) == [(1.0, "plain"), (1.3, "fused")]
+
+
+def test_a_rule_waits_for_what_stands_at_the_end_of_a_long_chain(play: Any) -> None:
+    m, length = rs.Module("m"), 500
+    out = output(m)
+    links = [m.signal(f"link{i}") for i in range(length + 1)]
+    for i in range(length):
+        emitter(m, f"link{i}", links[i], links[i + 1], after=3.0 if i == 0 else 0.0)
+    writer(m, "end", links[-1], out)
+    writer(m, "fallback", links[0], out)
+    with play(m) as sim:
+        sim.emit(links[0])
+        sim.advance(5.0)
+        assert moments(sim, out) == [(3.0, "end")]

@@ -18,6 +18,7 @@ A rule that would take a slot of the rival's own cannot help it: in one group a 
 
 from __future__ import annotations
 
+import sys
 from typing import TYPE_CHECKING
 
 from ravestate.engine.activation import RUNNING, Activation
@@ -30,6 +31,10 @@ if TYPE_CHECKING:
 __all__ = ["FIRM", "NO", "SPECULATIVE", "Horizon"]
 
 NO, SPECULATIVE, FIRM = 0, 1, 2
+
+FRAMES = 8
+"""More than the calls by which a derivation gets from one signal to the next. None of them passes through a function in
+C that calls back, which would use up the interpreter's stack."""
 
 Path = frozenset[int]
 Slots = frozenset[int]
@@ -61,10 +66,18 @@ class Horizon:
 
         A clause in stand-by has a stake in the group only if a signal of the group's horizon is among its needs.
         """
+        mark = len(self.roots)
         try:
             return self._viable(clause, activation, group, slots, frozenset())
-        except RecursionError:  # a chain of hundreds of rules: rather than to fail, patience bounds the wait
-            return SPECULATIVE
+        except RecursionError:  # hundreds of pending rules that wait for each other in a row
+            del self.roots[mark:]
+            limit = sys.getrecursionlimit()
+            # Calls from Python to Python take no room on the interpreter's own stack.
+            sys.setrecursionlimit(limit + FRAMES * len(self.engine.policy.signal_plans))
+            try:
+                return self._viable(clause, activation, group, slots, frozenset())
+            finally:
+                sys.setrecursionlimit(limit)
 
     def _viable(
         self, clause: Clause, activation: Activation | None, group: Group, slots: Slots, path: Path
@@ -140,7 +153,7 @@ class Horizon:
         kin = [n for n in need.clause.needs if n.bit & need.kin & missing]
         held = activation.held(need.kin) if activation is not None else None
         home = group if held is None else held.group.root()
-        mine = min(self.comes(n.signal.index, home, slots, path) for n in kin)
+        mine = min([self.comes(n.signal.index, home, slots, path) for n in kin])  # a list: see `FRAMES`
         if held is not None or mine == FIRM:
             return mine, NO
         return mine, (SPECULATIVE if all(self._elsewhere(n, group) for n in kin) else NO)
