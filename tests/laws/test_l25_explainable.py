@@ -103,7 +103,7 @@ def test_a_spike_that_ripens_and_a_gate_that_is_closed(play: Any) -> None:
         assert (later.state, later.until) == ("ripening", 2.0)
         assert (gated.state, gated.until) == ("gated", 5.0)
         assert [is_open for _, is_open in sim.explain("m:gated").clauses[0].gates] == [False]
-        assert "may not run" in str(sim.explain("m:gated"))
+        assert "may not run" in str(sim.explain("m:gated")) == repr(sim.explain("m:gated"))
 
 
 def test_condition_pathways_and_utility_are_told(play: Any) -> None:

@@ -49,9 +49,9 @@ class ActivationState:
     until: float | None
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class Explanation:
-    """What can be said of a rule at a moment. ``str(explanation)`` says it in words.
+    """What can be said of a rule at a moment. Printed, or looked at in an interpreter, it says it in words.
 
     Attributes:
         rule: The rule's name.
@@ -98,6 +98,8 @@ class Explanation:
             lines.append("  lately:")
             lines += [f"    {line}" for line in self.history]
         return "\n".join(lines)
+
+    __repr__ = __str__
 
 
 def explain(engine: Engine, rule: RulePlan, records: Iterable[Record] = (), limit: int = 12) -> Explanation:
