@@ -624,5 +624,5 @@ async def test_a_fault_of_the_engine_ends_the_context_and_is_told(
         monkeypatch.setattr(Engine, "_consent_round", fail)
         context.put(talk.heard, "hello")
         for waiting in (answer, context.until_stopped()):
-            with pytest.raises(rs.RavestateError, match="the engine has failed.*a fault of our own"):
+            with pytest.raises(rs.RavestateError, match=r"the engine has failed.*a fault of our own"):
                 await waiting

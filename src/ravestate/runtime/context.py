@@ -84,7 +84,9 @@ class Context:
         self._policy = policy.with_settings(self.settings)
         self._seed = seed
         self._patience = patience
-        self._tracer = self.trace.append if trace is True else trace or None
+        self._observers: list[Callable[[Record], None]] = []
+        if trace:
+            self._observers.append(self.trace.append if trace is True else trace)
         self._journal = journal
         self._runner: Runner | None = None
         self._stopping: asyncio.Event | None = None
@@ -98,10 +100,10 @@ class Context:
         if self._runner is not None:
             raise EngineError("a context runs once: make another one of the same policy")
         engine = Engine(self._policy, patience=self._patience, report_ends=self._on_ended is not None)
-        engine.tracer = self._tracer
         self._stopping = asyncio.Event()
         loop = asyncio.get_running_loop()
         self._runner = Runner(engine, loop, self.settings, self._seed, self.ask_to_stop)
+        self._attach()
         self._runner.on_event = self._journal
         self._runner.on_ended = self._on_ended
         self._runner.on_failed = self._on_failed
@@ -118,6 +120,7 @@ class Context:
         cancelled and may clean up. Cancelling this breaks off: nothing is waited for any more."""
         runner = self._running()
         self.ask_to_stop()
+        runner.resume()
         last = runner.newest()
         runner.receive(Stop())
         try:
@@ -149,6 +152,28 @@ class Context:
     async def quiet(self) -> None:
         """Wait until no rule, apart from those in the background, runs or is kept waiting."""
         await self._running().quiet()
+
+    # ------------------------------------------------------------------------------------ its clock
+
+    def pause(self) -> None:
+        """Halt the context's clock: what comes from outside is still taken, but no rule starts, nothing falls due, and
+        ``ctx.sleep`` does not end. A rule that computes, or waits for something else, goes on. On the context's loop
+        only, as are `step` and `resume`."""
+        self._running().pause()
+
+    def step(self) -> None:
+        """While it is paused: do one thing more, which may be that several rules start at once (one wave). If nothing is
+        due, set the clock forward to when something will be."""
+        self._running().step()
+
+    def resume(self) -> None:
+        """Let the clock of a paused context go on from where it stands."""
+        self._running().resume()
+
+    @property
+    def paused(self) -> bool:
+        """Whether the context's clock is halted."""
+        return self._running().clock.halted
 
     # ------------------------------------------------------------------------------------ acting from outside
 
@@ -216,6 +241,35 @@ class Context:
                         runner.engine.watched.pop(signal.name, None)
 
     # ------------------------------------------------------------------------------------ looking in
+
+    def observe(self, observer: Callable[[Record], None]) -> Callable[[], None]:
+        """Have a function called with every record of what happens from now on, and return what ends that.
+
+        The function is called on the context's loop, in the midst of things: it must be quick, must not raise, and must
+        not act on the context. An engine that nobody observes makes no records, so that looking costs nothing when
+        nobody looks.
+        """
+        self._observers.append(observer)
+        self._attach()
+
+        def leave() -> None:
+            if observer in self._observers:
+                self._observers.remove(observer)
+                self._attach()
+
+        return leave
+
+    def _attach(self) -> None:
+        observers = tuple(self._observers)
+
+        def tell_all(record: Record) -> None:
+            for observer in observers:
+                observer(record)
+
+        if self._runner is not None:
+            self._runner.engine.tracer = (
+                tell_all if len(observers) > 1 else observers[0] if observers else None
+            )
 
     @property
     def policy(self) -> Policy:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 import logging
 import random
 from collections.abc import Iterator, Mapping
@@ -139,7 +138,7 @@ class RuleContext:
 
     async def sleep(self, seconds: float) -> None:
         """Wait on the context's clock."""
-        await asyncio.sleep(seconds)
+        await self._runner.clock.sleep(seconds)
 
     async def quiet(self) -> None:
         """Wait until no rule, apart from those in the background, runs or is kept waiting."""

@@ -19,6 +19,7 @@ from ravestate.engine.effects import Cancel, Effect, Ended, Failed, Run, Spiked
 from ravestate.engine.engine import Engine
 from ravestate.engine.events import AddRule, Event, Finish
 from ravestate.errors import EngineError, PlatformError, RuleError
+from ravestate.runtime.clock import Clock
 from ravestate.runtime.journal import Taken
 from ravestate.runtime.nest import Nest
 from ravestate.runtime.rule_context import RuleContext
@@ -79,7 +80,7 @@ class Runner:
         self.threads: dict[int, Rule[Any, Any]] = {}
         """The runs of plain functions that are waited for, and their rules."""
         self._thread = threading.get_ident()
-        self._origin = loop.time()
+        self.clock = Clock(loop)
         self._scheduled = False
         self._pumping = False
         self._instant = -1.0
@@ -103,7 +104,7 @@ class Runner:
 
     def now(self) -> float:
         """Seconds since the runner was made."""
-        return self.loop.time() - self._origin
+        return self.clock.now()
 
     def receive(self, event: Event) -> None:
         """Give the engine an event; from any thread."""
@@ -149,8 +150,18 @@ class Runner:
 
     def _pump(self) -> None:
         self._scheduled = False
-        if self.closed:
+        if self.closed or self.clock.halted:
             return
+        self._work_off(BATCH)
+        self._arm()
+        if self._quiet and self.is_quiet():
+            for future in self._quiet:
+                if not future.done():
+                    future.set_result(None)
+            self._quiet.clear()
+
+    def _work_off(self, rounds: int) -> bool:
+        """Take and perform effects, for so many rounds at most; whether there were any."""
         engine = self.engine
         began = self.now()
         self._rounds = self._rounds + 1 if began == self._instant else 0
@@ -158,10 +169,11 @@ class Runner:
         if self.on_endless is not None and self._rounds * BATCH > ENDLESS:
             self.closed = True
             self.on_endless(self._last_run)
-            return
+            return False
+        some = False
         self._pumping = True
         try:
-            for _ in range(BATCH):
+            for _ in range(rounds):
                 if self.serial and self.threads:
                     break  # go on when the function has ended
                 if not self._todo:
@@ -171,9 +183,10 @@ class Runner:
                         self._todo.extend(engine.effects())
                     except Exception as error:
                         self._break(error)
-                        return
+                        return False
                     if not self._todo:
                         break
+                some = True
                 while self._todo and not (self.serial and self.threads):
                     self._perform(self._todo.popleft())
             else:
@@ -181,12 +194,33 @@ class Runner:
                 self.loop.call_soon(self._pump)
         finally:
             self._pumping = False
-        self._arm()
-        if self._quiet and self.is_quiet():
-            for future in self._quiet:
-                if not future.done():
-                    future.set_result(None)
-            self._quiet.clear()
+        return some
+
+    def pause(self) -> None:
+        """Halt the clock: events are still taken, but nothing is done about them, and nothing falls due."""
+        self.clock.halt()
+
+    def step(self) -> None:
+        """While it is paused: do what is due next, one wave of it; if that lies ahead, set the clock forward to it."""
+        if not self.clock.halted or self.closed:
+            return
+        waiting = list(self.engine.waiting)
+        if self._work_off(1) or list(self.engine.waiting) != waiting:
+            return
+        dues = [due for due in (self.engine.next_deadline(), self.clock.next_waking()) if due is not None]
+        if dues:
+            self.clock.set(min(dues))
+            self._fall_due()
+            self._work_off(1)
+
+    def resume(self) -> None:
+        """Let the clock go on."""
+        if self.clock.halted:
+            self.clock.go()
+            if self._timer is not None:
+                self._timer.cancel()
+                self._timer = None
+            self._pump()
 
     def _arm(self) -> None:
         """Set the one timer, unless it is early enough already: waking for nothing is harmless."""
@@ -196,17 +230,19 @@ class Runner:
         if self._timer is not None:
             self._timer.cancel()
         self._timer_due = due
-        self._timer = self.loop.call_at(self._origin + due, self._wake)
+        self._timer = self.loop.call_at(self.clock.on_loop(due), self._wake)
 
     def _wake(self) -> None:
         self._timer = None
-        if not self.closed:
-            try:
-                self.engine.advance(max(self.now(), self._timer_due))
-            except Exception as error:
-                self._break(error)
-            else:
-                self._pump()
+        if not self.closed and not self.clock.halted:
+            self._fall_due(self._timer_due)
+            self._pump()
+
+    def _fall_due(self, due: float = 0.0) -> None:
+        try:
+            self.engine.advance(max(self.now(), due))
+        except Exception as error:
+            self._break(error)
 
     def _break(self, error: Exception) -> None:
         """The engine itself has failed: rather than to go on half alive, the context ends, and says why."""
@@ -399,7 +435,7 @@ class Runner:
     def is_quiet(self) -> bool:
         """Whether no rule of the foreground runs or is kept waiting."""
         engine = self.engine
-        return not engine.waiting and all(run.clause.rule.background for run in engine.running.values())
+        return all(a.clause.rule.background for a in (*engine.waiting, *engine.running.values()))
 
     async def quiet(self) -> None:
         """Wait for `is_quiet`."""

@@ -1,0 +1,200 @@
+"""The clock of a context: it can be halted, stepped, and go on, and nobody notices afterwards."""
+
+from __future__ import annotations
+
+import asyncio
+from typing import Any
+
+import pytest
+
+import ravestate as rs
+from ravestate.engine.trace import Started
+from ravestate.runtime.clock import Clock
+from ravestate.testing import simulate
+from ravestate.testing.virtual_loop import VirtualLoop
+
+
+class Bench:
+    """A clock on a virtual loop, and who sleeps by it."""
+
+    def __init__(self) -> None:
+        self.loop = VirtualLoop()
+        self.loop.run_to(7.0)  # a clock need not begin with its loop
+        self.clock = Clock(self.loop)
+        self.woken: list[tuple[str, float]] = []
+
+    def sleeper(self, name: str, seconds: float) -> asyncio.Task[None]:
+        async def sleep() -> None:
+            await self.clock.sleep(seconds)
+            self.woken.append((name, self.clock.now()))
+
+        return self.loop.create_task(sleep())
+
+    def pass_by(self, seconds: float) -> None:
+        self.loop.run_to(self.loop.time() + seconds)
+
+
+@pytest.fixture
+def bench() -> Bench:
+    return Bench()
+
+
+def test_it_follows_its_loop_from_zero(bench: Bench) -> None:
+    assert bench.clock.now() == 0.0
+    bench.sleeper("a", 2.0)
+    bench.sleeper("b", 1.0)
+    bench.pass_by(5.0)
+    assert bench.woken == [("b", 1.0), ("a", 2.0)]
+    bench.loop.close()
+
+
+def test_who_sleeps_does_not_sleep_the_time_for_which_it_stands(bench: Bench) -> None:
+    bench.sleeper("a", 2.0)
+    bench.pass_by(0.5)
+    bench.clock.halt()
+    bench.sleeper("b", 1.0)
+    bench.pass_by(10.0)
+    assert (bench.clock.now(), bench.woken) == (0.5, [])
+    bench.clock.go()
+    bench.pass_by(10.0)
+    assert bench.woken == [("b", 1.5), ("a", 2.0)]
+    assert bench.clock.now() == 10.5
+    bench.loop.close()
+
+
+def test_it_is_set_forward_only_while_it_stands_and_never_back(bench: Bench) -> None:
+    bench.sleeper("a", 2.0)
+    bench.pass_by(0.5)
+    bench.clock.set(3.0)
+    assert bench.clock.now() == 0.5
+    bench.clock.halt()
+    assert bench.clock.next_waking() == 2.0
+    bench.clock.set(2.0)
+    bench.clock.set(1.0)
+    bench.pass_by(0.0)
+    assert (bench.clock.now(), bench.woken, bench.clock.next_waking()) == (2.0, [("a", 2.0)], None)
+    bench.loop.close()
+
+
+def test_who_is_cancelled_in_his_sleep_is_forgotten(bench: Bench) -> None:
+    task = bench.sleeper("a", 2.0)
+    bench.pass_by(0.5)
+    task.cancel()
+    bench.pass_by(0.0)
+    assert bench.clock.next_waking() is None
+    bench.clock.halt()
+    bench.clock.go()
+    bench.pass_by(5.0)
+    assert bench.woken == []
+    bench.loop.close()
+
+
+def story() -> tuple[rs.Module, rs.Signal[None], rs.Slot[str]]:
+    """A question that is thought over for 2 s, and a fallback that waits for it."""
+    m = rs.Module("m")
+    asked, known, said = m.signal("asked"), m.signal("known"), m.slot("said", "", always=True)
+
+    @m.rule(when=asked, emits=known)
+    async def think(ctx: rs.RuleContext) -> None:
+        await ctx.sleep(2.0)
+        ctx.emit(known)
+
+    @m.rule(when=known, writes=said)
+    async def answer(ctx: rs.RuleContext) -> None:
+        ctx[said] = f"answer at {ctx.now:g}"
+
+    @m.rule(when=asked, writes=said)
+    async def fallback(ctx: rs.RuleContext) -> None:
+        ctx[said] = "fallback"
+
+    return m, asked, said
+
+
+def test_a_paused_context_takes_what_comes_and_does_nothing_about_it() -> None:
+    m, asked, said = story()
+    with simulate(m) as sim:
+        sim.context.pause()
+        assert sim.context.paused
+        sim.emit(asked)
+        sim.advance(60.0)
+        assert (sim.now, sim.fired, sim.read(said)) == (0.0, [], "")
+        assert {a["state"] for a in sim.snapshot()["activations"]} == {"ready"}
+        sim.context.resume()
+        sim.advance(1.0)
+        assert sim.fired == []
+        sim.advance(1.0)
+        assert sim.read(said) == "answer at 2"
+
+
+def test_steps_lead_from_wave_to_wave_and_over_the_time_between() -> None:
+    m, asked, said = story()
+    with simulate(m) as sim:
+        sim.context.pause()
+        sim.emit(asked)
+        seen: list[tuple[float, str, str]] = []
+        for _ in range(4):
+            sim.context.step()
+            sim.settle()
+            states = {a["rule"]: a["state"] for a in sim.snapshot()["activations"]}
+            seen.append((sim.now, states.get("m:think", ""), states.get("m:fallback", "")))
+        assert seen == [
+            (0.0, "running", "ready"),
+            (0.0, "running", "waiting"),
+            (2.0, "", "waiting"),
+            (2.0, "", ""),
+        ]
+        assert sim.read(said) == "answer at 2"
+
+
+def test_what_happens_is_the_same_whether_it_was_paused_or_not() -> None:
+    def tell(pauses: bool) -> list[str]:
+        m, asked, _ = story()
+        with simulate(m) as sim:
+            sim.emit(asked)
+            for _ in range(5):
+                if pauses:
+                    sim.context.pause()
+                    sim.advance(3.0)
+                    sim.context.resume()
+                sim.advance(0.5)
+            return [repr(record) for record in sim.trace]
+
+    assert tell(pauses=True) == tell(pauses=False)
+
+
+def test_a_paused_context_ends_in_order() -> None:
+    m = rs.Module("m")
+    ended: list[float] = []
+
+    @m.rule(when=rs.shutdown)
+    async def end(ctx: rs.RuleContext) -> None:
+        await ctx.sleep(1.0)
+        ended.append(ctx.now)
+
+    with simulate(m) as sim:
+        sim.context.pause()
+        sim.advance(5.0)
+    assert ended == [1.0]
+
+
+def test_observers_come_and_go_while_it_runs() -> None:
+    m, asked, _ = story()
+    first: list[Any] = []
+    second: list[Any] = []
+    with simulate(m, trace=False) as sim:
+        leave_first = sim.context.observe(first.append)
+        sim.emit(asked)
+        leave_second = sim.context.observe(second.append)
+        sim.advance(3.0)
+        assert first[-len(second) :] == second != []
+        assert [r.time for r in first if isinstance(r, Started)] == [0.0, 2.0]
+        leave_first()
+        counts = len(first), len(second)
+        sim.emit(asked)
+        assert len(first) == counts[0]
+        assert len(second) > counts[1]
+        leave_second()
+        leave_second()  # again, to no effect
+        counts = len(first), len(second)
+        sim.advance(3.0)
+        assert (len(first), len(second)) == counts
