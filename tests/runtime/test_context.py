@@ -251,6 +251,25 @@ async def test_quiet_waits_for_what_runs_and_ends_with_the_context() -> None:
     await waiting  # nothing runs any more
 
 
+@on_loop
+async def test_who_waits_in_the_background_does_not_hold_up_quiet() -> None:
+    m = rs.Module("m")
+    go, done = m.signal("go"), m.slot("done", 0)
+
+    @m.rule(when=go, writes=done, background=True, weight=2.0)
+    async def keep(ctx: rs.RuleContext) -> None:
+        await asyncio.get_running_loop().create_future()
+
+    @m.rule(when=go, writes=done, background=True)
+    async def wait(ctx: rs.RuleContext) -> None:
+        """It waits for the slot that `keep` has."""
+
+    async with rs.Context(m) as context:
+        context.emit(go)
+        await asyncio.wait_for(context.quiet(), 20.0)
+        assert "waits for m:keep" in str(context.explain("m:wait"))
+
+
 # ---------------------------------------------------------------------------------------- wrong names
 
 
