@@ -39,10 +39,31 @@ def test_activity_puts_boredom_off() -> None:
         assert sim.read(times) == pytest.approx((9.0,))
 
 
-def test_nobody_is_bored_before_anything_has_happened() -> None:
+def test_silence_bores_from_the_very_start() -> None:
     with simulate(watch) as sim:
-        sim.advance(60.0)
-        assert sim.read(times) == ()
+        sim.advance(12.0)
+        assert sim.read(times) == pytest.approx((5.0, 10.0))
+
+
+def test_whatever_happens_at_the_start_begins_the_first_stretch_of_quiet_when_it_ends() -> None:
+    busy = rs.Module("busy")
+
+    @busy.rule(when=rs.startup)
+    async def warm_up(ctx: rs.RuleContext) -> None:
+        await ctx.sleep(2.0)
+
+    with simulate(watch, busy) as sim:
+        sim.advance(8.0)
+        assert sim.read(times) == pytest.approx((7.0,))
+
+
+@pytest.mark.parametrize("begin", [0.0, 3.0, 4.9])
+def test_the_first_words_put_the_first_boredom_off(begin: float) -> None:
+    with simulate(watch) as sim:
+        sim.advance(begin)
+        sim.say("hello")
+        sim.advance(8.0)
+        assert sim.read(times) == pytest.approx((begin + 7.0,))
 
 
 def test_nothing_is_left_when_all_is_quiet() -> None:

@@ -19,7 +19,8 @@ class Settings(rs.Settings):
 module = rs.Module("idle", settings=Settings)
 
 bored = module.signal("bored")
-"""Nothing has happened for ``bored_after`` seconds; once for each stretch of quiet, and an answer to it begins a new one."""
+"""Nothing has happened for ``bored_after`` seconds; once for each stretch of quiet (from startup on), and an answer to
+it begins a new one."""
 
 impatient = module.signal("impatient")
 """Something has been due for ``impatient_after`` seconds: an answer takes its time."""
@@ -34,6 +35,21 @@ impatient = module.signal("impatient")
 async def notice_silence(ctx: rs.RuleContext) -> None:
     """Nothing holds a spike or runs: say so."""
     ctx.emit(bored)
+
+
+@module.rule(
+    when=rs.startup.detached(),
+    reads=rs.activity,
+    emits=bored,
+    until=rs.activity.true,
+    detached=True,
+    background=True,
+)
+async def notice_first_silence(ctx: rs.RuleContext) -> None:
+    """Nothing has happened since the start, so that no activity could end: say so."""
+    if not ctx[rs.activity]:
+        await ctx.sleep(ctx.settings.bored_after)
+        ctx.emit(bored)
 
 
 @module.rule(
