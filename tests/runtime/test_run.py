@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 
 import ravestate as rs
+from ravestate.runtime.agent import Agent
 from ravestate.runtime.run import run_context
 
 LIMIT = 20
@@ -51,6 +52,63 @@ def test_options_are_those_of_a_context() -> None:
     for _ in range(2):
         rs.run(m, settings={"m": {"word": "b"}}, seed=1)
     assert told[:2] == told[2:] and told[0] == "b"
+
+
+def test_a_platform_that_serves_many_users_is_given_the_agent_and_makes_the_contexts() -> None:
+    told: list[object] = []
+
+    async def serve(agent: Agent) -> None:
+        async with agent.context() as one, agent.context(seed=5) as other:
+            assert one.policy is other.policy is agent.policy
+            assert one.settings is not None
+            for context, name in ((one, "Ada"), (other, "Bob")):
+                context.put(heard, name)
+                told.append(await context.next(said.changed))
+
+    class Options(rs.Settings):
+        word: str = "Hello"
+        pause: float = 0.0
+
+    m = rs.Module("m", serve=serve, settings=Options)
+    heard, said = m.slot("heard", ""), m.slot("said", "")
+
+    @m.rule(when=heard.changed.min_age(Options.pause), writes=said)
+    async def greet(ctx: rs.RuleContext) -> None:
+        ctx[said] = f"{ctx.settings.word}, {ctx.payload(heard.changed)}!"
+
+    rs.run(m, settings={"m": {"word": "Hi"}})
+    assert told == ["Hi, Ada!", "Hi, Bob!"]
+
+
+def test_when_one_server_fails_the_others_end_and_the_failure_is_raised() -> None:
+    ends: list[str] = []
+
+    async def stay(_: Agent) -> None:
+        try:
+            await asyncio.get_running_loop().create_future()
+        finally:
+            ends.append("stay")
+
+    async def fail(_: Agent) -> None:
+        raise rs.PlatformError("the port is taken")
+
+    with pytest.raises(rs.PlatformError, match="the port is taken"):
+        rs.run(rs.Module("a", serve=stay), rs.Module("b", serve=fail))
+    assert ends == ["stay"]
+
+
+def test_an_interrupt_ends_a_server_in_order() -> None:
+    ends: list[str] = []
+
+    async def stay(_: Agent) -> None:
+        asyncio.get_running_loop().call_soon(os.kill, os.getpid(), signal.SIGINT)
+        try:
+            await asyncio.get_running_loop().create_future()
+        finally:
+            ends.append("stay")
+
+    rs.run(rs.Module("a", serve=stay))
+    assert ends == ["stay"]
 
 
 def test_faults_are_raised_before_anything_runs() -> None:

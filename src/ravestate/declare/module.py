@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Coroutine, Iterable
 from types import CodeType, ModuleType
 from typing import Any, ParamSpec, TypeVar, cast, overload
 
@@ -33,6 +33,8 @@ class Module:
         requires: Modules whose signals and slots this one uses: `Module` values, or Python modules that
             hold one (``from ravestate.modules import rawio``).
         settings: A subclass of ``rs.Settings``: what a user may configure.
+        serve: For platforms that talk with many users at once: an async function that ``rs.run`` calls with the
+            `Agent`, instead of running one context. It makes a context for each user, and ends when it is cancelled.
 
     Example:
         >>> import ravestate as rs
@@ -45,7 +47,7 @@ class Module:
         'lamp:switch_on'
     """
 
-    __slots__ = ("name", "origin", "requires", "rules", "settings", "signals", "slots")
+    __slots__ = ("name", "origin", "requires", "rules", "serve", "settings", "signals", "slots")
 
     def __init__(
         self,
@@ -53,6 +55,7 @@ class Module:
         *,
         requires: Iterable[Module | ModuleType] = (),
         settings: type[Any] | None = None,
+        serve: Callable[[Any], Coroutine[Any, Any, None]] | None = None,
     ) -> None:
         _check_name(name, "Module")
         self.name = name
@@ -66,6 +69,7 @@ class Module:
             except DeclarationError as fault:
                 raise DeclarationError(f"module {name} ({self.origin}): requires: {fault}") from None
         self.settings = settings
+        self.serve = serve
         self.signals: list[Signal[Any]] = []
         self.slots: list[Slot[Any]] = []
         self.rules: list[Rule[Any, Any]] = []

@@ -138,7 +138,7 @@ class Policy:
         Raises:
             DeclarationErrors: The settings make a declaration impossible.
         """
-        if not self.refers:
+        if not self.refers or settings == self.settings:
             return self
         from ravestate.policy.compile import build
 

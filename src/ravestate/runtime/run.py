@@ -5,14 +5,16 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import signal
+from collections.abc import Callable, Coroutine, Generator, Sequence
 from types import ModuleType
 from typing import Any
 
 from ravestate.declare.module import Module
 from ravestate.policy.policy import Policy
+from ravestate.runtime.agent import Agent
 from ravestate.runtime.context import Context
 
-__all__ = ["run", "run_context"]
+__all__ = ["run", "run_context", "run_servers"]
 
 UNABLE = (NotImplementedError, RuntimeError, ValueError)
 """What handling signals raises where the platform cannot, or outside of the main thread."""
@@ -21,6 +23,8 @@ UNABLE = (NotImplementedError, RuntimeError, ValueError)
 def run(*modules: Module | ModuleType | Policy, **options: Any) -> None:
     """Run an agent until a rule calls ``ctx.stop()``, or Ctrl-C; then shut it down in order.
 
+    It runs as one context; or, with a platform among the modules that serves many users, as one for each of them.
+
     Args:
         modules: As for `Context`.
         options: As for `Context`.
@@ -28,12 +32,39 @@ def run(*modules: Module | ModuleType | Policy, **options: Any) -> None:
     Raises:
         DeclarationErrors: The modules, or the settings, do not fit.
     """
-    context = Context(*modules, **options)
-    asyncio.run(run_context(context))
+    agent = Agent(*modules, **options)
+    servers = [module.serve for module in agent.policy.modules if module.serve is not None]
+    asyncio.run(run_servers(agent, servers) if servers else run_context(agent.context()))
 
 
 async def run_context(context: Context) -> None:
     """Run a context until it is asked to stop; SIGINT and SIGTERM ask it, a second time they break off."""
+    with asked_by_signals(context.ask_to_stop):
+        async with context:
+            await context.until_stopped()
+
+
+async def run_servers(agent: Agent, servers: Sequence[Callable[[Agent], Coroutine[Any, Any, None]]]) -> None:
+    """Run what serves an agent to many users until the first of them ends or fails; SIGINT and SIGTERM cancel them."""
+    tasks = [asyncio.create_task(serve(agent)) for serve in servers]
+    ends: list[BaseException | None] = []
+
+    def stop() -> None:
+        for task in tasks:
+            task.cancel()
+
+    with asked_by_signals(stop):
+        await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
+        stop()
+        ends = await asyncio.gather(*tasks, return_exceptions=True)
+    for end in ends:
+        if isinstance(end, Exception):
+            raise end
+
+
+@contextlib.contextmanager
+def asked_by_signals(stop: Callable[[], None]) -> Generator[None]:
+    """Have SIGINT and SIGTERM call a function; a second one cancels the running task, which ends without a word."""
     loop = asyncio.get_running_loop()
     main = asyncio.current_task()
     asked = False
@@ -43,15 +74,14 @@ async def run_context(context: Context) -> None:
         if asked and main is not None:
             main.cancel()
         asked = True
-        context.ask_to_stop()
+        stop()
 
     signals = (signal.SIGINT, signal.SIGTERM)
     for number in signals:
         with contextlib.suppress(*UNABLE):
             loop.add_signal_handler(number, ask)
     try:
-        async with context:
-            await context.until_stopped()
+        yield
     except asyncio.CancelledError:
         pass
     finally:

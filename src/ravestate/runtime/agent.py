@@ -1,0 +1,41 @@
+"""An agent apart from any conversation: of it any number of contexts can be made."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import ModuleType
+from typing import Any
+
+from ravestate.declare.module import Module
+from ravestate.policy.policy import Policy
+from ravestate.runtime.context import Context
+from ravestate.settings import Settings
+
+__all__ = ["Agent"]
+
+
+class Agent:
+    """A policy and its settings, read and checked once, which all contexts made of it share.
+
+    Args:
+        modules: As for `Context`.
+        options: As for `Context`.
+
+    Raises:
+        DeclarationErrors: The modules, or the settings, do not fit.
+    """
+
+    def __init__(self, *modules: Module | ModuleType | Policy, **options: Any) -> None:
+        first = Context(*modules, **options)
+        self.policy: Policy = first.policy
+        self.settings: Mapping[str, Settings] = first.settings
+        self._options: dict[str, Any] = {**options, "settings": self.settings}
+
+    def context(self, **options: Any) -> Context:
+        """Make another context, which is to be entered once.
+
+        Args:
+            options: As for `Context`, where they differ from those of the agent; but for ``settings``.
+        """
+        merged: Any = self._options | options
+        return Context(self.policy, **merged)
