@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 
 import ravestate as rs
+from ravestate.modules import rawio
 from ravestate.runtime.agent import Agent
 from ravestate.runtime.run import run_context
 
@@ -109,6 +110,33 @@ def test_an_interrupt_ends_a_server_in_order() -> None:
 
     rs.run(rs.Module("a", serve=stay))
     assert ends == ["stay"]
+
+
+def leaver(*requires: rs.Module) -> rs.Module:
+    m = rs.Module("m", requires=requires)
+
+    @m.rule(when=rs.startup)
+    async def leave(ctx: rs.RuleContext) -> None:
+        ctx.stop()
+
+    return m
+
+
+def test_an_agent_that_nobody_can_talk_to_says_so(caplog: pytest.LogCaptureFixture) -> None:
+    rs.run(leaver(rawio.module))
+    (record,) = caplog.records
+    assert "no rule writes rawio:input; name a platform too, e.g. conio" in record.getMessage()
+
+
+def test_an_agent_with_a_platform_or_without_talk_says_nothing(caplog: pytest.LogCaptureFixture) -> None:
+    rs.run(leaver())
+    platform = leaver(rawio.module)
+
+    @platform.rule(when=rawio.picture.changed, writes=rawio.input)
+    async def hear(ctx: rs.RuleContext) -> None: ...
+
+    rs.run(platform)
+    assert not caplog.records
 
 
 def test_faults_are_raised_before_anything_runs() -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import logging
 import signal
 from collections.abc import Callable, Coroutine, Generator, Sequence
 from types import ModuleType
@@ -16,6 +17,11 @@ from ravestate.runtime.context import Context
 
 __all__ = ["run", "run_context", "run_servers"]
 
+log = logging.getLogger("ravestate")
+
+INPUT = "rawio:input"
+"""What a user says. Whoever runs modules that know of it mostly wants to talk with them."""
+
 UNABLE = (NotImplementedError, RuntimeError, ValueError)
 """What handling signals raises where the platform cannot, or outside of the main thread."""
 
@@ -24,6 +30,8 @@ def run(*modules: Module | ModuleType | Policy, **options: Any) -> None:
     """Run an agent until a rule calls ``ctx.stop()``, or Ctrl-C; then shut it down in order.
 
     It runs as one context; or, with a platform among the modules that serves many users, as one for each of them.
+
+    A warning says so if the modules use `rawio`, but none of them is a platform on which a user could talk.
 
     Args:
         modules: As for `Context`.
@@ -34,7 +42,19 @@ def run(*modules: Module | ModuleType | Policy, **options: Any) -> None:
     """
     agent = Agent(*modules, **options)
     servers = [module.serve for module in agent.policy.modules if module.serve is not None]
+    if not servers:
+        warn_if_mute(agent.policy)
     asyncio.run(run_servers(agent, servers) if servers else run_context(agent.context()))
+
+
+def warn_if_mute(policy: Policy) -> None:
+    """Say so if the modules use `rawio`, but none of them is a platform on which a user could talk."""
+    if INPUT in policy.slots and not any(INPUT in map(str, rule.writes) for rule in policy.rules.values()):
+        log.warning(
+            "nobody can talk to this agent: no rule writes %s; name a platform too, e.g. conio for the console. "
+            "Ctrl-C ends it",
+            INPUT,
+        )
 
 
 async def run_context(context: Context) -> None:
