@@ -1,0 +1,228 @@
+"""How well text is understood: the sets of this folder against the functions that do the work.
+
+    python tests/quality/measure.py MODULE [--misses]
+
+`MODULE` is a dotted name; each of its functions that bears the name of a set is measured on it:
+
+| Function | Takes a text, gives |
+|---|---|
+| `triples` | the triples, each (subject, predicate, object), as strings |
+| `questions`, `yesno`, `agentqa`, `emotions` | the label in the words of the set's file, `-` for none |
+| `genqa` | a `Reply`, or None for silence |
+"""
+
+import argparse
+import importlib
+import re
+import sys
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+HERE = Path(__file__).parent
+NONE = "-"  # the label of a sentence that the set's module must leave alone
+LABELLED = ("questions", "yesno", "agentqa", "emotions")
+SETS = ("triples", *LABELLED, "genqa")
+
+Triples = frozenset[tuple[str, str, str]]
+
+
+@dataclass(frozen=True)
+class Reply:
+    """An answer of genqa, and whether it was given as sure."""
+
+    text: str
+    sure: bool
+
+
+@dataclass(frozen=True)
+class Fact:
+    """A question with what its reply must hold; with neither answers nor number, silence is right."""
+
+    question: str
+    answers: tuple[str, ...] = ()
+    number: float | None = None
+    tolerance: float = 0.0
+
+    @property
+    def silent(self) -> bool:
+        return not self.answers and self.number is None
+
+    def answered_by(self, reply: str) -> bool:
+        """Whether one of the answers occurs in the reply, or a figure near enough to the number."""
+        if any(re.search(_pattern(answer), reply, re.IGNORECASE) for answer in self.answers):
+            return True
+        if self.number is None:
+            return False
+        allowed = self.tolerance * abs(self.number)
+        return any(abs(figure - self.number) <= allowed for figure in _figures(reply))
+
+
+@dataclass
+class Result:
+    """Counts of one set, in the order in which they are printed, and the sentences that went wrong.
+
+    `shares` are fractions from 0 to 1; what they are shares of is in the README.
+    """
+
+    name: str
+    cases: int
+    shares: dict[str, float]
+    misses: list[str] = field(default_factory=list[str])
+
+
+# ------------------------------------------------------------------------------------------------ the sets
+
+
+def labelled(name: str) -> list[tuple[str, str]]:
+    """The sentences of a set with one label each."""
+    lines = (HERE / f"{name}.tsv").read_text(encoding="utf-8").splitlines()
+    pairs = (line.split("\t") for line in lines if line and not line.startswith("#"))
+    return [(text, label) for text, label in pairs]
+
+
+def triples() -> list[tuple[str, Triples]]:
+    """The sentences with the triples they state or ask for."""
+    cases = yaml.safe_load((HERE / "triples.yaml").read_text(encoding="utf-8"))
+    return [(case["text"], frozenset(tuple(triple) for triple in case["triples"])) for case in cases]
+
+
+def facts() -> list[Fact]:
+    """The questions to genqa."""
+    cases = yaml.safe_load((HERE / "genqa.yaml").read_text(encoding="utf-8"))
+    return [
+        Fact(case["question"], tuple(case.get("answers", ())), case.get("number"), case.get("tolerance", 0.0))
+        for case in cases
+    ]
+
+
+# ------------------------------------------------------------------------------------------- the measuring
+
+
+def measure_triples(
+    see: Callable[[str], Iterable[Iterable[str]]], cases: list[tuple[str, Triples]]
+) -> Result:
+    """Exact: a sentence counts when its triples are those of the set, none missing and none more."""
+    right = shared = given = wanted = 0
+    misses: list[str] = []
+    for text, expected in cases:
+        seen = frozenset((subject, predicate, thing) for subject, predicate, thing in see(text))
+        given, wanted, shared = given + len(seen), wanted + len(expected), shared + len(seen & expected)
+        if seen == expected:
+            right += 1
+        else:
+            misses.append(f"{text!r}: {sorted(seen)} instead of {sorted(expected)}")
+    shares = {"exact": _share(right, len(cases)), "F1 of single triples": _f1(shared, given, wanted)}
+    return Result("triples", len(cases), shares, misses)
+
+
+def measure_labels(name: str, see: Callable[[str], str], cases: list[tuple[str, str]]) -> Result:
+    """The share of right labels; and the F1 of all labels but `-`, where a wrong label is no hit."""
+    right = hits = given = 0
+    misses: list[str] = []
+    for text, expected in cases:
+        seen = see(text)
+        right += seen == expected
+        hits += seen == expected != NONE
+        given += seen != NONE
+        if seen != expected:
+            misses.append(f"{text!r}: {seen} instead of {expected}")
+    wanted = sum(expected != NONE for _, expected in cases)
+    shares = {"right": _share(right, len(cases)), "F1": _f1(hits, given, wanted)}
+    return Result(name, len(cases), shares, misses)
+
+
+def measure_facts(ask: Callable[[str], Reply | None], cases: list[Fact]) -> Result:
+    """Answers and silences; all shares are of all questions but the last, which is of the sure answers."""
+    counts = dict.fromkeys(
+        ("answered right", "rightly silent", "wrongly silent", "wrong, unsure", "wrong, sure"), 0
+    )
+    sure = 0
+    misses: list[str] = []
+    for fact in cases:
+        reply = ask(fact.question)
+        sure += reply is not None and reply.sure
+        if reply is None:
+            outcome = "rightly silent" if fact.silent else "wrongly silent"
+        elif not fact.silent and fact.answered_by(reply.text):
+            outcome = "answered right"
+        else:
+            outcome = "wrong, sure" if reply.sure else "wrong, unsure"
+        counts[outcome] += 1
+        if outcome not in ("answered right", "rightly silent"):
+            misses.append(f"{fact.question!r}: {outcome}" + (f": {reply.text!r}" if reply else ""))
+    shares = {outcome: _share(count, len(cases)) for outcome, count in counts.items()}
+    shares["wrong of the sure"] = _share(counts["wrong, sure"], sure)
+    return Result("genqa", len(cases), shares, misses)
+
+
+def measure(name: str, function: Callable[[str], Any]) -> Result:
+    """One set, by its name, on the function that does the work."""
+    if name == "triples":
+        return measure_triples(function, triples())
+    if name == "genqa":
+        return measure_facts(function, facts())
+    if name in LABELLED:
+        return measure_labels(name, function, labelled(name))
+    raise ValueError(f"no set {name!r}; there are {', '.join(SETS)}")
+
+
+def table(results: Iterable[Result]) -> str:
+    """The results as a table, a share a line."""
+    lines = [f"{'set':<10} {'cases':>5}  {'':<22} {'share':>7}"]
+    for result in results:
+        for row, (what, share) in enumerate(result.shares.items()):
+            head = f"{result.name:<10} {result.cases:>5}" if row == 0 else " " * 16
+            lines.append(f"{head}  {what:<22} {share:>7.1%}")
+    return "\n".join(lines)
+
+
+def main(argv: list[str] | None = None) -> int:
+    """Measure the functions of the module that is named on the command line."""
+    parser = argparse.ArgumentParser(description="Measure how well text is understood.")
+    parser.add_argument("module", help="dotted name of a module with functions named like the sets")
+    parser.add_argument("--misses", action="store_true", help="also print each sentence that went wrong")
+    arguments = parser.parse_args(argv)
+    functions = vars(importlib.import_module(arguments.module))
+    results = [measure(name, functions[name]) for name in SETS if name in functions]
+    if not results:
+        parser.error(f"{arguments.module} has no function {', '.join(SETS)}")
+    print(table(results))
+    if arguments.misses:
+        for result in results:
+            print(f"\n{result.name}: {len(result.misses)} wrong", *result.misses, sep="\n  ")
+    return 0
+
+
+# ------------------------------------------------------------------------------------------------- details
+
+
+def _pattern(answer: str) -> str:
+    """Whole words; a star at the end leaves the end of the word open."""
+    return rf"\b{re.escape(answer[:-1])}" if answer.endswith("*") else rf"\b{re.escape(answer)}\b"
+
+
+_FIGURE = re.compile(
+    r"(?<![\w.,])(\d{1,3}(?:,\d{3})+(?:\.\d+)?|\d+(?:\.\d+)?)(?:\s*(thousand|million|billion))?(?!\d)"
+)
+_SCALE = {"": 1.0, "thousand": 1e3, "million": 1e6, "billion": 1e9}
+
+
+def _figures(text: str) -> list[float]:
+    """The figures in a text: `1,448`, `244 million`, `0.5`."""
+    return [float(digits.replace(",", "")) * _SCALE[scale] for digits, scale in _FIGURE.findall(text)]
+
+
+def _share(part: int, whole: int) -> float:
+    return part / whole if whole else 0.0
+
+
+def _f1(hits: int, given: int, wanted: int) -> float:
+    return _share(2 * hits, given + wanted)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,139 @@
+"""The sets are well formed, and the measure counts right."""
+
+from collections import Counter
+from pathlib import Path
+
+import pytest
+
+from quality import measure
+from quality.measure import Fact, Reply
+
+LABELS = {
+    "questions": {"PERSON", "PLACE", "OBJECT", "FORM", "TIME", "REASON", "AMOUNT", "YES_NO", "-"},
+    "yesno": {"yes 2", "yes 1", "no 2", "no 1", "unsure", "-"},
+    "agentqa": {
+        "identity",
+        "name",
+        "age",
+        "hobbies",
+        "likes",
+        "origin",
+        "home",
+        "father",
+        "siblings",
+        "friends",
+        "ambition",
+        "membership",
+        "can_do",
+        "learned",
+        "how_are_you",
+        "-",
+    },
+    "emotions": {"shy", "surprised", "happy", "affectionate", "-"},
+}
+AT_LEAST = {"triples": 60, "questions": 60, "yesno": 60, "agentqa": 120, "emotions": 40, "genqa": 40}
+
+
+def texts(name: str) -> list[str]:
+    if name == "triples":
+        return [text for text, _ in measure.triples()]
+    if name == "genqa":
+        return [fact.question for fact in measure.facts()]
+    return [text for text, _ in measure.labelled(name)]
+
+
+@pytest.mark.parametrize("name", measure.SETS)
+def test_a_set_is_large_enough_and_says_nothing_twice(name: str) -> None:
+    sentences = texts(name)
+    assert len(sentences) >= AT_LEAST[name]
+    assert [text for text, count in Counter(text.casefold() for text in sentences).items() if count > 1] == []
+
+
+@pytest.mark.parametrize("name", measure.LABELLED)
+def test_each_label_is_known_and_each_known_label_occurs(name: str) -> None:
+    assert {label for _, label in measure.labelled(name)} == LABELS[name]
+
+
+def test_half_of_the_agents_questions_are_for_others() -> None:
+    assert sum(label == measure.NONE for _, label in measure.labelled("agentqa")) >= 50
+
+
+def test_a_fact_is_either_answerable_or_a_case_for_silence() -> None:
+    cases = measure.yaml.safe_load((measure.HERE / "genqa.yaml").read_text(encoding="utf-8"))
+    for case in cases:
+        assert case.get("silent", False) == (not case.keys() & {"answers", "number"}), case
+
+
+@pytest.mark.parametrize("name", measure.LABELLED)
+def test_perfect_labels_measure_as_perfect(name: str) -> None:
+    result = measure.measure(name, dict(measure.labelled(name)).__getitem__)
+    assert result.shares == {"right": 1.0, "F1": 1.0}
+    assert result.misses == []
+
+
+def test_perfect_triples_measure_as_perfect() -> None:
+    assert measure.measure("triples", dict(measure.triples()).__getitem__).shares["exact"] == 1.0
+
+
+def test_one_triple_too_many_is_not_exact() -> None:
+    cases = [("i like tea", frozenset({("i", "like", "tea")}))]
+    result = measure.measure_triples(lambda _: [("i", "like", "tea"), ("i", "be", "tea")], cases)
+    assert result.shares["exact"] == 0.0
+    assert result.shares["F1 of single triples"] == pytest.approx(2 / 3)
+
+
+def test_a_wrong_label_costs_precision_and_recall() -> None:
+    cases = [("a", "age"), ("b", "name"), ("c", "-"), ("d", "-")]
+    seen = {"a": "age", "b": "home", "c": "-", "d": "age"}
+    result = measure.measure_labels("agentqa", seen.__getitem__, cases)
+    assert result.shares == {"right": 0.5, "F1": pytest.approx(2 * 1 / (3 + 2))}
+    assert len(result.misses) == 2
+
+
+@pytest.mark.parametrize(
+    ("fact", "reply", "right"),
+    [
+        (Fact("", ("eight",), 8), "It has Eight legs.", True),
+        (Fact("", ("eight",), 8), "There are 8 of them.", True),
+        (Fact("", ("eight",), 8), "It weighs 18 kg, or 8,000 g.", False),
+        (Fact("", ("Spain",)), "Spaniards live there.", False),
+        (Fact("", ("Buddhis*",)), "Most are buddhists.", True),
+        (Fact("", (), 5895, 0.002), "It is 5,895m high.", True),
+        (Fact("", (), 244344065, 0.1), "about 236.7 million people", True),
+        (Fact("", (), 1957), "on 6 March 1957.", True),
+        (Fact("", (), 1957), "in 1958", False),
+    ],
+)
+def test_what_counts_as_an_answer(fact: Fact, reply: str, right: bool) -> None:
+    assert fact.answered_by(reply) is right
+
+
+def test_answers_and_silences_are_told_apart() -> None:
+    cases = [Fact("a", ("x",)), Fact("b", ("x",)), Fact("c", ("x",)), Fact("d"), Fact("e")]
+    replies = {"a": Reply("x", True), "b": Reply("y", False), "c": None, "d": None, "e": Reply("x", True)}
+    result = measure.measure_facts(replies.__getitem__, cases)
+    assert result.shares == {
+        "answered right": 0.2,
+        "rightly silent": 0.2,
+        "wrongly silent": 0.2,
+        "wrong, unsure": 0.2,
+        "wrong, sure": 0.2,
+        "wrong of the sure": 0.5,
+    }
+
+
+def test_the_table_names_each_set_and_the_misses_are_told(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    (tmp_path / "nobody.py").write_text("def emotions(text):\n    return '-'\n")
+    monkeypatch.syspath_prepend(str(tmp_path))
+    assert measure.main(["nobody", "--misses"]) == 0
+    printed = capsys.readouterr().out
+    assert "emotions" in printed
+    assert "20.0%" in printed
+    assert "emotions: 32 wrong" in printed
+
+
+def test_an_unknown_set_is_refused() -> None:
+    with pytest.raises(ValueError, match="no set 'jokes'; there are triples"):
+        measure.measure("jokes", str)
