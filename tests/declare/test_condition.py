@@ -1,9 +1,13 @@
 """The algebra of conditions: it builds values, and refuses what would silently mean something else."""
 
+import re
+
 import pytest
 
 import ravestate as rs
 from ravestate.declare.condition import AllOf, AnyOf, Holds
+
+HERE = re.escape(__file__)
 
 demo = rs.Module("demo")
 a, b, c = (demo.signal(name) for name in "abc")
@@ -57,7 +61,8 @@ def test_slot_predicates_are_conditions() -> None:
 
 def test_and_or_not_and_comparison_are_refused() -> None:
     with pytest.raises(
-        rs.DeclarationError, match=r"write demo:a & other instead of 'and', \| instead of 'or'"
+        rs.DeclarationError,
+        match=rf"condition demo:a \({HERE}:\d+\) .* write & instead of 'and', \| instead of 'or'",
     ):
         _ = a and b
     with pytest.raises(rs.DeclarationError, match="has no truth value"):
@@ -70,9 +75,13 @@ def test_and_or_not_and_comparison_are_refused() -> None:
 
 @pytest.mark.parametrize("other", [True, None, "demo:b", 3, cheerful])
 def test_only_conditions_can_be_combined(other: object) -> None:
-    with pytest.raises(rs.DeclarationError, match=r"cannot combine a condition with .* by &"):
+    with pytest.raises(
+        rs.DeclarationError, match=rf"cannot combine condition demo:a with .* by & \({HERE}:\d+\)"
+    ):
         _ = a & other
-    with pytest.raises(rs.DeclarationError, match=r"cannot combine a condition with .* by \|"):
+    with pytest.raises(
+        rs.DeclarationError, match=rf"cannot combine condition demo:a with .* by \| \({HERE}:\d+\)"
+    ):
         _ = a | other
 
 
@@ -81,6 +90,8 @@ def test_a_slot_beside_a_condition_is_told_of_its_signal() -> None:
         _ = a & mood
     with pytest.raises(rs.DeclarationError, match=r"a slot is no signal: write \| mood\.changed"):
         _ = a | mood
+    with pytest.raises(rs.DeclarationError, match=r"write & rawio\.input\.changed"):
+        _ = a & rs.Module("rawio").slot("input")
 
 
 @pytest.mark.parametrize("age", ["2", None, True, object()])

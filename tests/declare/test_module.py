@@ -197,6 +197,10 @@ def test_a_slot_as_condition_is_told_of_its_signal(demo: rs.Module) -> None:
         "when=demo:mood is a slot: write when=mood.changed",
         lambda: demo.rule(when=mood)(do),
     )
+    refused(
+        "when=rawio:input is a slot: write when=rawio.input.changed",
+        lambda: demo.rule(when=rs.Module("rawio").slot("input"))(do),
+    )
 
 
 @pytest.mark.parametrize("what", ["weight", "cooldown", "patience", "timeout"])

@@ -84,8 +84,8 @@ def test_its_own_writes_are_seen_and_those_of_others_are_not(scene: Scene) -> No
 @pytest.mark.parametrize(
     ("slot", "text"),
     [
-        ("mood", "read m:mood without declaring it: add reads=m.mood to @m.rule(...)"),
-        ("people", "read m:people without declaring it: add reads=m.people"),
+        ("mood", "read m:mood without declaring it: add reads=mood to @m.rule(...)"),
+        ("people", "read m:people without declaring it: add reads=people"),
     ],
 )
 def test_an_undeclared_read_names_the_line_to_add(scene: Scene, slot: str, text: str) -> None:
@@ -112,7 +112,13 @@ def test_a_signal_in_place_of_its_slot(scene: Scene) -> None:
 def test_reading_is_no_leave_to_write(scene: Scene) -> None:
     scene.run(write(scene.mood, "x"), reads=scene.mood, writes=scene.note)
     text = str(scene.outcome())
-    assert "wrote m:mood without declaring it: add writes=m.mood to @m.rule(...)" in text
+    assert "wrote m:mood without declaring it: write writes=(note, mood) in @m.rule(...)" in text
+
+
+def test_a_slot_of_another_module_is_named_with_it(scene: Scene) -> None:
+    lamp = rs.Module("lamp").slot("light", "")
+    scene.run(write(lamp, "x"), writes=scene.note)
+    assert "write writes=(note, lamp.light) in @m.rule(...)" in str(scene.outcome())
 
 
 def test_a_misspelt_slot_is_met_by_the_nearest(scene: Scene) -> None:
@@ -189,7 +195,7 @@ def test_a_view_of_a_collection_does_not_forget_what_another_wrote(scene: Scene)
 @pytest.mark.parametrize("act", [lambda p: p.add("a", 1), lambda p: p.remove("a")])
 def test_a_collection_that_is_only_read_cannot_be_changed(scene: Scene, act: Callable[[Any], None]) -> None:
     scene.run(lambda ctx: act(ctx[scene.people]), reads=scene.people)
-    assert "wrote m:people without declaring it: add writes=m.people" in str(scene.outcome())
+    assert "wrote m:people without declaring it: add writes=people" in str(scene.outcome())
 
 
 @pytest.mark.parametrize("value", [5, ["Ada"], None, "Ada"])
@@ -251,8 +257,11 @@ def test_an_emitted_signal_carries_its_payload(scene: Scene) -> None:
 @pytest.mark.parametrize(
     ("what", "text"),
     [
-        (lambda s: s.other, "emitted m:other without declaring it: add emits=m.other to @m.rule(...)"),
-        (lambda s: rs.Module("m").signal("outt"), "add emits=m.outt to @m.rule(...); did you mean 'm:out'?"),
+        (lambda s: s.other, "emitted m:other without declaring it: write emits=(out, other) in @m.rule(...)"),
+        (
+            lambda s: rs.Module("m").signal("outt"),
+            "write emits=(out, outt) in @m.rule(...); did you mean 'm:out'?",
+        ),
         (
             lambda s: s.mood,
             "emitted m:mood, which is a slot: write ctx[mood] = value, which signals, or ctx.emit(signal)",

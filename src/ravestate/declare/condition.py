@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from ravestate.declare.settings import Number, SettingRef, type_of_number
+from ravestate.declare.wording import place_of_call, spelt
 from ravestate.errors import DeclarationError
 
 if TYPE_CHECKING:
@@ -31,15 +32,15 @@ class Condition:
     __slots__ = ()
 
     def __and__(self, other: Condition) -> Condition:
-        return AllOf((*_parts(self, AllOf), *_parts(_checked(other, "&"), AllOf)))
+        return AllOf((*_parts(self, AllOf), *_parts(_checked(self, other, "&"), AllOf)))
 
     def __or__(self, other: Condition) -> Condition:
-        return AnyOf((*_parts(self, AnyOf), *_parts(_checked(other, "|"), AnyOf)))
+        return AnyOf((*_parts(self, AnyOf), *_parts(_checked(self, other, "|"), AnyOf)))
 
     def __bool__(self) -> NoReturn:
         raise DeclarationError(
-            f"a condition has no truth value: write {self} & other instead of 'and', | instead of 'or', "
-            "and .where(predicate) instead of a comparison"
+            f"condition {self} ({place_of_call()}) has no truth value: write & instead of 'and', | instead of 'or', and "
+            ".where(predicate) instead of a comparison; & binds tighter than |"
         )
 
 
@@ -117,12 +118,15 @@ def _parts(condition: Condition, kind: type[AllOf] | type[AnyOf]) -> tuple[Condi
     return condition.parts if isinstance(condition, kind) else (condition,)
 
 
-def _checked(other: object, operator: str) -> Condition:
+def _checked(condition: Condition, other: object, operator: str) -> Condition:
     if not isinstance(other, Condition):
         hint = ""
         if hasattr(other, "changed"):
-            hint = f"; a slot is no signal: write {operator} {getattr(other, 'name', 'slot').split(':')[-1]}.changed"
-        raise DeclarationError(f"cannot combine a condition with {other!r} by {operator}{hint}")
+            home = str(condition).lstrip("(").partition(":")[0]
+            hint = f"; a slot is no signal: write {operator} {spelt(getattr(other, 'name', 'slot'), home)}.changed"
+        raise DeclarationError(
+            f"cannot combine condition {condition} with {other!r} by {operator} ({place_of_call()}){hint}"
+        )
     return other
 
 

@@ -12,6 +12,7 @@ from ravestate.declare.rule import Rule
 from ravestate.declare.settings import Number, SettingRef, type_of_number
 from ravestate.declare.signal import DEFAULT_LIMIT, Keep, Signal
 from ravestate.declare.slot import Collection, Flag, Slot
+from ravestate.declare.wording import spelt
 from ravestate.errors import DeclarationError
 
 __all__ = ["Module", "as_module"]
@@ -260,7 +261,8 @@ class Module:
             _check_name(title, f"rule {whole}")
             if isinstance(when, Slot):
                 raise DeclarationError(
-                    f"rule {whole} ({origin}): when={when!r} is a slot: write when={title_of(when)}.changed"
+                    f"rule {whole} ({origin}): when={when!r} is a slot: write "
+                    f"when={spelt(when.name, self.name)}.changed"
                 )
             if not isinstance(when, Condition):  # pyright: ignore[reportUnnecessaryIsInstance]  # users may not type-check
                 raise DeclarationError(
@@ -282,9 +284,9 @@ class Module:
                 whole,
                 function,
                 when=when,
-                reads=_many(reads, ANY_SLOT, f"rule {whole} ({origin}): reads"),
-                writes=_many(writes, ANY_SLOT, f"rule {whole} ({origin}): writes"),
-                emits=_many(emits, ANY_SIGNAL, f"rule {whole} ({origin}): emits"),
+                reads=_many(reads, ANY_SLOT, f"rule {whole} ({origin}): reads", self.name),
+                writes=_many(writes, ANY_SLOT, f"rule {whole} ({origin}): writes", self.name),
+                emits=_many(emits, ANY_SIGNAL, f"rule {whole} ({origin}): emits", self.name),
                 weight=_float(weight),
                 cooldown=_float(cooldown),
                 patience=None if patience is None else _float(patience),
@@ -325,11 +327,6 @@ def as_module(value: object) -> Module:
     raise DeclarationError(f"expected an rs.Module (or a Python module that holds one), not {value!r}")
 
 
-def title_of(slot: Slot[Any]) -> str:
-    """The part of a slot's name that a designer's variable is likely to bear."""
-    return slot.name.rsplit(":", 1)[-1]
-
-
 def _caller() -> str:
     frame = sys._getframe(2)  # pyright: ignore[reportPrivateUsage]  # error messages say where a thing was declared
     return f"{frame.f_code.co_filename}:{frame.f_lineno}"
@@ -353,7 +350,7 @@ def _check_keep(keep: object, limit: object, what: str) -> None:
         raise DeclarationError(f"{what}: limit={limit!r}: write a whole number of at least 1")
 
 
-def _many(values: Any, kind: type[T], what: str) -> tuple[T, ...]:
+def _many(values: Any, kind: type[T], what: str, home: str) -> tuple[T, ...]:
     if isinstance(values, kind):
         return (values,)
     try:
@@ -366,6 +363,6 @@ def _many(values: Any, kind: type[T], what: str) -> tuple[T, ...]:
             if isinstance(value, Signal):
                 hint = ": reads and writes name slots, emits names signals"
             elif isinstance(value, Slot):
-                hint = f": writing it signals; write writes={title_of(cast('Slot[Any]', value))}"
+                hint = f": writing it signals; write writes={spelt(cast('Slot[Any]', value).name, home)}"
             raise DeclarationError(f"{what}={value!r} is no {kind.__name__.lower()}{hint}")
     return tuple(dict.fromkeys(found))

@@ -8,6 +8,7 @@ from typing import Any, Generic, NamedTuple, NoReturn, TypeVar
 
 from ravestate.declare.condition import Holds, Predicate
 from ravestate.declare.signal import Keep, Signal
+from ravestate.declare.wording import place_of_call
 from ravestate.errors import DeclarationError, nearest
 
 __all__ = ["Collection", "Entry", "Flag", "Slot"]
@@ -70,7 +71,7 @@ class Slot(Generic[T]):
 
     def __and__(self, other: object) -> NoReturn:
         raise DeclarationError(
-            f"slot {self.name} is no condition: write .changed (its signal) or .holds(predicate)"
+            f"slot {self.name} ({place_of_call()}) is no condition: write .changed (its signal) or .holds(predicate)"
         )
 
     __or__ = __rand__ = __ror__ = __and__

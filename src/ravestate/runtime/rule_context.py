@@ -6,12 +6,12 @@ import logging
 import random
 from collections.abc import Iterator, Mapping
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, Generic, NoReturn, TypeVar, cast, overload
+from typing import TYPE_CHECKING, Any, Generic, NoReturn, TypeVar, overload
 
-from ravestate.declare.module import title_of
 from ravestate.declare.rule import Rule
 from ravestate.declare.signal import Signal
 from ravestate.declare.slot import Collection, Slot
+from ravestate.declare.wording import spelt
 from ravestate.engine.events import Discard, Emit, Store, Wipe, Write
 from ravestate.errors import RuleError, RunEnded, UndeclaredError, nearest
 
@@ -77,7 +77,7 @@ class RuleContext:
             if not isinstance(value, Mapping):
                 raise RuleError(
                     f"rule {self.rule.name} ({self.rule.origin}) wrote {type(value).__name__} to the collection "
-                    f"{slot.name}: write a mapping of keys to items, or ctx[{title_of(slot)}].add(key, item)"
+                    f"{slot.name}: write a mapping of keys to items, or ctx[{self._spelt(slot)}].add(key, item)"
                 )
             value = MappingProxyType(dict(value))  # type: ignore[assignment]  # its kind says so
         self._values[slot.name] = value
@@ -177,17 +177,26 @@ class RuleContext:
         if what == "emits" and isinstance(value, Slot):
             raise UndeclaredError(
                 f"rule {self.rule.name} ({self.rule.origin}) emitted {name}, which is a slot: write "
-                f"ctx[{title_of(cast('Slot[Any]', value))}] = value, which signals, or ctx.emit(signal)"
+                f"ctx[{self._spelt(value)}] = value, which signals, or ctx.emit(signal)"
             )
         if what != "emits" and not isinstance(value, Slot):
             raise UndeclaredError(
                 f"rule {self.rule.name} ({self.rule.origin}) {did} {name}, which is no slot: write ctx[slot]"
             )
-        short = name.replace(":", ".")
+        own = getattr(self.rule, what)
+        line = self._spelt(value)
+        line = (
+            f"add {what}={line} to"
+            if not own
+            else f"write {what}=({', '.join(map(self._spelt, own))}, {line}) in"
+        )
         raise UndeclaredError(
-            f"rule {self.rule.name} ({self.rule.origin}) {did} {name} without declaring it: add {what}={short} to "
+            f"rule {self.rule.name} ({self.rule.origin}) {did} {name} without declaring it: {line} "
             f"@{self.rule.name.split(':')[0]}.rule(...){nearest(name, [d.name for d in declared])}"
         )
+
+    def _spelt(self, thing: Any) -> str:
+        return spelt(str(getattr(thing, "name", thing)), self.rule.name.split(":")[0])
 
 
 class Items(Mapping[str, V], Generic[V]):
