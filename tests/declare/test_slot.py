@@ -1,6 +1,8 @@
 """Slots and their signals (L2), and what is said when a slot is taken for a signal."""
 
 import copy
+import re
+from typing import Any
 
 import pytest
 
@@ -34,6 +36,35 @@ def test_defaults() -> None:
     assert (mood.default, lit.default, people.default) == ("calm", False, NOTHING)
     assert demo.slot("nothing").default is None
     assert demo.slot("typed", type=int).default is None
+
+
+class Text(str):
+    """A kind of text."""
+
+
+@pytest.mark.parametrize(
+    ("default", "kind", "good", "bad"),
+    [
+        ("", str, Text("x"), 42),
+        ("", str, "", None),
+        (None, str, None, 42),
+        (0.0, float, 1, "1"),
+        (None, str | int, 1, 1.5),
+    ],
+)
+def test_a_slot_with_a_type_takes_no_other(default: Any, kind: Any, good: Any, bad: Any) -> None:
+    slot = demo.slot("s", default, type=kind)
+    slot.check(good, "somebody")
+    with pytest.raises(
+        rs.RuleError,
+        match=f"somebody wrote {re.escape(repr(bad))} to demo:s, which takes .*, not {type(bad).__name__}",
+    ):
+        slot.check(bad, "somebody")
+
+
+@pytest.mark.parametrize("kind", [None, Any, list[int], "str"])
+def test_types_that_cannot_be_checked_are_not(kind: Any) -> None:
+    demo.slot("s", type=kind).check(object(), "somebody")
     with pytest.raises(TypeError):
         NOTHING["key"] = 1
 

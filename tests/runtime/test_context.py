@@ -270,6 +270,15 @@ async def test_who_waits_in_the_background_does_not_hold_up_quiet() -> None:
         assert "waits for m:keep" in str(context.explain("m:wait"))
 
 
+@on_loop
+async def test_a_value_of_the_wrong_type_is_refused_at_once() -> None:
+    m = rs.Module("m")
+    heard = m.slot("heard", "", type=str)
+    async with rs.Context(m) as context:
+        with pytest.raises(rs.RuleError, match=r"context\.put wrote 42 to m:heard, which takes str, not int"):
+            context.put(heard, 42)  # type: ignore[arg-type]
+
+
 # ---------------------------------------------------------------------------------------- wrong names
 
 

@@ -115,6 +115,26 @@ def test_reading_is_no_leave_to_write(scene: Scene) -> None:
     assert "wrote m:mood without declaring it: write writes=(note, mood) in @m.rule(...)" in text
 
 
+@pytest.mark.parametrize("value", [42, None, b"x", ["x"] * 100])
+def test_a_value_of_the_wrong_type_is_told_to_whoever_writes_it(scene: Scene, value: Any) -> None:
+    said = scene.module.slot("said", "", type=str)
+    scene.run(write(said, value), writes=said)
+    text = str(scene.outcome())
+    assert re.match(rf"rule m:doer \({HERE}:\d+\) wrote ", text)
+    assert repr(value)[:50] in text
+    assert text.endswith(f"to m:said, which takes str, not {type(value).__name__}")
+
+
+@pytest.mark.parametrize(
+    "change", [lambda items: items.__setitem__("ada", 1), lambda items: items.__delitem__("ada")]
+)
+def test_items_are_not_assigned(scene: Scene, change: Callable[[Any], None]) -> None:
+    scene.run(lambda ctx: change(ctx[scene.people]), writes=scene.people)
+    failure = scene.outcome()
+    assert isinstance(failure, rs.RuleError)
+    assert re.search(r"write ctx\[people\]\.(add\(key, item\)|remove\(key\))$", str(failure))
+
+
 def test_a_slot_of_another_module_is_named_with_it(scene: Scene) -> None:
     lamp = rs.Module("lamp").slot("light", "")
     scene.run(write(lamp, "x"), writes=scene.note)

@@ -121,6 +121,7 @@ class Module:
         name: str,
         default: T,
         *,
+        type: object = ...,
         always: bool = ...,
         input: bool = ...,
         keep: Keep = ...,
@@ -157,7 +158,8 @@ class Module:
         Args:
             name: Its name within the module.
             default: The value before the first write. Each context starts with a copy of its own.
-            type: The value's type, for type checkers, where there is no default.
+            type: The value's type, e.g. ``str`` or ``str | Path``. A value of another one is refused when it is written;
+                None is taken where it is the default. Types that ``isinstance`` does not know are not checked.
             always: Signal even when an equal value is written (an utterance may be said twice).
             input: Whether it is also written from outside although a rule writes it (L8).
             keep: ``"latest"``: a new change withdraws the spikes of older ones (L20).
@@ -168,6 +170,7 @@ class Module:
         slot: Slot[Any] = Slot(
             f"{self.name}:{name}",
             default,
+            type=type,
             always=always,
             input=input,
             keep=keep,

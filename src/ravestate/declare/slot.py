@@ -9,7 +9,7 @@ from typing import Any, Generic, NamedTuple, NoReturn, TypeVar
 from ravestate.declare.condition import Holds, Predicate
 from ravestate.declare.signal import Keep, Signal
 from ravestate.declare.wording import place_of_call
-from ravestate.errors import DeclarationError, nearest
+from ravestate.errors import DeclarationError, RuleError, nearest
 
 __all__ = ["Collection", "Entry", "Flag", "Slot"]
 
@@ -32,19 +32,30 @@ class Slot(Generic[T]):
     Attributes:
         name: The qualified name, ``module:name``.
         default: The value before the first write; each context gets a copy of its own.
+        type: What `isinstance` is asked of each value written; None: nothing.
         always: Whether writing an equal value signals too.
         signals: All signals of the slot, `changed` first.
         origin: Where it was declared, ``file:line``.
     """
 
-    __slots__ = ("always", "changed", "default", "name", "origin", "signals")
+    __slots__ = ("always", "changed", "default", "name", "origin", "signals", "type")
     kind = "value"
 
     def __init__(
-        self, name: str, default: T, *, always: bool, input: bool, keep: Keep, limit: int, origin: str
+        self,
+        name: str,
+        default: T,
+        *,
+        always: bool,
+        input: bool,
+        keep: Keep,
+        limit: int,
+        origin: str,
+        type: Any = None,
     ) -> None:
         self.name = name
         self.default = default
+        self.type = _checkable(type)
         self.always = always
         self.origin = origin
         self.changed: Signal[Any] = self._signal("changed", input, keep, limit)
@@ -52,6 +63,25 @@ class Slot(Generic[T]):
 
     def _signal(self, what: str, input: bool, keep: Keep, limit: int) -> Signal[Any]:
         return Signal(f"{self.name}:{what}", None, input=input, keep=keep, limit=limit, origin=self.origin)
+
+    def check(self, value: object, writer: str) -> None:
+        """Refuse a value that is not of the slot's type.
+
+        Args:
+            value: What is written.
+            writer: Who writes it, for the message.
+
+        Raises:
+            RuleError: It is of another type.
+        """
+        if self.type is None or isinstance(value, self.type) or (value is None and self.default is None):
+            return
+        text = repr(value)
+        takes = getattr(self.type, "__name__", str(self.type))
+        raise RuleError(
+            f"{writer} wrote {text if len(text) <= 60 else text[:57] + '...'} to {self.name}, which takes {takes}, not "
+            f"{type(value).__name__}"
+        )
 
     def holds(self, predicate: Predicate) -> Holds:
         """Gate a rule by ``predicate(value)`` of the slot's present value. Adds ln 2 to the utility (L9)."""
@@ -78,6 +108,17 @@ class Slot(Generic[T]):
 
     def __repr__(self) -> str:
         return self.name
+
+
+def _checkable(kind: Any) -> Any:
+    """The type as `isinstance` takes it, an int being fine for a float; None if it does not."""
+    if kind is float:
+        kind = int | float
+    try:
+        isinstance(None, kind)
+    except TypeError:
+        return None
+    return kind
 
 
 class Flag(Slot[bool]):

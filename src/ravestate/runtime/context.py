@@ -182,8 +182,10 @@ class Context:
 
         Raises:
             UndeclaredError: The policy does not have the slot.
+            RuleError: The value is not of the slot's type.
         """
         self._known(slot, self.policy.slots, "slot")
+        slot.check(value, "context.put")
         self._running().receive(Write(slot.name, value))
 
     def emit(self, signal: Signal[T], payload: T | None = None) -> None:

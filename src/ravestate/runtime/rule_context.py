@@ -68,11 +68,14 @@ class RuleContext:
 
         Raises:
             UndeclaredError: The rule does not declare ``writes`` of it.
+            RuleError: The value is not of the slot's type.
             RunEnded: The run is over.
         """
         if slot not in self.rule.writes:
             self._refuse("wrote", "writes", slot, self.rule.writes)
         self._alive()
+        if slot.type is not None:
+            slot.check(value, f"rule {self.rule.name} ({self.rule.origin})")
         if slot.kind == "collection":
             if not isinstance(value, Mapping):
                 raise RuleError(
@@ -230,6 +233,19 @@ class Items(Mapping[str, V], Generic[V]):
         self._items = MappingProxyType({k: v for k, v in self._items.items() if k != key})
         self._keep()
         self._ctx._runner.receive(Discard(self._slot.name, key, self._ctx._run))  # pyright: ignore[reportPrivateUsage]
+
+    def __setitem__(self, key: str, item: V) -> NoReturn:
+        self._point_to("add(key, item)")
+
+    def __delitem__(self, key: str) -> NoReturn:
+        self._point_to("remove(key)")
+
+    def _point_to(self, call: str) -> NoReturn:
+        rule, slot = self._ctx.rule, self._ctx._spelt(self._slot)  # pyright: ignore[reportPrivateUsage]
+        raise RuleError(
+            f"rule {rule.name} ({rule.origin}): the items of a collection are not assigned or deleted: write "
+            f"ctx[{slot}].{call}"
+        )
 
     def _check(self) -> None:
         ctx = self._ctx

@@ -24,7 +24,7 @@ class Settings(rs.Settings):
 
 module = rs.Module("verbaliser", requires=[rawio], settings=Settings)
 
-intent: rs.Slot[str | Intent | None] = module.slot("intent", None, always=True)
+intent: rs.Slot[str | Intent | None] = module.slot("intent", None, type=str | Intent, always=True)
 """What the agent means to say: the name of an intent, or an `Intent` with parameters. It is worded at once."""
 
 last: rs.Collection[str] = module.collection("last")

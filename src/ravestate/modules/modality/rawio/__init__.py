@@ -13,10 +13,10 @@ __all__ = ["input", "module", "output", "picture", "piece", "say", "speaking"]
 
 module = rs.Module("rawio")
 
-input = module.slot("input", "", always=True, input=True)
+input = module.slot("input", "", type=str, always=True, input=True)
 """What the user said last. Each utterance signals, also one that was said before."""
 
-output = module.slot("output", "", always=True)
+output = module.slot("output", "", type=str, always=True)
 """What the agent says. Each write is one whole utterance."""
 
 piece = module.signal("piece", payload=str)
