@@ -322,7 +322,86 @@ async def test_what_is_not_declared_is_refused_with_the_line_to_add(did: str, th
         assert await talk.ask(context) == "fallback"
         failure = only_failure(talk)
         assert isinstance(failure, rs.UndeclaredError)
-        assert re.match(rf"rule m:trespass \({HERE}:\d+\) {re.escape(text)} (to|in) @m.rule\(\.\.\.\)", str(failure))
+        assert re.match(
+            rf"rule m:trespass \({HERE}:\d+\) {re.escape(text)} (to|in) @m.rule\(\.\.\.\)", str(failure)
+        )
+
+
+# ---------------------------------------------------------------------------------------- cancelled rules
+
+
+def test_what_a_cancelled_rule_writes_at_once_comes_before_what_cancelled_it() -> None:
+    m = rs.Module("m")
+    go, face = m.signal("go"), m.slot("face", "calm")
+    faces: list[str] = []
+
+    @m.rule(when=go, writes=face, until=go)
+    async def smile(ctx: rs.RuleContext) -> None:
+        ctx[face] = "happy"
+        try:
+            await asyncio.wait_for(
+                ctx.sleep(3.0), 60.0
+            )  # in which a cancellation takes some turns of the loop
+        finally:
+            ctx[face] = "calm"
+
+    @m.rule(when=face.changed.detached())
+    async def show(ctx: rs.RuleContext) -> None:
+        faces.append(ctx.payload(face.changed))
+
+    with simulate(m) as sim:
+        sim.emit(go)
+        sim.advance(2.0)
+        sim.emit(go)
+        assert sim.read(face) == "happy"
+        sim.advance(2.9)
+        assert faces == ["happy", "calm", "happy"]
+        sim.advance(0.1)
+        assert faces == ["happy", "calm", "happy", "calm"]
+
+
+def test_a_cancelled_rule_that_waits_holds_nobody_up() -> None:
+    m = rs.Module("m")
+    go, stop, note = m.signal("go"), m.signal("stop"), m.slot("note", "")
+
+    @m.rule(when=go, until=stop)
+    async def linger(ctx: rs.RuleContext) -> None:
+        try:
+            await ctx.sleep(60.0)
+        finally:
+            await ctx.sleep(1.0)
+
+    @m.rule(when=stop, writes=note)
+    async def answer(ctx: rs.RuleContext) -> None:
+        ctx[note] = "stopped"
+
+    with simulate(m) as sim:
+        sim.emit(go)
+        sim.emit(stop)
+        assert sim.read(note) == "stopped" and sim.fired == ["m:answer"]
+        sim.advance(1.0)
+        assert sim.fired == ["m:answer", "m:linger"]
+
+
+def test_a_thousand_cancellations_in_one_instant_are_no_endless_loop() -> None:
+    m = rs.Module("m")
+    go, done = m.signal("go"), m.slot("done", 0)
+
+    @m.rule(when=go, until=go)
+    async def work(ctx: rs.RuleContext) -> None:
+        await ctx.sleep(1.0)
+
+    @m.rule(when=go, writes=done)
+    async def count(ctx: rs.RuleContext) -> None:
+        ctx[done] += 1
+
+    with simulate(m) as sim:
+        for _ in range(1000):
+            sim.context.emit(go)
+        sim.settle()
+        for _ in range(1000):
+            sim.emit(go)
+        assert sim.read(done) == 2000
 
 
 # ---------------------------------------------------------------------------------------- plain functions

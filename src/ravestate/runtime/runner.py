@@ -36,6 +36,9 @@ GRACE = 5.0
 ENDLESS = 200_000
 """Rounds of effects in one instant of virtual time after which it counts as one that does not end."""
 
+CLEANING = 10
+"""Turns of the loop that a cancelled rule has before anything else is done, for what it writes at once."""
+
 BATCH = 512
 """Rounds of effects after which the loop gets a turn, so that a busy agent still hears and sees."""
 
@@ -84,7 +87,7 @@ class Runner:
         self._scheduled = False
         self._pumping = False
         self._instant = -1.0
-        self._rounds = 0  # full batches in this very instant
+        self._rounds = 0  # of effects in this very instant
         self._last_run = ""
         self.on_endless: Callable[[str], None] | None = None
         """Told of the rule that ran last when an instant does not end (in virtual time, where it would stand still)."""
@@ -94,6 +97,7 @@ class Runner:
         self._timer_due = 0.0
         self._contexts: dict[int, RuleContext] = {}
         self._nests: dict[int, Nest] = {}
+        self._cleaning: list[asyncio.Task[Any]] = []  # cancelled just now
         self._spare: Nest | None = None
         self._is_async: dict[Rule[Any, Any], bool] = {}
         self._quiet: list[asyncio.Future[None]] = []
@@ -154,19 +158,24 @@ class Runner:
             return
         self._work_off(BATCH)
         self._arm()
-        if self._quiet and self.is_quiet():
+        if self._quiet and not self._cleaning and self.is_quiet():
             for future in self._quiet:
                 if not future.done():
                     future.set_result(None)
             self._quiet.clear()
 
+    def _held(self) -> bool:
+        """Whether others come first: a plain function in a simulation, or rules that have just been cancelled."""
+        return bool((self.serial and self.threads) or (self._cleaning and not self.clock.halted))
+
     def _work_off(self, rounds: int) -> bool:
         """Take and perform effects, for so many rounds at most; whether there were any."""
         engine = self.engine
         began = self.now()
-        self._rounds = self._rounds + 1 if began == self._instant else 0
+        if began != self._instant:
+            self._rounds = 0
         self._instant = began
-        if self.on_endless is not None and self._rounds * BATCH > ENDLESS:
+        if self.on_endless is not None and self._rounds > ENDLESS:
             self.closed = True
             self.on_endless(self._last_run)
             return False
@@ -174,8 +183,9 @@ class Runner:
         self._pumping = True
         try:
             for _ in range(rounds):
-                if self.serial and self.threads:
-                    break  # go on when the function has ended
+                if self._held():
+                    break  # go on when they have ended
+                self._rounds += 1
                 if not self._todo:
                     if self.on_event is not None:
                         self.on_event(Taken(), engine.now)
@@ -187,7 +197,7 @@ class Runner:
                     if not self._todo:
                         break
                 some = True
-                while self._todo and not (self.serial and self.threads):
+                while self._todo and not self._held():
                     self._perform(self._todo.popleft())
             else:
                 self._scheduled = True
@@ -401,7 +411,18 @@ class Runner:
             return
         ctx.told = effect.reason
         nest.task.cancel()
+        self._cleaning.append(nest.task)
+        if len(self._cleaning) == 1:
+            self.loop.call_soon(self._go_on, CLEANING)
         self.loop.call_later(GRACE, self._give_up, effect.run)
+
+    def _go_on(self, turns: int) -> None:
+        """After a cancellation: work on once the cancelled have cleaned up, or wait for something."""
+        if turns and not all(task.done() for task in self._cleaning):
+            self.loop.call_soon(self._go_on, turns - 1)
+        else:
+            self._cleaning.clear()
+            self._pump()
 
     def _give_up(self, run: int) -> None:
         """A cancelled rule did not end in time."""

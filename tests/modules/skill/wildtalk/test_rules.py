@@ -28,6 +28,14 @@ async def watch(ctx: rs.RuleContext) -> None:
     SHOWN.append(ctx.payload(rawio.piece))
 
 
+stopper = rs.Module("stopper", requires=[rawio])
+
+
+@stopper.rule(when=rawio.input.changed.where(lambda text: text == "Stop."), writes=rawio.output, weight=9.0)
+async def stop_at_once(ctx: rs.RuleContext) -> None:
+    ctx[rawio.output] = "All right."
+
+
 @pytest.fixture(autouse=True)
 def nothing_shown() -> None:
     SHOWN.clear()
@@ -116,11 +124,23 @@ def test_a_new_utterance_interrupts_it() -> None:
     assert [m.text for m in sim.read(wildtalk.history).values()] == [
         "Tell me something.", "Once upon…", "Stop, please.", "Once upon a time",
     ]  # fmt: skip
-    assert sim.read(wildtalk.unfinished) == ""
     assert [m.text for m in model.asked[1]][1:] == ["Tell me something.", "Once upon…", "Stop, please."]
     assert not sim.read(rawio.speaking)
     sim.__exit__(None, None, None)
     assert not sim.failures
+
+
+def test_what_was_said_of_an_interrupted_answer_comes_before_the_answer_to_the_interruption() -> None:
+    model = Model("Once", " upon", " a", " time")
+    with simulate(wildtalk, stopper, settings={"wildtalk": {"examples": ()}}) as sim:
+        sim.put(wildtalk.model, model)
+        sim.say("Tell me something.")
+        sim.advance(1.0)
+        sim.say("Stop.")
+        assert sim.said == ["Once upon…", "All right."]
+        assert [m.text for m in sim.read(wildtalk.history).values()] == [
+            "Tell me something.", "Once upon…", "Stop.", "All right.",
+        ]  # fmt: skip
 
 
 def test_it_stops_the_model_after_its_sentences() -> None:

@@ -13,7 +13,7 @@ from ravestate.modules import rawio
 from .backend import Backend, Message
 from .history import EXAMPLES, PERSONA
 
-__all__ = ["Backend", "Message", "Settings", "history", "model", "module", "rules", "unfinished"]
+__all__ = ["Backend", "Message", "Settings", "history", "model", "module", "rules"]
 
 Seconds = Annotated[float, Field(gt=0)]
 
@@ -69,9 +69,6 @@ module = rs.Module("wildtalk", requires=[rawio], settings=Settings)
 
 history: rs.Collection[Message] = module.collection("history")
 """What was said lately, by whomever, oldest first; the keys begin with the time."""
-
-unfinished: rs.Slot[str] = module.slot("unfinished", "")
-"""What has been said so far of an utterance that is still being made."""
 
 model: rs.Slot[Backend | None] = module.slot("model", None, input=True)
 """What talks. A backend of one's own may be put here."""

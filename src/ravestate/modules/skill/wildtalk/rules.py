@@ -8,7 +8,7 @@ from contextlib import aclosing
 import ravestate as rs
 from ravestate.modules import rawio
 
-from . import Settings, history, model, module, unfinished
+from . import Settings, history, model, module
 from .backend import Backend, Message, Role
 from .facts import asks_for_fact
 from .history import History
@@ -36,12 +36,9 @@ async def let_go(ctx: rs.RuleContext) -> None:
         await backend.close()
 
 
-@module.rule(when=rawio.input.changed.max_age(None).detached(), writes=(history, unfinished), background=True)
+@module.rule(when=rawio.input.changed.max_age(None).detached(), writes=history, background=True)
 async def hear(ctx: rs.RuleContext) -> None:
-    """Remember what the user says, and what he interrupts by it."""
-    if ctx[unfinished]:
-        remember(ctx, "assistant", ctx[unfinished] + INTERRUPTED)
-        ctx[unfinished] = ""
+    """Remember what the user says."""
     remember(ctx, "user", ctx.payload(rawio.input.changed))
 
 
@@ -50,14 +47,14 @@ async def note(ctx: rs.RuleContext) -> None:
     """Remember what the agent says, whichever rule worded it."""
     said = ctx.payload(rawio.output.changed)
     lately = list(ctx[history].values())[-2:]
-    if not (said.endswith(INTERRUPTED) and Message("assistant", said) in lately):  # `hear` was first
+    if not (said.endswith(INTERRUPTED) and Message("assistant", said) in lately):  # `chat` was first
         remember(ctx, "assistant", said)
 
 
 @module.rule(
     when=rawio.input.changed,
-    reads=(history, model),
-    writes=(rawio.output, rawio.speaking, unfinished),
+    reads=model,
+    writes=(rawio.output, rawio.speaking, history),
     emits=rawio.piece,
     until=rawio.input.changed,
 )
@@ -91,7 +88,7 @@ async def chat(ctx: rs.RuleContext) -> rs.Resign | None:
         if not shown:
             ctx[rawio.speaking] = True
         ctx.emit(rawio.piece, utterance.text[len(shown) :])
-        ctx[unfinished] = shown = utterance.text
+        shown = utterance.text
 
     answer = backend.stream(
         past.prompt(settings.persona, settings.name, settings.examples),
@@ -113,12 +110,12 @@ async def chat(ctx: rs.RuleContext) -> rs.Resign | None:
         ctx[rawio.output] = utterance.text
         return None
     except asyncio.CancelledError:
-        if shown:  # what was said was said
+        if shown:  # what was said was said, and before what interrupted it
+            remember(ctx, "assistant", shown + INTERRUPTED)
             ctx[rawio.output] = shown + INTERRUPTED
         raise
     finally:
         if shown:
-            ctx[unfinished] = ""
             ctx[rawio.speaking] = False
 
 
