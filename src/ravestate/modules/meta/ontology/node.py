@@ -1,0 +1,107 @@
+"""What memory holds: nodes with properties, and relations between them. Values; no behaviour."""
+
+from __future__ import annotations
+
+import secrets
+import threading
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from datetime import date, datetime
+from types import MappingProxyType
+from typing import Any
+
+__all__ = ["Node", "Relation", "Value"]
+
+Value = str | int | float | bool | date | datetime | None
+"""A property's value. None stands for a property that is not, or no longer, set."""
+
+
+class _Ids:
+    """Ids that grow with time, so that their order is that in which nodes were made."""
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()
+        self._last = 0
+
+    def next(self, type: str) -> str:
+        with self._lock:
+            self._last = max(self._last + 1, time.time_ns() // 1000)
+            return f"{type}:{self._last:014x}{secrets.token_hex(4)}"
+
+
+_ids = _Ids()
+
+
+@dataclass(frozen=True, slots=True)
+class Node:
+    """Something that is known: of a type, with properties. It never changes; `with_properties` makes another.
+
+    A new node has its id from the beginning, so that it may be written, related and written again without
+    waiting.
+
+    Args:
+        type: The name of its type, e.g. ``Person``.
+        properties: Values by name. One that is None is removed from memory when the node is saved.
+        id: ``Type:number``; a new one by default. The numbers grow with time.
+
+    Example:
+        >>> ada = Node("Person", {"name": "Ada"})
+        >>> older = ada.with_properties(age=36)
+        >>> older["name"], older.get("age"), ada.get("age"), older.id == ada.id
+        ('Ada', 36, None, True)
+    """
+
+    type: str
+    properties: Mapping[str, Value] = field(default_factory=dict[str, Value])
+    id: str = ""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "properties", MappingProxyType(dict(self.properties)))
+        if not self.id:
+            object.__setattr__(self, "id", _ids.next(self.type))
+
+    def with_properties(self, **properties: Value) -> Node:
+        """The same node with other values for some properties; None takes one away."""
+        return Node(self.type, {**self.properties, **properties}, self.id)
+
+    def get(self, name: str, default: Any = None) -> Any:
+        """A property's value; `default` where it is not set."""
+        value = self.properties.get(name)
+        return default if value is None else value
+
+    def __getitem__(self, name: str) -> Any:
+        """A property's value.
+
+        Raises:
+            KeyError: It is not set.
+        """
+        value = self.properties.get(name)
+        if value is None:
+            raise KeyError(f"{self.id} has no {name}; it has {', '.join(self.properties) or 'nothing'}")
+        return value
+
+    def __hash__(self) -> int:
+        return hash(self.id)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Node, (self.type, dict(self.properties), self.id)
+
+
+@dataclass(frozen=True, slots=True)
+class Relation:
+    """That `source` is related to `target`, e.g. by ``lives_in``, with properties of that relation."""
+
+    source: Node
+    name: str
+    target: Node
+    properties: Mapping[str, Value] = field(default_factory=dict[str, Value])
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "properties", MappingProxyType(dict(self.properties)))
+
+    def __hash__(self) -> int:
+        return hash((self.source.id, self.name, self.target.id))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Relation, (self.source, self.name, self.target, dict(self.properties))

@@ -1,0 +1,234 @@
+"""What there may be in memory: types with properties, relations between them, and inheritance."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from datetime import UTC, date, datetime
+from typing import Any, Literal
+
+from ravestate.errors import RuleError, nearest
+
+from .node import Value
+
+__all__ = ["KINDS", "Kind", "Relating", "Type", "Types"]
+
+Kind = Literal["text", "integer", "number", "yes/no", "date", "time"]
+"""What a property's values are."""
+
+KINDS: tuple[Kind, ...] = ("text", "integer", "number", "yes/no", "date", "time")
+
+_EXAMPLES: dict[Kind, str] = {
+    "text": '"Ada"',
+    "integer": "36, between -2^63 and 2^63",
+    "number": "1.5",
+    "yes/no": "True",
+    "date": "datetime.date(1815, 12, 10)",
+    "time": "datetime.now(UTC), with a time zone",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Type:
+    """A type of nodes, with what it has itself; what it inherits is looked up in `Types`.
+
+    Args:
+        name: Letters, digits and ``_``.
+        parent: The name of the type that it is a subtype of; None for one that stands alone.
+        properties: The kinds of its own properties by name.
+    """
+
+    name: str
+    parent: str | None = None
+    properties: Mapping[str, Kind] = field(default_factory=dict[str, Kind])
+
+
+@dataclass(frozen=True, slots=True)
+class Relating:
+    """A relation that there may be: its name, between which types (subtypes included), and what it has itself.
+
+    Args:
+        name: Letters, digits and ``_``.
+        ends: The types from which, and to which.
+        properties: The kinds of its properties by name.
+    """
+
+    name: str
+    ends: frozenset[tuple[str, str]]
+    properties: Mapping[str, Kind] = field(default_factory=dict[str, Kind])
+
+
+class Types:
+    """All types and relations; it says what fits. Read from files by ``read_types``."""
+
+    def __init__(self, types: Mapping[str, Type], relations: Mapping[str, Relating]) -> None:
+        """Take types whose parents and ends exist, and form no ring."""
+        self._types = dict(types)
+        self._relations = dict(relations)
+        self._lines = {name: tuple(self._line(name)) for name in self._types}
+        self._properties = {name: self._inherited(name) for name in self._types}
+
+    def __iter__(self) -> Iterator[str]:
+        """The names of all types, parents first."""
+        return iter(sorted(self._types, key=lambda name: len(self._lines[name])))
+
+    @property
+    def relations(self) -> Mapping[str, Relating]:
+        """All relations by name."""
+        return self._relations
+
+    def properties(self, type: str) -> Mapping[str, Kind]:
+        """The kinds of all properties of a type, inherited ones first.
+
+        Raises:
+            RuleError: There is no such type.
+        """
+        self._check(type)
+        return self._properties[type]
+
+    def subtypes(self, type: str) -> tuple[str, ...]:
+        """A type and all of its subtypes.
+
+        Raises:
+            RuleError: There is no such type.
+        """
+        self._check(type)
+        return tuple(name for name in self if type in self._lines[name])
+
+    def is_a(self, type: str, other: str) -> bool:
+        """Whether a type is another one or a subtype of it.
+
+        Raises:
+            RuleError: There is no such type.
+        """
+        self._check(type)
+        self._check(other)
+        return other in self._lines[type]
+
+    def pairs(self, relation: str) -> list[tuple[str, str]]:
+        """All pairs of types between which a relation may be, subtypes spelled out, sorted."""
+        return sorted(
+            {
+                (source, target)
+                for first, second in self._relations[relation].ends
+                for source in self.subtypes(first)
+                for target in self.subtypes(second)
+            }
+        )
+
+    def stored(self, type: str, values: Mapping[str, Value]) -> dict[str, Any]:
+        """Values as they are stored: a date or a time as a text whose order is that of time.
+
+        Raises:
+            RuleError: There is no such type or property, or a value is not of its kind.
+        """
+        return _stored(type, self.properties(type), values)
+
+    def loaded(self, type: str, values: Mapping[str, Any]) -> dict[str, Value]:
+        """What `stored` was made of, without what is not set, and without what the types do not know."""
+        return _loaded(self._properties[type], values)
+
+    def check_relation(self, source: str, relation: str, target: str) -> None:
+        """Make sure that there may be a relation between nodes of two types.
+
+        Raises:
+            RuleError: There is no such relation, or not between these.
+        """
+        self._check(source)
+        self._check(target)
+        ends = self.relating(relation).ends
+        if not any(self.is_a(source, first) and self.is_a(target, second) for first, second in ends):
+            known = " or ".join(f"from {first} to {second}" for first, second in sorted(ends))
+            raise RuleError(f"{relation} does not go from {source} to {target}, but {known}")
+
+    def relating(self, relation: str) -> Relating:
+        """A relation by its name.
+
+        Raises:
+            RuleError: There is no such relation.
+        """
+        found = self._relations.get(relation)
+        if found is None:
+            raise RuleError(
+                f"there is no relation {relation!r}{nearest(relation, self._relations)} To add one, write under a type in "
+                f"a file of your own (setting ontology.types):\n  relations: {{{relation}: Thing}}"
+            )
+        return found
+
+    def stored_of(self, relation: str, values: Mapping[str, Value]) -> dict[str, Any]:
+        """As `stored`, for the properties of a relation."""
+        return _stored(relation, self.relating(relation).properties, values)
+
+    def loaded_of(self, relation: str, values: Mapping[str, Any]) -> dict[str, Value]:
+        """As `loaded`, for the properties of a relation."""
+        return _loaded(self.relating(relation).properties, values)
+
+    # ------------------------------------------------------------------------------- internals
+
+    def _line(self, name: str | None) -> Iterator[str]:
+        while name is not None:
+            yield name
+            name = self._types[name].parent
+
+    def _inherited(self, name: str) -> dict[str, Kind]:
+        found: dict[str, Kind] = {}
+        for ancestor in reversed(self._lines[name]):
+            found.update(self._types[ancestor].properties)
+        return found
+
+    def _check(self, type: str) -> None:
+        if type not in self._types:
+            raise RuleError(
+                f"there is no type {type!r}{nearest(type, self._types)} To add one, write in a file of your own (setting "
+                f"ontology.types):\n{type}: {{is: Thing}}"
+            )
+
+
+def _stored(owner: str, kinds: Mapping[str, Kind], values: Mapping[str, Value]) -> dict[str, Any]:
+    found: dict[str, Any] = {}
+    for name, value in values.items():
+        if name not in kinds:
+            raise RuleError(
+                f"{owner} has no {name!r}{nearest(name, kinds)} (it has {', '.join(kinds) or 'nothing'}). To add it, write "
+                f"in a file of your own (setting ontology.types):\n{owner}:\n  has: {{{name}: text}}"
+            )
+        found[name] = None if value is None else _as_stored(f"{owner}.{name}", kinds[name], value)
+    return found
+
+
+def _as_stored(what: str, kind: Kind, value: Value) -> Any:
+    if kind == "text" and isinstance(value, str):
+        if any("\ud800" <= letter <= "\udfff" for letter in value):
+            raise RuleError(f"{what}: {value!r} has surrogates, which no text can be stored with: remove them")
+        return value
+    if kind == "yes/no" and isinstance(value, bool):
+        return value
+    if isinstance(value, int) and not isinstance(value, bool):
+        if kind == "integer" and -(2**63) <= value < 2**63:
+            return value
+        if kind == "number" and abs(value) <= 2**53:
+            return float(value)
+    if kind == "number" and isinstance(value, float) and math.isfinite(value):
+        return value
+    if kind == "time" and isinstance(value, datetime) and value.tzinfo is not None:
+        return value.astimezone(UTC).isoformat(timespec="microseconds")
+    if kind == "date" and isinstance(value, date) and not isinstance(value, datetime):
+        return value.isoformat()
+    shown = repr(value)
+    shown = shown if len(shown) <= 60 else shown[:57] + "..."
+    raise RuleError(f"{what} is of kind {kind}, not {shown}: write for example {_EXAMPLES[kind]}")
+
+
+def _loaded(kinds: Mapping[str, Kind], values: Mapping[str, Any]) -> dict[str, Value]:
+    return {
+        name: _as_loaded(kind, values[name]) for name, kind in kinds.items() if values.get(name) is not None
+    }
+
+
+def _as_loaded(kind: Kind, value: Any) -> Value:
+    if kind == "date":
+        return date.fromisoformat(value)
+    if kind == "time":
+        return datetime.fromisoformat(value)
+    return float(value) if kind == "number" else value
