@@ -54,6 +54,16 @@ def test_no_phrase_comes_twice_running_and_the_seed_decides() -> None:
     assert any(first != said(*["think"] * 20, seed=seed) for seed in range(2, 6))
 
 
+@pytest.mark.parametrize("seed", range(10))
+def test_nor_does_it_if_all_is_meant_in_one_instant(seed: int) -> None:
+    with simulate(verbaliser, seed=seed) as sim:
+        for _ in range(4):
+            sim.context.put(verbaliser.intent, "think")
+        sim.settle()
+    assert len(sim.said) == 4
+    assert all(one != next_one for one, next_one in pairwise(sim.said))
+
+
 def test_each_context_has_a_language() -> None:
     assert said("farewell", language="de-CH")[0] in ("Auf Wiedersehen!", "Bis bald!")
     assert said("farewell", language="fr")[0] in ("Goodbye!", "See you soon!")

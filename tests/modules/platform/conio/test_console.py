@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from ravestate.errors import PlatformError
-from ravestate.modules.platform.conio.console import Console, history_file
+from ravestate.modules.platform.conio.console import Console, history_file, prepare
 from ravestate.modules.platform.conio.pipes import Pipes
 
 ECHO = """
@@ -244,12 +244,27 @@ def test_a_reader_that_goes_is_a_clean_end(tmp_path: Path) -> None:
         assert run.wait() == 0
 
 
+@pytest.mark.parametrize("is_terminal", [True, False])
+def test_only_a_terminal_needs_preparation(monkeypatch: pytest.MonkeyPatch, is_terminal: bool) -> None:
+    class Stream(io.StringIO):
+        def isatty(self) -> bool:
+            return is_terminal
+
+    monkeypatch.setattr(sys, "stdin", Stream())
+    monkeypatch.setattr(sys, "stdout", Stream())
+    monkeypatch.delitem(sys.modules, "ravestate.modules.platform.conio.terminal", raising=False)
+    prepare()
+    assert ("ravestate.modules.platform.conio.terminal" in sys.modules) is is_terminal
+    monkeypatch.setitem(sys.modules, "prompt_toolkit", None)
+    monkeypatch.delitem(sys.modules, "ravestate.modules.platform.conio.terminal", raising=False)
+    prepare()  # without the package it is the console that complains
+
+
 @pytest.mark.skipif(os.name != "posix", reason="pseudo-terminals")
 @pytest.mark.parametrize(
     ("keys", "ending"), [(b"\x04", "end of input"), (b"\x03", "interrupt"), (b"bye\r", "None")]
 )
 def test_on_a_terminal(tmp_path: Path, keys: bytes, ending: str) -> None:
-    pytest.importorskip("prompt_toolkit")
     ours, theirs = os.openpty()
     history = tmp_path / "state" / "history"
     run = subprocess.Popen(

@@ -1,6 +1,7 @@
 """The console as a module: an agent that is talked to on a screen of ours."""
 
 import asyncio
+import threading
 from collections import deque
 from pathlib import Path
 from typing import Any
@@ -82,6 +83,14 @@ def keys(monkeypatch: pytest.MonkeyPatch) -> Keys:
     keys = Keys()
     monkeypatch.setattr(conio.rules, "Console", lambda **_: Console(keys))
     return keys
+
+
+def test_what_a_terminal_needs_is_loaded_off_the_loop(keys: Keys, monkeypatch: pytest.MonkeyPatch) -> None:
+    threads: list[threading.Thread] = []
+    monkeypatch.setattr(conio.rules, "prepare", lambda: threads.append(threading.current_thread()))
+    with simulate(parrot, conio):
+        pass
+    assert len(threads) == 1 and threads[0] is not threading.current_thread()
 
 
 def test_who_sits_there_is_present_and_heard(keys: Keys) -> None:

@@ -2,6 +2,7 @@
 
 import asyncio
 import json
+import subprocess
 import sys
 from collections.abc import Awaitable, Callable
 from contextlib import aclosing
@@ -13,8 +14,6 @@ from pydantic import SecretStr
 from ravestate.errors import PlatformError
 from ravestate.modules.skill.wildtalk.backend import Message
 from ravestate.modules.skill.wildtalk.openai import OpenAIBackend
-
-pytest.importorskip("httpx")
 
 HELLO = [Message("system", "Be kind."), Message("user", "Hello!")]
 Conversation = Callable[..., list[str]]
@@ -49,6 +48,30 @@ async def hello(talk: Any) -> None:
         await talk.piece(piece)
     await talk.piece(None, "stop")
     await talk.event("[DONE]")
+
+
+FIRST_REQUEST = """
+import asyncio, sys
+from ravestate.errors import PlatformError
+from ravestate.modules.skill.wildtalk.backend import Message
+from ravestate.modules.skill.wildtalk.openai import OpenAIBackend
+
+async def main():
+    backend = OpenAIBackend("http://127.0.0.1:9/v1", "x")
+    await backend.load()
+    before = set(sys.modules)
+    try:
+        await anext(backend.stream([Message("user", "Hello!")]))
+    except PlatformError:
+        print(*sorted(set(sys.modules) - before))
+
+asyncio.run(main())
+"""
+
+
+def test_all_is_imported_off_the_loop_before_the_first_request() -> None:
+    done = subprocess.run([sys.executable, "-c", FIRST_REQUEST], capture_output=True, text=True, check=True)
+    assert (done.stdout, done.stderr) == ("\n", "")
 
 
 def test_it_asks_and_yields_the_pieces(converse: Conversation) -> None:

@@ -14,7 +14,6 @@ class Terminal(io.StringIO):
 
 
 def test_a_bar_is_drawn_on_a_terminal_and_removed() -> None:
-    pytest.importorskip("tqdm")
     screen = Terminal()
     with ProgressBar("Loading", delay=0.0, stream=screen) as bar:
         for percent in range(0, 101, 10):

@@ -26,12 +26,10 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from importlib.resources.abc import Traversable
 from pathlib import Path
-from typing import TYPE_CHECKING
+
+import yaml
 
 from ravestate.errors import DeclarationError, PlatformError, RuleError, nearest
-
-if TYPE_CHECKING:
-    import yaml
 
 __all__ = ["Phrase", "PhraseBook", "Template"]
 
@@ -274,8 +272,6 @@ def _read(file: Path | Traversable) -> str:
 
 def _composed(name: str, text: str) -> yaml.Node | None:
     """The nodes of a YAML text, which know their lines. No value is made of them, so nothing can run."""
-    import yaml
-
     try:
         return yaml.compose(text, Loader=yaml.BaseLoader)
     except yaml.MarkedYAMLError as error:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import importlib
 import os
 import sys
 from collections.abc import AsyncIterator, Callable
@@ -12,7 +14,7 @@ from typing import Literal, Protocol, TextIO
 from ravestate.errors import PlatformError
 from ravestate.modules._text import printable, without_controls
 
-__all__ = ["Console", "Screen", "history_file"]
+__all__ = ["Console", "Screen", "history_file", "prepare"]
 
 Ending = Literal["end of input", "interrupt", "closed"]
 
@@ -167,8 +169,19 @@ class Console:
             self.ending = "closed"
 
 
+def prepare() -> None:
+    """Load what a `Console` on a terminal needs, which takes a while; on the event loop that would hold everybody up."""
+    if _is_terminal(sys.stdin, sys.stdout):
+        with contextlib.suppress(ImportError):  # the console says so
+            importlib.import_module(".terminal", __package__)
+
+
+def _is_terminal(stdin: TextIO | None, stdout: TextIO | None) -> bool:
+    return stdin is not None and stdout is not None and stdin.isatty() and stdout.isatty()
+
+
 def _screen(prompt: str, history: Path | None, stdin: TextIO | None, stdout: TextIO | None) -> Screen:
-    if stdin is not None and stdout is not None and stdin.isatty() and stdout.isatty():
+    if _is_terminal(stdin, stdout):
         try:
             from .terminal import Terminal
         except ImportError as error:

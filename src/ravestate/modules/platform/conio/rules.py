@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import asyncio
+
 import ravestate as rs
 from ravestate.modules import interloc, rawio
 
 from . import module, screen
-from .console import Console, history_file
+from .console import Console, history_file, prepare
 
 USER = "conio"
 """The key of whoever sits at the console, among the users."""
@@ -20,6 +22,7 @@ USER = "conio"
 )
 async def listen(ctx: rs.RuleContext) -> None:
     """Hear each line that is typed; end the agent when there are no more."""
+    await asyncio.to_thread(prepare)
     console = Console(prompt=ctx.settings.prompt, history=history_file() if ctx.settings.history else None)
     async with console:
         ctx[screen] = console

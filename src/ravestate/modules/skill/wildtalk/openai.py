@@ -164,6 +164,7 @@ class OpenAIBackend:
 
     def _make_client(self) -> httpx.AsyncClient:
         try:
+            import anyio
             import httpx
         except ImportError as error:
             raise PlatformError(
@@ -173,6 +174,7 @@ class OpenAIBackend:
             raise PlatformError(
                 "wildtalk: api_key has characters that no key has: check the environment variable it is read from"
             )
+        anyio.run(anyio.sleep, 0)  # loads what the client would load at its first request, on the loop
         host = self._place.partition("://")[2]
         here = host.startswith(("localhost", "127.", "[::1]"))
         return httpx.AsyncClient(

@@ -12,6 +12,8 @@ from . import Settings, history, model, module
 from .backend import Backend, Message, Role
 from .facts import asks_for_fact
 from .history import History
+from .llama import LlamaBackend
+from .openai import OpenAIBackend
 from .progress import ProgressBar
 from .utterance import Utterance
 
@@ -137,8 +139,6 @@ def make_backend(settings: Settings) -> Backend:
         PlatformError: The address of the server is none.
     """
     if settings.backend == "openai":
-        from .openai import OpenAIBackend
-
         return OpenAIBackend(
             settings.base_url,
             settings.model,
@@ -146,8 +146,6 @@ def make_backend(settings: Settings) -> Backend:
             connect_timeout=settings.connect_timeout,
             read_timeout=settings.read_timeout,
         )
-    from .llama import LlamaBackend
-
     return LlamaBackend(
         settings.model_path,
         context_tokens=settings.context_tokens,
