@@ -69,6 +69,20 @@ def test_it_needs_no_module() -> None:
     assert parser.parse_args([]).modules == []
 
 
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no device that is always full")
+def test_what_cannot_be_written_is_a_failure() -> None:
+    command = [str(Path(sys.executable).parent / "ravestate"), "chat", "--without", "wildtalk"]
+    with Path("/dev/full").open("w") as full:
+        run = subprocess.run(
+            command, input="hello\n", stdout=full, stderr=subprocess.PIPE, text=True, timeout=60, check=False
+        )
+    assert run.returncode == 1
+    assert (
+        "ravestate chat: conio: what the agent says cannot be written: No space left on device\n"
+        in run.stderr
+    )
+
+
 def test_a_pipe_is_answered_and_ends_it() -> None:
     command = [str(Path(sys.executable).parent / "ravestate"), "chat", "--without", "wildtalk"]
     run = subprocess.run(

@@ -112,6 +112,24 @@ def test_an_interrupt_ends_a_server_in_order() -> None:
     assert ends == ["stay"]
 
 
+def test_a_rule_may_say_that_it_cannot_go_on() -> None:
+    m = rs.Module("m")
+    told: list[str] = []
+
+    @m.rule(when=rs.startup)
+    async def leave(ctx: rs.RuleContext) -> None:
+        ctx.stop(rs.PlatformError("the robot is gone"))
+        ctx.stop()
+
+    @m.rule(when=rs.shutdown)
+    async def end(ctx: rs.RuleContext) -> None:
+        told.append("end")
+
+    with pytest.raises(rs.PlatformError, match="the robot is gone"):
+        rs.run(m)
+    assert told == ["end"]
+
+
 def leaver(*requires: rs.Module) -> rs.Module:
     m = rs.Module("m", requires=requires)
 

@@ -141,6 +141,7 @@ class Context:
         """Wait until a rule (``ctx.stop()``) or somebody outside has asked the context to end.
 
         Raises:
+            RavestateError: What a rule has given as the reason (``ctx.stop(failure)``).
             EngineError: The engine has failed, which is a fault of this library's.
         """
         runner = self._running()

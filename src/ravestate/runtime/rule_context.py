@@ -13,7 +13,7 @@ from ravestate.declare.signal import Signal
 from ravestate.declare.slot import Collection, Slot
 from ravestate.declare.wording import spelt
 from ravestate.engine.events import Discard, Emit, Store, Wipe, Write
-from ravestate.errors import RuleError, RunEnded, UndeclaredError, nearest
+from ravestate.errors import RavestateError, RuleError, RunEnded, UndeclaredError, nearest
 
 if TYPE_CHECKING:
     from ravestate.engine.effects import Run
@@ -147,8 +147,13 @@ class RuleContext:
         """Wait until no rule, apart from those in the background, runs or is kept waiting."""
         await self._runner.quiet()
 
-    def stop(self) -> None:
-        """Ask the context to end: ``rs.shutdown`` is raised, and what runs is cancelled after it."""
+    def stop(self, failure: RavestateError | None = None) -> None:
+        """Ask the context to end: ``rs.shutdown`` is raised, and what runs is cancelled after it.
+
+        Args:
+            failure: Why it cannot go on, where that is no end in order; ``rs.run`` raises it when all has ended.
+        """
+        self._runner.fault = self._runner.fault or failure
         self._runner.ask_to_stop()
 
     @property

@@ -18,7 +18,7 @@ from ravestate.declare.rule import Rule
 from ravestate.engine.effects import Cancel, Effect, Ended, Failed, Run, Spiked
 from ravestate.engine.engine import Engine
 from ravestate.engine.events import AddRule, Event, Finish
-from ravestate.errors import EngineError, PlatformError, RuleError
+from ravestate.errors import EngineError, PlatformError, RavestateError, RuleError
 from ravestate.runtime.clock import Clock
 from ravestate.runtime.journal import Taken
 from ravestate.runtime.nest import Nest
@@ -91,8 +91,8 @@ class Runner:
         self._last_run = ""
         self.on_endless: Callable[[str], None] | None = None
         """Told of the rule that ran last when an instant does not end (in virtual time, where it would stand still)."""
-        self.fault: EngineError | None = None
-        """Why the engine is of no more use, if it has failed itself, which is a fault of this library's."""
+        self.fault: RavestateError | None = None
+        """Why the context cannot go on: a rule has said so, or the engine itself has failed."""
         self._timer: asyncio.TimerHandle | None = None
         self._timer_due = 0.0
         self._contexts: dict[int, RuleContext] = {}

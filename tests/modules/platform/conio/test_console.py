@@ -1,6 +1,7 @@
 """The console as an agent sees it, on a screen of ours, on real pipes and on a real terminal."""
 
 import asyncio
+import errno
 import io
 import os
 import subprocess
@@ -220,6 +221,21 @@ def test_through_pipes(tmp_path: Path) -> None:
     assert run.stdout.decode().splitlines() == [line for first in said for line in (first, question)]
     assert run.stderr.decode() == "ending: end of input\n"
     assert not (tmp_path / "history").exists()
+
+
+def test_a_disk_that_is_full_is_a_failure_and_a_broken_pipe_is_none() -> None:
+    async def ended_by(error: OSError) -> PlatformError | None:
+        script = Script("hello")
+        script.broken = error
+        async with Console(script) as console:
+            console.write("hello")
+            assert [line async for line in console] == []
+            assert console.ending == "closed"
+            return console.failure
+
+    assert asyncio.run(ended_by(BrokenPipeError(errno.EPIPE, "Broken pipe"))) is None
+    failure = asyncio.run(ended_by(OSError(errno.ENOSPC, "No space left on device")))
+    assert str(failure) == "conio: what the agent says cannot be written: No space left on device"
 
 
 @pytest.mark.skipif(os.name != "posix", reason="pipes of the shell")

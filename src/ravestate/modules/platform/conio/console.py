@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import errno
 import importlib
 import os
 import sys
@@ -15,6 +16,8 @@ from ravestate.errors import PlatformError
 from ravestate.modules._text import printable, without_controls
 
 __all__ = ["Console", "Screen", "history_file", "prepare"]
+
+_FULL = (errno.ENOSPC, errno.EFBIG, errno.EDQUOT)
 
 Ending = Literal["end of input", "interrupt", "closed"]
 
@@ -93,6 +96,8 @@ class Console:
         self._line_is_open = False
         self.ending: Ending | None = None
         """Why the iteration ended: end of input (Ctrl-D), interrupt (Ctrl-C), or closed (by whoever reads)."""
+        self.failure: PlatformError | None = None
+        """Why nothing more can be written, where that is not because nobody reads."""
 
     @property
     def interactive(self) -> bool:
@@ -165,8 +170,12 @@ class Console:
             return
         try:
             write()
-        except (OSError, ValueError):  # a broken pipe, a closed file
+        except (OSError, ValueError) as error:  # mostly a broken pipe, a closed file
             self.ending = "closed"
+            if isinstance(error, OSError) and error.errno in _FULL:
+                self.failure = PlatformError(
+                    f"conio: what the agent says cannot be written: {error.strerror}"
+                )
 
 
 def prepare() -> None:

@@ -41,7 +41,7 @@ async def listen(ctx: rs.RuleContext) -> None:
             await ctx.quiet()  # a farewell
         finally:
             ctx[screen] = None
-            ctx.stop()
+            ctx.stop(console.failure)
 
 
 @module.rule(when=rawio.output.changed.max_age(None).detached(), reads=screen)
