@@ -1,0 +1,265 @@
+"""Small talk by a causal model in the format of Hugging Face's transformers: GPT-2 and its many successors.
+
+Slower and ten times heavier than a GGUF file run by llama.cpp; for models that there is no such file of, and for models of
+one's own.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import threading
+from collections.abc import AsyncGenerator, Callable, Sequence
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any, ClassVar, cast
+from weakref import WeakValueDictionary
+
+from ravestate.errors import PlatformError
+
+from .backend import Message, Progress
+
+__all__ = ["TransformersBackend", "cut", "transcript"]
+
+ANSWERS = "Agent:"
+"""Begins the line that a model without a chat template is to go on with."""
+
+SPEAKERS = {"user": "User:", "assistant": ANSWERS}
+
+
+class TransformersBackend:
+    """Runs a causal model in a thread of this process; contexts with the same model share it.
+
+    Example:
+        ::
+
+            backend = TransformersBackend("gpt2")
+            async for piece in backend.stream([Message("user", "Hello!")]):
+                print(piece, end="", flush=True)
+    """
+
+    def __init__(self, model: str, *, read_timeout: float = 60.0) -> None:
+        """Nothing is looked for or loaded yet.
+
+        Args:
+            model: A folder with a model, or a model's name on the hub, from which it is fetched once.
+            read_timeout: Seconds without a word after which the model counts as stuck.
+        """
+        self._name = model
+        self._read_timeout = read_timeout
+        self._model: _Model | None = None
+
+    async def load(self, progress: Progress | None = None) -> None:
+        """See `Backend.load`. The library tells nothing of its progress but the end."""
+        if self._model is None:
+            self._model = await asyncio.to_thread(_Model.shared, self._name)
+        if progress is not None:
+            progress(1.0)
+
+    async def close(self) -> None:
+        """Let go of the model; it is freed with its last user."""
+        self._model = None
+
+    async def stream(
+        self,
+        messages: Sequence[Message],
+        *,
+        max_tokens: int = 96,
+        temperature: float = 0.7,
+        seed: int | None = None,
+        stop: Sequence[str] = (),
+    ) -> AsyncGenerator[str, None]:
+        """See `Backend.stream`. A model without a chat template is given a transcript to go on with."""
+        await self.load()
+        model = self._model
+        assert model is not None  # it has been loaded
+        loop = asyncio.get_running_loop()
+        pieces: asyncio.Queue[str | BaseException | None] = asyncio.Queue()
+        left = threading.Event()
+
+        def tell(piece: str | BaseException | None) -> None:
+            try:
+                loop.call_soon_threadsafe(pieces.put_nowait, piece)
+            except RuntimeError:  # the loop is closed: nobody listens any more
+                left.set()
+
+        prompt, ends = model.prompt(messages)
+        arguments = (prompt, max_tokens, temperature, seed, tell, left)
+        threading.Thread(target=model.write, args=arguments, name="ravestate-model", daemon=True).start()
+        stops = (*stop, *ends)
+        written, shown = "", 0
+        try:
+            while True:
+                try:
+                    piece = await asyncio.wait_for(pieces.get(), self._read_timeout)
+                except TimeoutError:
+                    raise PlatformError(
+                        f"wildtalk: the model {self._name!r} wrote nothing for {self._read_timeout:g} s: give it more time "
+                        "(--set wildtalk.read_timeout=300) or take a smaller one"
+                    ) from None
+                if isinstance(piece, BaseException):
+                    raise PlatformError(f"wildtalk: the model {self._name!r} failed: {piece}") from piece
+                written += piece or ""
+                safe, over = cut(written, stops, last=piece is None)
+                if safe[shown:]:
+                    yield safe[shown:]
+                    shown = len(safe)
+                if over or piece is None:
+                    return
+        finally:
+            left.set()
+
+
+class _Model:
+    """A model and its tokenizer, in memory once however many contexts use it."""
+
+    _loaded: ClassVar[WeakValueDictionary[str, _Model]] = WeakValueDictionary()
+    _loading = threading.Lock()
+
+    def __init__(self, name: str) -> None:
+        if missing := [package for package in ("torch", "transformers") if find_spec(package) is None]:
+            raise PlatformError(
+                f"wildtalk needs {' and '.join(missing)} for this model: pip install 'ravestate[transformers]'"
+            )
+        import transformers
+
+        library = cast("Any", transformers)
+        library.utils.logging.disable_progress_bar()
+        logging.getLogger("transformers").setLevel(logging.ERROR)
+        folder = Path(name).expanduser()
+        place = str(folder) if folder.is_dir() else name
+        try:
+            self.tokenizer: Any = library.AutoTokenizer.from_pretrained(place)
+            self.model: Any = library.AutoModelForCausalLM.from_pretrained(place)
+        except Exception as error:  # the library raises whatever its many parts raise
+            raise PlatformError(
+                f"wildtalk: the model {name!r} cannot be loaded: {_first_line(error)}. Name a folder that holds one, or "
+                "a model's name on the hub: --set wildtalk.model=gpt2"
+            ) from error
+        import torch
+
+        self.model.eval().to("cuda" if torch.cuda.is_available() else "cpu")
+        self._writing = threading.Lock()
+
+    @classmethod
+    def shared(cls, name: str) -> _Model:
+        """The model of a name: loaded, if nobody has it."""
+        with cls._loading:
+            found = cls._loaded.get(name)
+            if found is None:
+                found = cls._loaded[name] = cls(name)
+            return found
+
+    def prompt(self, messages: Sequence[Message]) -> tuple[str, tuple[str, ...]]:
+        """What the model is to go on with, and the texts by which its answer ends."""
+        if self.tokenizer.chat_template is None:
+            return transcript(messages), ("\n",)
+        turns = [{"role": message.role, "content": message.text} for message in messages]
+        return self.tokenizer.apply_chat_template(turns, add_generation_prompt=True, tokenize=False), ()
+
+    def write(
+        self,
+        prompt: str,
+        max_tokens: int,
+        temperature: float,
+        seed: int | None,
+        tell: Callable[[str | BaseException | None], None],
+        left: threading.Event,
+    ) -> None:
+        """Write an answer, in a thread: tell each piece, then None, or what has gone wrong."""
+        try:
+            self._write(prompt, max_tokens, temperature, seed, tell, left)
+            tell(None)
+        except Exception as error:  # of whatever part of the library: told to who waits
+            tell(error)
+
+    def _write(
+        self,
+        prompt: str,
+        max_tokens: int,
+        temperature: float,
+        seed: int | None,
+        tell: Callable[[str | BaseException | None], None],
+        left: threading.Event,
+    ) -> None:
+        import torch as real_torch
+        import transformers
+
+        library, torch = cast("Any", transformers), cast("Any", real_torch)
+
+        class Teller(library.TextStreamer):
+            def on_finalized_text(self, text: str, stream_end: bool = False) -> None:
+                tell(text)
+
+        class Left(library.StoppingCriteria):
+            def __call__(self, input_ids: Any, scores: Any, **_: Any) -> Any:
+                return torch.full((input_ids.shape[0],), left.is_set(), dtype=torch.bool)
+
+        tokens: Any = self.tokenizer(prompt, return_tensors="pt", add_special_tokens=False).to(
+            self.model.device
+        )
+        room = getattr(self.model.config, "max_position_embeddings", 0) or 0
+        if room:
+            tokens = {key: value[:, -max(1, room - max_tokens) :] for key, value in tokens.items()}
+        sampling = (
+            {"do_sample": True, "temperature": temperature} if temperature > 0 else {"do_sample": False}
+        )
+        # One answer at a time: two would be no faster, and the library's random numbers are those of the whole process.
+        with self._writing:
+            if left.is_set():
+                return
+            if seed is not None:
+                torch.manual_seed(seed)
+            with torch.inference_mode():
+                self.model.generate(
+                    **tokens,
+                    **sampling,
+                    max_new_tokens=max_tokens,
+                    repetition_penalty=1.1,
+                    pad_token_id=self.tokenizer.pad_token_id or self.tokenizer.eos_token_id,
+                    streamer=Teller(self.tokenizer, skip_prompt=True, skip_special_tokens=True),
+                    stopping_criteria=library.StoppingCriteriaList([Left()]),
+                )
+
+
+def transcript(messages: Sequence[Message]) -> str:
+    """A conversation as text, for models that know nothing of turns.
+
+    Example:
+        >>> print(transcript([Message("system", "A talk."), Message("user", "Hello!")]))
+        A talk.
+        <BLANKLINE>
+        User: Hello!
+        Agent:
+    """
+    lines: list[str] = []
+    for message in messages:
+        text = " ".join(message.text.split())
+        lines.append(f"{SPEAKERS[message.role]} {text}" if message.role in SPEAKERS else f"{text}\n")
+    return "\n".join([*lines, ANSWERS])
+
+
+def cut(text: str, stops: Sequence[str], *, last: bool) -> tuple[str, bool]:
+    """What of a growing text may be shown, and whether one of `stops` has ended it.
+
+    As long as it is not the `last`, an end that might become a stop is held back.
+
+    Example:
+        >>> cut("Hello.\\nUser", ["\\nUser:"], last=False)
+        ('Hello.', False)
+        >>> cut("Hello.\\nUser: Hm", ["\\nUser:"], last=False)
+        ('Hello.', True)
+    """
+    begun = len(text) - len(text.lstrip())  # models begin with a space, or with an empty line
+    ends = [text.index(stop, begun) for stop in stops if stop in text[begun:]]
+    if ends:
+        return text[: min(ends)], True
+    held = 0
+    if not last:
+        for stop in stops:
+            held = max([held, *(size for size in range(1, len(stop)) if text.endswith(stop[:size]))])
+    return text[: len(text) - held], False
+
+
+def _first_line(error: BaseException) -> str:
+    return (str(error).strip().splitlines() or [type(error).__name__])[0].rstrip(".")

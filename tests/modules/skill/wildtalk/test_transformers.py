@@ -1,0 +1,271 @@
+"""Causal models of transformers: a tiny one, with random weights, made here; the library, its format and its hub are real."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import json
+import os
+import subprocess
+import sys
+import threading
+from collections.abc import Iterator
+from contextlib import aclosing
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from ravestate.errors import PlatformError
+from ravestate.modules.skill.wildtalk import transformers as file
+from ravestate.modules.skill.wildtalk.backend import Message
+from ravestate.modules.skill.wildtalk.transformers import TransformersBackend, cut, transcript
+
+TALK = [Message("system", "You are a robot."), Message("user", "Hello!\nHow are you?")]
+TEMPLATE = "{% for m in messages %}[{{ m.role }}]{{ m.content }}{% endfor %}[assistant]"
+
+
+@pytest.fixture(scope="session")
+def tiny(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with a GPT-2 of two small layers and a tokenizer of bytes, as the library saves them."""
+    from tokenizers import Tokenizer, decoders, models, pre_tokenizers
+    from transformers import GPT2Config, GPT2LMHeadModel, PreTrainedTokenizerFast
+
+    folder = tmp_path_factory.mktemp("models") / "tiny"
+    alphabet = sorted(pre_tokenizers.ByteLevel.alphabet())
+    vocabulary = {token: number for number, token in enumerate(["<end>", *alphabet])}
+    tokenizer = Tokenizer(models.BPE(vocab=vocabulary, merges=[]))
+    tokenizer.pre_tokenizer = pre_tokenizers.ByteLevel(add_prefix_space=False)
+    tokenizer.decoder = decoders.ByteLevel()
+    PreTrainedTokenizerFast(tokenizer_object=tokenizer, eos_token="<end>").save_pretrained(folder)
+    sizes: dict[str, Any] = {
+        "vocab_size": len(vocabulary),
+        "n_positions": 128,
+        "n_embd": 32,
+        "n_layer": 2,
+        "n_head": 2,
+    }
+    GPT2LMHeadModel(GPT2Config(**sizes, bos_token_id=0, eos_token_id=0)).save_pretrained(folder)
+    return folder
+
+
+async def answer(backend: TransformersBackend, **options: Any) -> list[str]:
+    async with aclosing(backend.stream(TALK, **{"max_tokens": 24, "seed": 1, **options})) as pieces:
+        return [piece async for piece in pieces]
+
+
+def test_the_answer_comes_in_pieces_and_the_same_seed_gives_it_again(tiny: Path) -> None:
+    async def story() -> tuple[list[str], list[str], list[str]]:
+        backend = TransformersBackend(str(tiny))
+        return await answer(backend), await answer(backend), await answer(backend, seed=2)
+
+    first, again, other = asyncio.run(story())
+    assert "".join(first) == "".join(again) != "".join(other)
+    assert "\n" not in "".join(first).strip()
+
+
+def test_a_model_with_a_chat_template_is_given_the_turns_in_it(tiny: Path, tmp_path: Path) -> None:
+    folder = tmp_path / "chatty"
+    folder.mkdir()
+    for part in tiny.iterdir():
+        (folder / part.name).write_bytes(part.read_bytes())
+    (folder / "chat_template.jinja").write_text(TEMPLATE)
+
+    async def story() -> tuple[Any, Any]:
+        plain, chatty = TransformersBackend(str(tiny)), TransformersBackend(str(folder))
+        await plain.load()
+        await chatty.load()
+        assert plain._model is not None
+        assert chatty._model is not None
+        return plain._model.prompt(TALK), chatty._model.prompt(TALK)
+
+    assert asyncio.run(story()) == (
+        ("You are a robot.\n\nUser: Hello! How are you?\nAgent:", ("\n",)),
+        ("[system]You are a robot.[user]Hello!\nHow are you?[assistant]", ()),
+    )
+
+
+def test_contexts_share_a_model_until_the_last_lets_go_of_it(tiny: Path) -> None:
+    async def story() -> None:
+        one, other = TransformersBackend(str(tiny)), TransformersBackend(str(tiny))
+        done: list[float] = []
+        await one.load(done.append)
+        await other.load()
+        assert done == [1.0]
+        assert one._model is other._model is not None
+        await one.close()
+        assert str(tiny) in file._Model._loaded
+        await other.close()
+        await other.close()
+
+    asyncio.run(story())
+    assert str(tiny) not in file._Model._loaded
+
+
+def test_a_conversation_longer_than_the_model_remembers_is_cut_at_its_beginning(tiny: Path) -> None:
+    long = [Message("user", "word " * 4000)]
+
+    async def story() -> str:
+        backend = TransformersBackend(str(tiny))
+        return "".join([piece async for piece in backend.stream(long, max_tokens=16, seed=1)])
+
+    assert len(asyncio.run(story())) <= 16
+
+
+def test_who_leaves_stops_the_model(tiny: Path) -> None:
+    async def story() -> list[str]:
+        backend = TransformersBackend(str(tiny))
+        pieces = backend.stream(TALK, max_tokens=100_000, temperature=1.0, seed=1)
+        with contextlib.suppress(StopAsyncIteration):
+            await anext(pieces)
+        await pieces.aclose()
+        return await answer(backend)  # which waits for nobody
+
+    asyncio.run(story())
+    for thread in threading.enumerate():
+        if thread.name == "ravestate-model":
+            thread.join(timeout=20)
+            assert not thread.is_alive()
+
+
+@pytest.mark.parametrize("name", ["/no/such/folder", "no such name"])
+def test_a_model_that_cannot_be_had_is_named_with_the_mend(name: str) -> None:
+    with pytest.raises(PlatformError, match=r"cannot be loaded.*--set wildtalk\.model=gpt2"):
+        asyncio.run(TransformersBackend(name).load())
+
+
+def test_a_broken_model_is_named(tiny: Path, tmp_path: Path) -> None:
+    for part in tiny.iterdir():
+        (tmp_path / part.name).write_bytes(part.read_bytes())
+    (tmp_path / "model.safetensors").write_bytes(b"nonsense")
+    with pytest.raises(PlatformError, match="cannot be loaded"):
+        asyncio.run(TransformersBackend(str(tmp_path)).load())
+
+
+def test_packages_that_are_missing_are_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(file, "find_spec", lambda _: None)
+    with pytest.raises(PlatformError, match=r"needs torch and transformers.*ravestate\[transformers\]"):
+        asyncio.run(TransformersBackend("gpt2").load())
+
+
+def test_a_model_that_stalls_or_fails_is_told(tiny: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    async def story() -> None:
+        backend = TransformersBackend(str(tiny), read_timeout=0.05)
+        await backend.load()
+        monkeypatch.setattr(file._Model, "write", lambda *_: None)
+        with pytest.raises(PlatformError, match=r"wrote nothing for 0\.05 s"):
+            await answer(backend)
+        monkeypatch.undo()
+
+        def fail(*_: Any) -> None:
+            raise RuntimeError("out of memory")
+
+        monkeypatch.setattr(file._Model, "_write", fail)
+        with pytest.raises(PlatformError, match="failed: out of memory"):
+            await answer(backend)
+
+    asyncio.run(story())
+
+
+@contextlib.contextmanager
+def hub(folder: Path) -> Iterator[str]:
+    """A hub with one model, ``someone/tiny``: what the library asks a hub when it fetches a model."""
+    commit = "0" * 40
+
+    class Handler(BaseHTTPRequestHandler):
+        def do_HEAD(self) -> None:
+            self.give(body=False)
+
+        def do_GET(self) -> None:
+            self.give(body=True)
+
+        def give(self, *, body: bool) -> None:
+            path = self.path.split("?")[0]
+            names = sorted(part.name for part in folder.iterdir())
+            if path.startswith("/api/models/someone/tiny/tree"):
+                listed = [
+                    {"type": "file", "path": n, "size": (folder / n).stat().st_size, "oid": n} for n in names
+                ]
+                return self.send(json.dumps(listed).encode(), body=body)
+            if path.startswith("/api/models/someone/tiny"):
+                told = {"id": "someone/tiny", "sha": commit, "siblings": [{"rfilename": n} for n in names]}
+                return self.send(json.dumps(told).encode(), body=body)
+            name = path.rsplit("/", 1)[-1]
+            if path.startswith("/someone/tiny/resolve/") and name in names:
+                return self.send((folder / name).read_bytes(), body=body, etag=f'"{name}"')
+            return self.send(b"", body=body, status=404)
+
+        def send(self, content: bytes, *, body: bool, status: int = 200, etag: str = "") -> None:
+            self.send_response(status)
+            self.send_header("Content-Length", str(len(content)))
+            self.send_header("X-Repo-Commit", commit)
+            if etag:
+                self.send_header("ETag", etag)
+            elif status == 404:
+                self.send_header("X-Error-Code", "EntryNotFound")
+            self.end_headers()
+            if body:
+                self.wfile.write(content)
+
+        def log_message(self, *_: Any) -> None:
+            """Say nothing."""
+
+    server = ThreadingHTTPServer(("127.0.0.1", 0), Handler)
+    thread = threading.Thread(target=server.serve_forever)
+    thread.start()
+    try:
+        yield f"http://127.0.0.1:{server.server_port}"
+    finally:
+        server.shutdown()
+        thread.join()
+        server.server_close()
+
+
+def test_a_model_is_fetched_from_a_hub_once(tiny: Path, tmp_path: Path) -> None:
+    program = (
+        "import asyncio\n"
+        "from ravestate.modules.skill.wildtalk.transformers import TransformersBackend\n"
+        "asyncio.run(TransformersBackend('someone/tiny').load())\n"
+        "print('loaded')\n"
+    )
+
+    def load(**variables: str) -> subprocess.CompletedProcess[str]:
+        environment = {**os.environ, "HF_HOME": str(tmp_path), **variables}
+        return subprocess.run(
+            [sys.executable, "-c", program],
+            env=environment,
+            capture_output=True,
+            text=True,
+            timeout=120,
+            check=False,
+        )
+
+    with hub(tiny) as address:
+        fetched = load(HF_ENDPOINT=address)
+    assert fetched.stdout == "loaded\n", fetched.stderr
+    kept = load(HF_HUB_OFFLINE="1")
+    assert kept.stdout == "loaded\n", kept.stderr
+
+
+def test_a_transcript_has_a_line_for_each_turn() -> None:
+    past = [*TALK, Message("assistant", "Fine."), Message("user", "Good.")]
+    assert (
+        transcript(past) == "You are a robot.\n\nUser: Hello! How are you?\nAgent: Fine.\nUser: Good.\nAgent:"
+    )
+
+
+@pytest.mark.parametrize(
+    ("text", "last", "expected"),
+    [
+        ("Hello", False, ("Hello", False)),
+        ("Hello\n", False, ("Hello", True)),
+        ("\n Hello", False, ("\n Hello", False)),  # an empty line before the answer does not end it
+        ("Hello [e", False, ("Hello ", False)),
+        ("Hello [e", True, ("Hello [e", False)),
+        ("Hello [end] you", False, ("Hello ", True)),
+        ("", True, ("", False)),
+    ],
+)
+def test_an_answer_is_cut_where_it_ends(text: str, last: bool, expected: tuple[str, bool]) -> None:
+    assert cut(text, ["\n", "[end]"], last=last) == expected
