@@ -14,16 +14,28 @@ from ravestate.errors import nearest
 
 if TYPE_CHECKING:
     from ravestate.modules.meta import idle, verbaliser
-    from ravestate.modules.modality import interloc, rawio
+    from ravestate.modules.modality import emotion, interloc, rawio
     from ravestate.modules.platform import conio
     from ravestate.modules.skill import fillers, hibye, wildtalk
 
-__all__ = ["BUILT_IN", "conio", "fillers", "hibye", "idle", "interloc", "rawio", "verbaliser", "wildtalk"]
+__all__ = [
+    "BUILT_IN",
+    "conio",
+    "emotion",
+    "fillers",
+    "hibye",
+    "idle",
+    "interloc",
+    "rawio",
+    "verbaliser",
+    "wildtalk",
+]
 
 BUILT_IN = {
     "conio": "platform",
     "rawio": "modality",
     "interloc": "modality",
+    "emotion": "modality",
     "idle": "meta",
     "verbaliser": "meta",
     "hibye": "skill",

@@ -1,0 +1,22 @@
+"""How feelings look in text."""
+
+from __future__ import annotations
+
+import random
+
+from .feeling import Feeling
+
+__all__ = ["EMOJI", "emoji_for"]
+
+EMOJI: dict[Feeling, tuple[str, ...]] = {
+    "shy": ("😳", "🙈", "☺️"),
+    "surprised": ("😮", "😲", "😯"),
+    "happy": ("😄", "😀", "😊"),
+    "affectionate": ("🤗", "🥰", "💕"),
+}
+"""The emoji of each feeling."""
+
+
+def emoji_for(feeling: Feeling, rng: random.Random) -> str:
+    """Choose an emoji for a feeling."""
+    return rng.choice(EMOJI[feeling])

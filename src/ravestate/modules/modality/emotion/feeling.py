@@ -1,0 +1,12 @@
+"""The feelings there are."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+__all__ = ["FEELINGS", "Feeling"]
+
+Feeling = Literal["shy", "surprised", "happy", "affectionate"]
+"""The name of a feeling, which is also that of its signal."""
+
+FEELINGS: tuple[Feeling, ...] = ("shy", "surprised", "happy", "affectionate")

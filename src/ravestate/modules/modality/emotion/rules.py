@@ -1,0 +1,69 @@
+"""When the agent feels something, and how that shows in text."""
+
+from __future__ import annotations
+
+import ravestate as rs
+from ravestate.modules import rawio
+
+from . import Settings, affectionate, felt, happy, module, shy, surprised
+from .chance import by_chance
+from .emoji import emoji_for
+from .feeling import FEELINGS, Feeling
+from .recogniser import recognise
+
+SIGNALS: dict[Feeling, rs.Signal[None]] = {
+    "shy": shy,
+    "surprised": surprised,
+    "happy": happy,
+    "affectionate": affectionate,
+}
+
+
+@module.rule(when=rawio.input.changed, emits=SIGNALS.values())
+def be_moved(ctx: rs.RuleContext) -> None:
+    """Feel what the user's words ask for, or else something of one's own. In a thread: a lexicon may have to be read."""
+    settings: Settings = ctx.settings
+    heard = ctx.payload(rawio.input.changed)
+    feeling = recognise(heard, settings.names)
+    if feeling is None:
+        likely: dict[Feeling, float] = {name: getattr(settings, name) for name in FEELINGS}
+        feeling = by_chance(heard, likely, ctx.random, settings.names)
+    if feeling is not None:
+        ctx.emit(SIGNALS[feeling])
+
+
+def note(feeling: Feeling) -> None:
+    """Declare the rule that writes down a feeling, whoever raised it."""
+
+    @module.rule(
+        when=SIGNALS[feeling].max_age(None).detached(),
+        writes=felt,
+        detached=True,
+        background=True,
+        name=f"feel_{feeling}",
+    )
+    async def feel(ctx: rs.RuleContext) -> None:
+        ctx[felt] = feeling
+
+
+for each in FEELINGS:
+    note(each)
+
+
+@module.rule(
+    when=felt.changed.max_age(
+        None
+    ).detached(),  # an answer to the same words is a write of its own (L10, L19)
+    writes=rawio.output,
+    until=rawio.input.changed | felt.changed,  # the moment is past; or a later feeling is the one to show
+    detached=True,
+    background=True,
+)
+async def show(ctx: rs.RuleContext) -> rs.Resign | None:
+    """Show the feeling as an emoji, behind the answer that is being given."""
+    if not ctx.settings.emoji:
+        return rs.Resign("emotion.emoji is off")
+    feeling = ctx.payload(felt.changed)
+    await ctx.quiet()
+    ctx[rawio.output] = emoji_for(feeling, ctx.random)
+    return None
