@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from ravestate.errors import nearest
 
 if TYPE_CHECKING:
-    from ravestate.modules.meta import idle, verbaliser
+    from ravestate.modules.meta import idle, nlp, ontology, verbaliser
     from ravestate.modules.modality import emotion, interloc, rawio
     from ravestate.modules.platform import conio
     from ravestate.modules.skill import fillers, hibye, wildtalk
@@ -26,6 +26,8 @@ __all__ = [
     "hibye",
     "idle",
     "interloc",
+    "nlp",
+    "ontology",
     "rawio",
     "verbaliser",
     "wildtalk",
@@ -37,6 +39,8 @@ BUILT_IN = {
     "interloc": "modality",
     "emotion": "modality",
     "idle": "meta",
+    "nlp": "meta",
+    "ontology": "meta",
     "verbaliser": "meta",
     "hibye": "skill",
     "fillers": "skill",

@@ -1,0 +1,71 @@
+"""All that is seen in a text."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from .entity import Entity
+from .intents import says_bye, says_hi, wants_to_play
+from .pipeline import Pipeline
+from .inquiry import question_of
+from .question_word import QuestionWord
+from .tree import Tree
+from .triple import Triple
+from .statements import triples_of
+from .answer import YesNo, yesno_of
+
+__all__ = ["Analysis", "analyse"]
+
+_SECOND_PERSON = frozenset("you your yours yourself u ur".split())
+
+
+@dataclass(frozen=True, slots=True)
+class Analysis:
+    """What the module makes of a text. The README says what each part means."""
+
+    tree: Tree
+    entities: tuple[Entity, ...]
+    triples: tuple[Triple, ...]
+    yesno: YesNo
+    question: QuestionWord | None
+    about_agent: bool
+    intent_play: bool
+    intent_hi: bool
+    intent_bye: bool
+
+
+def analyse(text: str, pipeline: Pipeline, agent_names: Iterable[str] = ()) -> Analysis:
+    """Return all that is seen in `text`. Blocks for some milliseconds.
+
+    Args:
+        text: Anything; of a long text only the beginning is looked at.
+        pipeline: Reads it. It is loaded at the first call, which takes about a second.
+        agent_names: A text that has one of them is about the agent, whatever its case.
+
+    Raises:
+        PlatformError: spaCy or the pipeline is missing.
+    """
+    tree, entities = pipeline.read(text)
+    return Analysis(
+        tree=tree,
+        entities=entities,
+        triples=triples_of(tree),
+        yesno=yesno_of(tree.text),
+        question=question_of(tree),
+        about_agent=_is_about_agent(tree, agent_names),
+        intent_play=wants_to_play(tree.text),
+        intent_hi=says_hi(tree.text),
+        intent_bye=says_bye(tree.text),
+    )
+
+
+def _is_about_agent(tree: Tree, names: Iterable[str]) -> bool:
+    if any(word.low in _SECOND_PERSON for word in tree.words):
+        return True
+    return any(
+        re.search(rf"(?<!\w){re.escape(name.strip())}(?!\w)", tree.text, re.IGNORECASE)
+        for name in names
+        if name.strip()
+    )

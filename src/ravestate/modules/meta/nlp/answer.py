@@ -1,0 +1,236 @@
+"""Whether a text answers yes or no.
+
+An answer is read from the beginning of the text, cue by cue: a cue says yes or no (strongly or weakly), professes not to
+know, hedges, denies, makes sure, or says nothing. The first word that is no cue ends the answer. What the cues make together
+follows from a few rules (`_weigh`); the cues themselves stand in ``answer_cues.py``.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+from .answer_cues import CUES, FOLLOWERS, STRICT, Cue
+
+__all__ = ["YesNo", "yesno_of"]
+
+
+@dataclass(frozen=True, slots=True)
+class YesNo:
+    """Whether a text means yes or no. All three are None where it means neither.
+
+    Example:
+        >>> yesno_of("probably not")
+        YesNo(yes=0, no=1, unsure=False)
+    """
+
+    yes: int | None = None
+    """0 no, 1 weakly, 2 surely."""
+    no: int | None = None
+    """0 no, 1 weakly, 2 surely."""
+    unsure: bool | None = None
+    """Whether the speaker professes not to know."""
+
+    def __bool__(self) -> bool:
+        """Whether it is an answer at all."""
+        return self.yes is not None
+
+
+NEITHER = YesNo()
+UNSURE = YesNo(0, 0, True)
+
+_TOKEN = re.compile(r"[^\W_]+(?:[-'][^\W_]+)*|[.,;:!?…\n]+|👍|👎")
+_STRETCHED = re.compile(r"(.)\1{2,}")
+_PUNCTUATION = frozenset(".,;:!?…\n")
+_TURNS = frozenset(["but", "although", "though", "however"])
+_IDLE = frozenset(
+    "really honestly just actually simply truly quite personally still totally absolutely definitely".split()
+)
+"""Adverbs that change nothing between *I* and its verb: *I really don't know*."""
+_LONGEST_CUE = max(len(cue) for cue in CUES)
+_CONTRACTIONS = {
+    "can't": "can not",
+    "cannot": "can not",
+    "won't": "will not",
+    "dont": "do not",
+    "doesnt": "does not",
+    "didnt": "did not",
+    "isnt": "is not",
+    "cant": "can not",
+    "wouldnt": "would not",
+    "im": "i am",
+    "i'm": "i am",
+    "id": "i would",
+    "thats": "that is",
+    "it's": "it is",
+    "that's": "that is",
+    "let's": "let us",
+    "dunno": "do not know",
+    "idk": "i do not know",
+    "wanna": "want to",
+    "gotta": "got to",
+    "kinda": "kind of",
+    "sorta": "sort of",
+    "we'll": "we will",
+}
+_ENDINGS = {"n't": " not", "'d": " would", "'ll": " will", "'ve": " have", "'re": " are"}
+
+
+def yesno_of(text: str) -> YesNo:
+    """Return whether `text` means yes or no.
+
+    Example:
+        >>> yesno_of("not certainly but ok"), yesno_of("I like tea")
+        (YesNo(yes=1, no=0, unsure=False), YesNo(yes=None, no=None, unsure=None))
+    """
+    words = _words(text)
+    answer, end = _answer(words)
+    for turn in range(end, len(words)):
+        if words[turn] in _TURNS:
+            other, _ = _answer(words[turn + 1 :])
+            return _turned(answer, other)
+    return answer
+
+
+def _turned(first: YesNo, second: YesNo) -> YesNo:
+    """What is meant by an answer, *but*, and another one."""
+    if not first or not second or second == UNSURE or (first.yes and second.yes) or (first.no and second.no):
+        return first
+    return YesNo(1, 0, False) if second.yes else YesNo(0, 1, False)
+
+
+def _words(text: str) -> list[str]:
+    """The first words, in lower case and without contractions, and the punctuation between them."""
+    found: list[str] = []
+    for token in _TOKEN.findall(text[:400].lower().replace("’", "'")):
+        word = _STRETCHED.sub(r"\1", token)
+        if word in _CONTRACTIONS:
+            found += _CONTRACTIONS[word].split()
+            continue
+        for ending, meaning in _ENDINGS.items():
+            if word.endswith(ending) and len(word) > len(ending):
+                word = word.removesuffix(ending) + meaning
+        found += word.split() or [token]
+    return [
+        word
+        for index, word in enumerate(found)
+        if not (word in _IDLE and index and found[index - 1] in ("i", "we") and found[index + 1 : index + 2])
+    ]
+
+
+def _answer(words: list[str]) -> tuple[YesNo, int]:
+    """The answer at the beginning of `words`, and where it ends."""
+    cues: list[Cue] = []
+    reader = _Reader(words)
+    index = 0
+    while index < len(words):
+        if words[index][0] in _PUNCTUATION:
+            if "?" in words[index] and cues and words[index - 2 : index] != ["why", "not"]:
+                return NEITHER, index
+            index += 1
+            continue
+        cue, length = reader.cue_at(index)
+        if cue is None:
+            break
+        cues.append(cue)
+        index += length
+    if index < len(words) and _is_question(words, index, cues):
+        return NEITHER, index
+    return _weigh(cues), index
+
+
+def _is_question(words: list[str], index: int, cues: list[Cue]) -> bool:
+    """Whether what goes on without a comma is a question: *right now?*, but not *yes, and you?*."""
+    if any(word[0] in _PUNCTUATION for word in words[:index]) and any(cue.takes_side for cue in cues):
+        return False
+    for word in words[index:]:
+        if word[0] in _PUNCTUATION:
+            return "?" in word
+    return False
+
+
+class _Reader:
+    """Finds cues in words. What it has found once it remembers: a cue may be one only if another follows."""
+
+    def __init__(self, words: list[str]) -> None:
+        self._words = words
+        self._known: dict[int, tuple[Cue | None, int]] = {}
+
+    def cue_at(self, index: int) -> tuple[Cue | None, int]:
+        """The longest cue that begins at `index`, and its length in words."""
+        if index not in self._known:
+            self._known[index] = self._find(index)
+        return self._known[index]
+
+    def _find(self, index: int) -> tuple[Cue | None, int]:
+        for length in range(min(_LONGEST_CUE, len(self._words) - index), 0, -1):
+            phrase = tuple(self._words[index : index + length])
+            cue = CUES.get(phrase)
+            if cue is not None and self._may_end(cue, phrase, index + length):
+                return cue, length
+        return None, 0
+
+    def _may_end(self, cue: Cue, phrase: tuple[str, ...], index: int) -> bool:
+        """Whether a cue is one before what follows it: *I do* is an answer, *I do the dishes* is none."""
+        words = self._words
+        if index == len(words) or words[index][0] in _PUNCTUATION or words[index] in _TURNS:
+            return True
+        if phrase not in STRICT:
+            if cue in (Cue.FILLER, Cue.NOT) or words[index] in FOLLOWERS:
+                return True
+            return self.cue_at(index)[0] is not None
+        while index < len(words):
+            following, length = self.cue_at(index)
+            if following is None:
+                return words[index][0] in _PUNCTUATION
+            if following.takes_side or following in (Cue.HEDGE, Cue.MAYBE):
+                return True
+            if following is not Cue.FILLER:
+                return False
+            index += length
+        return True
+
+
+def _weigh(cues: list[Cue]) -> YesNo:
+    """What cues mean together."""
+    cues = [cue for cue in cues if cue is not Cue.FILLER]
+    sides: list[tuple[str, int]] = []  # what is said, and how strongly
+    hedged = denied = sure = False
+    for cue in cues:
+        if cue is Cue.UNSURE:
+            sides.append(("unsure", 0))
+        elif cue in (Cue.YES, Cue.YES_WEAK):
+            sides.append(
+                ("no" if denied else "yes", 1 if cue is Cue.YES_WEAK or (denied and not sure) else 2)
+            )
+        elif cue in (Cue.NO, Cue.NO_WEAK):
+            sides.append(("no", 2 if cue is Cue.NO else 1))
+        hedged |= cue in (Cue.HEDGE, Cue.MAYBE)
+        sure |= cue is Cue.SURE
+        denied |= cue is Cue.NOT
+    if not sides:
+        return _of_adverbs(cues)
+    said = sides[0][0]
+    if said == "unsure":
+        return UNSURE
+    strength = max(strong for side, strong in sides if side == said)
+    if hedged or any(side == "unsure" for side, _ in sides):
+        strength = 1
+    elif sure and said == "yes":
+        strength = 2
+    return YesNo(strength, 0, False) if said == "yes" else YesNo(0, strength, False)
+
+
+def _of_adverbs(cues: list[Cue]) -> YesNo:
+    """Adverbs alone: *probably*, *absolutely not*, *not really*."""
+    if not cues:
+        return NEITHER
+    hedged = any(cue in (Cue.HEDGE, Cue.MAYBE) for cue in cues)
+    if Cue.NOT in cues:
+        doubted = cues[0] is Cue.NOT and Cue.SURE in cues  # not really, but: really not
+        return YesNo(0, 1 if hedged or doubted else 2, False)
+    if Cue.MAYBE in cues and Cue.SURE not in cues and Cue.HEDGE not in cues:
+        return UNSURE
+    if hedged:
+        return YesNo(1, 0, False)
+    return YesNo(2, 0, False)

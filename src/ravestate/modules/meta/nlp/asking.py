@@ -1,0 +1,87 @@
+"""Question words in a text, and the kind that each of them asks for."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from .question_word import QuestionWord
+from .tree import Word
+
+__all__ = ["AUXILIARIES", "QUESTION_WORDS", "kind_at"]
+
+QUESTION_WORDS = {
+    "who": QuestionWord.PERSON,
+    "whom": QuestionWord.PERSON,
+    "whose": QuestionWord.PERSON,
+    "where": QuestionWord.PLACE,
+    "when": QuestionWord.TIME,
+    "why": QuestionWord.REASON,
+    "how": QuestionWord.FORM,
+    "what": QuestionWord.OBJECT,
+    "wat": QuestionWord.OBJECT,
+    "which": QuestionWord.OBJECT,
+}
+
+AUXILIARIES = frozenset(
+    "do does did am is are was were 's 're s re have has had 've can could will would shall should may might must 'll 'd ca wo "
+    "ai".split()
+)
+"""Verbs that change place with the subject in a question."""
+
+_MEASURES = frozenset(
+    "many much old long far tall big large high deep heavy fast hot cold cool warm expensive often wide small short "
+    "young late soon close near thick strong loud rich quickly regularly frequently little few costly".split()
+)
+_CLASSES = {
+    QuestionWord.TIME: "time day date hour week month year weekday century".split(),
+    QuestionWord.PLACE: "place city town village country state street".split(),
+    QuestionWord.PERSON: "person people man woman boy girl guy child".split(),
+}
+_CLASS_OF = {noun: kind for kind, nouns in _CLASSES.items() for noun in nouns}
+_FOUGHT_FOR = frozenset(
+    "look wait ask search pay care stand work hope vote apply prepare fight study go know famous long plan shop hunt".split()
+)
+"""Verbs with which *what ... for* asks for a thing."""
+
+
+def kind_at(words: Sequence[Word], index: int) -> QuestionWord | None:
+    """Return what the word at `index` asks for, None if it is no question word.
+
+    Example: of "how many friends do you have" the word at 0 asks for an amount.
+    """
+    word = words[index]
+    kind = QUESTION_WORDS.get(word.low)
+    if kind is None:
+        return None
+    rest = words[index + 1 :]
+    after = rest[0].low if rest else ""
+    if kind is QuestionWord.FORM:
+        if after == "come":
+            return QuestionWord.REASON
+        return QuestionWord.AMOUNT if after in _MEASURES else kind
+    if kind is QuestionWord.OBJECT:
+        if after == "for":
+            return QuestionWord.REASON
+        for other in rest:
+            if other.pos in ("ADJ", "NUM"):
+                continue
+            if other.pos in ("NOUN", "PROPN", "VERB"):  # of a bare text it may take a noun for a verb
+                kind = _CLASS_OF.get(other.lemma.lower(), kind)
+            break
+        if _asks_what_for(rest):
+            return QuestionWord.REASON
+    return kind
+
+
+def _asks_what_for(rest: Sequence[Word]) -> bool:
+    """Whether *for* ends the clause, and is not the verb's own: *what do you need that for*."""
+    clause: list[Word] = []
+    for word in rest:
+        if word.pos == "PUNCT":
+            break
+        clause.append(word)
+    return (
+        len(clause) > 2
+        and clause[-1].low == "for"
+        and not any(word.lemma.lower() in _FOUGHT_FOR for word in clause)
+    )

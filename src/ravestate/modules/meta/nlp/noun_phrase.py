@@ -1,0 +1,95 @@
+"""What of a phrase is kept as subject or object."""
+
+from __future__ import annotations
+
+from .tree import Tree, Word
+
+__all__ = ["DETERMINERS", "adjective_phrase", "gerund_phrase", "noun_phrase", "without_determiners"]
+
+DETERMINERS = frozenset("the a an this that these those some any every each all both no another".split())
+"""What is left out of a phrase, unless it is all of it."""
+
+_KEPT = ("amod", "compound", "poss", "nummod", "nmod", "case", "det", "quantmod")
+
+
+def noun_phrase(tree: Tree, head: Word) -> list[Word]:
+    """Return the words of the noun phrase around `head`: with possessives, adjectives, numbers, compounds and *of*,
+    without determiners, adverbs, other prepositions and relative clauses."""
+    if head.pos in ("VERB", "AUX") and head.dep not in ("ROOT", "conj"):
+        return gerund_phrase(tree, head)
+    kept = [head]
+    for child in tree.children(head):
+        if child.dep in _KEPT and child.pos != "ADV" and child.low not in DETERMINERS:
+            kept += _joined_adjectives(tree, child) if child.dep == "amod" else noun_phrase(tree, child)
+        elif child.dep == "prep" and child.low == "of" and child.index > head.index:
+            for object in tree.children(child, "pobj", "pcomp"):
+                kept += [child, *_with_conjuncts(tree, object)]
+        elif child.dep == "appos" and child.pos == "PROPN" and not _comma_between(tree, head, child):
+            kept += noun_phrase(tree, child)
+    return _with_hyphens(tree, kept)
+
+
+def adjective_phrase(tree: Tree, head: Word, verb: Word) -> list[Word]:
+    """Return the words of a predicate adjective: itself, its measure (*20 years old*), and the prepositional phrase that
+    follows it directly, whether the parser gives that to the adjective or to the verb."""
+    kept = [head]
+    for child in tree.children(head, "npadvmod", "compound"):
+        if child.index < head.index:
+            kept += noun_phrase(tree, child)
+    after = tree.after(head)
+    if after is not None and after.dep == "prep" and after.head in (head.index, verb.index):
+        for object in tree.children(after, "pobj", "pcomp"):
+            kept += [after, *_with_conjuncts(tree, object)]
+    return _with_hyphens(tree, kept)
+
+
+def gerund_phrase(tree: Tree, head: Word) -> list[Word]:
+    """Return the words of a verb that stands as a noun (*playing chess*): all that belong to it, without determiners."""
+    return without_determiners(tree.subtree(head))
+
+
+def without_determiners(words: list[Word]) -> list[Word]:
+    """Return `words` without determiners and punctuation."""
+    return [
+        word
+        for word in words
+        if word.pos != "PUNCT" and not (word.dep in ("det", "predet") and word.low in DETERMINERS)
+    ]
+
+
+def _joined_adjectives(tree: Tree, adjective: Word) -> list[Word]:
+    """*old and wise*: the conjuncts, and what stands between."""
+    kept = [adjective]
+    for child in tree.children(adjective):
+        if child.dep in ("cc", "npadvmod", "compound"):
+            kept.append(child)
+        elif child.dep == "conj":
+            kept += _joined_adjectives(tree, child)
+    return kept
+
+
+def _with_conjuncts(tree: Tree, head: Word) -> list[Word]:
+    kept = noun_phrase(tree, head)
+    for child in tree.children(head):
+        if child.dep == "cc":
+            kept.append(child)
+        elif child.dep == "conj":
+            kept += _with_conjuncts(tree, child)
+    return kept
+
+
+def _comma_between(tree: Tree, first: Word, second: Word) -> bool:
+    return any(word.pos == "PUNCT" for word in tree.words[first.index : second.index])
+
+
+def _with_hyphens(tree: Tree, kept: list[Word]) -> list[Word]:
+    """Add what hyphens tie to a kept word: *well-known* is one word to a reader, and three to the pipeline."""
+    indices = {word.index for word in kept}
+    for index in sorted(indices):
+        while index >= 2:
+            hyphen, other = tree.words[index - 1], tree.words[index - 2]
+            if hyphen.low not in "-–" or other.end != hyphen.start or hyphen.end != tree.words[index].start:
+                break
+            indices |= {index - 1, index - 2}
+            index -= 2
+    return [tree.words[index] for index in sorted(indices)]

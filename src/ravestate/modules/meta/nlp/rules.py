@@ -1,0 +1,69 @@
+"""When the words are read, and what is told of them."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+
+import ravestate as rs
+from ravestate.errors import PlatformError
+from ravestate.modules import rawio
+
+from . import (
+    Settings,
+    about_agent,
+    entities,
+    intent_bye,
+    intent_hi,
+    intent_play,
+    is_question,
+    lemmas,
+    module,
+    pos,
+    question,
+    tags,
+    tokens,
+    triples,
+    yesno,
+)
+from .analysis import analyse
+from .pipeline import pipeline
+
+
+@module.rule(when=rs.startup, background=True)
+def load(ctx: rs.RuleContext) -> None:
+    """Load the pipeline while the agent is up already, so that the first words need not wait for it."""
+    settings: Settings = ctx.settings
+    with contextlib.suppress(PlatformError):  # which is told when it is needed
+        pipeline(settings.pipeline).load()
+
+
+@module.rule(
+    when=rawio.input.changed,
+    writes=(tokens, lemmas, pos, tags, entities, triples, question, yesno),
+    emits=(is_question, about_agent, intent_play, intent_hi, intent_bye),
+)
+async def understand(ctx: rs.RuleContext) -> None:
+    """Read the user's words: all slots first, then the signals."""
+    settings: Settings = ctx.settings
+    heard = ctx.payload(rawio.input.changed)
+    seen = await asyncio.to_thread(analyse, heard, pipeline(settings.pipeline), settings.agent_names)
+    words = seen.tree.words
+    ctx[tokens] = tuple(word.text for word in words)
+    ctx[lemmas] = tuple(word.lemma for word in words)
+    ctx[pos] = tuple(word.pos for word in words)
+    ctx[tags] = tuple(word.tag for word in words)
+    ctx[entities] = seen.entities
+    ctx[triples] = seen.triples
+    ctx[question] = seen.question
+    ctx[yesno] = seen.yesno
+    if seen.question is not None:
+        ctx.emit(is_question, seen.question)
+    if seen.about_agent:
+        ctx.emit(about_agent)
+    if seen.intent_play:
+        ctx.emit(intent_play)
+    if seen.intent_hi:
+        ctx.emit(intent_hi)
+    if seen.intent_bye:
+        ctx.emit(intent_bye)

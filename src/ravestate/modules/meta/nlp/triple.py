@@ -1,0 +1,33 @@
+"""Who does what."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from .question_word import QuestionWord
+
+__all__ = ["Triple"]
+
+
+@dataclass(frozen=True, slots=True)
+class Triple:
+    """One statement of a text, or one question; the module's README says by which conventions.
+
+    Example:
+        >>> from ravestate.modules.meta.nlp.question_word import QuestionWord
+        >>> Triple("you", "live", QuestionWord.PLACE)  # Where do you live?
+        Triple(subject='you', predicate='live', object=QuestionWord.PLACE)
+    """
+
+    subject: str | QuestionWord
+    """As written; the `QuestionWord` where the question asks for the subject."""
+    predicate: str
+    """The lemma, ``not`` before it if it is negated."""
+    object: str | QuestionWord
+    """As written, empty if there is none; the `QuestionWord` where the question asks for it."""
+
+    def __str__(self) -> str:
+        def shown(part: str | QuestionWord) -> str:
+            return part.name if isinstance(part, QuestionWord) else part or "-"
+
+        return f"({shown(self.subject)}, {self.predicate}, {shown(self.object)})"
