@@ -11,6 +11,7 @@ from .graph import Graph
 from .keeper import Keeper
 from .node import Node, Relation, Value
 from .reply import Reply
+from .store import Store
 from .types import Types
 
 __all__ = ["Memory"]
@@ -31,30 +32,42 @@ class Memory:
     - PlatformError: memory failed: a full disk, a server that went away, a file in use.
     """
 
-    def __init__(self, keeper: Keeper, types: Types) -> None:
+    def __init__(self, keeper: Keeper, read_types: Callable[[], Types]) -> None:
         """Begin to open memory; operations may be called at once, and wait until it is open.
 
         Args:
             keeper: What holds the graph, and the thread that may touch it; `close` releases it.
-            types: What there may be in it.
+            read_types: Says what there may be in it; called in the thread.
         """
-        self.types = types
-        """What there may be in memory."""
         self._keeper = keeper
         self._closed: Reply[None] | None = None
-        self._opened = self._do("open", lambda graph: graph.prepare())
+        self._types: Types | None = None
+        self._failure: BaseException | None = None
+        self._opened = Reply(keeper.submit(lambda store: self._open(store, read_types)), "Memory.open")
 
     @property
     def place(self) -> str:
         """Where it is: a file's path, or a server's address."""
         return self._keeper.place
 
+    @property
+    def types(self) -> Types:
+        """What there may be in memory.
+
+        Raises:
+            RuleError: It is not open yet: ``await memory.opened()`` first.
+        """
+        if self._types is None:
+            raise RuleError(f"memory ({self.place}) is not open: write await memory.opened() before")
+        return self._types
+
     def opened(self) -> Reply[None]:
         """Wait until memory is open.
 
         Raises:
             PlatformError: It cannot be opened: a package is missing, the file is in use, broken or newer, the server
-                refuses. The message says what to do.
+                refuses. The message says what to do. All operations raise it then.
+            DeclarationError: A file of types is none, or contradicts another.
         """
         return self._opened
 
@@ -72,14 +85,18 @@ class Memory:
         """The oldest node that matches, as by `find`, or a new one where there is none."""
         return self._do("ensure", lambda graph: graph.ensure(type, properties))
 
-    def save(self, node: Node, /) -> Reply[Node]:
+    def save(self, node: Node, /, *, of: str | None = None) -> Reply[Node]:
         """Write a node, a new one or one that is known: set the properties that it has, and remove those that are
         None. Others stay.
+
+        Args:
+            node: What to write.
+            of: A type of which it must be, or of a subtype.
 
         Returns:
             The node with all that memory has of it.
         """
-        return self._do("save", lambda graph: graph.save(node))
+        return self._do("save", lambda graph: graph.save(node, of))
 
     def find(self, type: str, /, **properties: Value) -> Reply[list[Node]]:
         """All nodes of a type, subtypes included, with these values, oldest first; None matches what is not set."""
@@ -157,15 +174,33 @@ class Memory:
         """
         return self._do("load", lambda graph: graph.load(document))
 
+    def undeclared(self) -> Reply[list[str]]:
+        """The names of types that are in memory, and in no file of types: their nodes are there, and unseen."""
+        return self._do("undeclared", lambda graph: graph.undeclared())
+
     def close(self) -> Reply[None]:
         """Let go, after all operations before; called again it does nothing. Later operations are refused."""
         if self._closed is None:
             self._closed = Reply(self._keeper.release(), "Memory.close")
         return self._closed
 
+    def _open(self, store: Store, read_types: Callable[[], Types]) -> None:
+        """In the thread: look what there may be, and make room for it."""
+        try:
+            types = read_types()
+            Graph(store, types).prepare()
+            self._types = types
+        except BaseException as error:
+            self._failure = error
+            raise
+
     def _do(self, name: str, operation: Callable[[Graph], T]) -> Reply[T]:
         if self._closed is not None:
             raise RuleError(f"memory ({self.place}) is closed: {name} comes too late")
-        return Reply(
-            self._keeper.submit(lambda store: operation(Graph(store, self.types))), f"Memory.{name}"
-        )
+
+        def job(store: Store) -> T:
+            if self._failure is not None:
+                raise self._failure
+            return operation(Graph(store, self.types))
+
+        return Reply(self._keeper.submit(job), f"Memory.{name}")

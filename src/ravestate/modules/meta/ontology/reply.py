@@ -45,7 +45,8 @@ class Reply(Generic[T]):
         # By way of an executor, because a loop in virtual time waits for what it has lent to one. The operation
         # goes on when who waits for it is cancelled: what was begun is done.
         loop = asyncio.get_running_loop()
-        return asyncio.shield(loop.run_in_executor(_Lent(self._future), _named(self._what))).__await__()
+        waiting: asyncio.Future[Any] = loop.run_in_executor(_Lent(self._future), _named(self._what))
+        return asyncio.shield(waiting).__await__()
 
     def __repr__(self) -> str:
         return f"<reply of {self._what}: {'there' if self._future.done() else 'to come'}>"

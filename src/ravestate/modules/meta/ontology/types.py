@@ -73,6 +73,10 @@ class Types:
         """The names of all types, parents first."""
         return iter(sorted(self._types, key=lambda name: len(self._lines[name])))
 
+    def __contains__(self, name: object) -> bool:
+        """Whether there is such a type."""
+        return name in self._types
+
     @property
     def relations(self) -> Mapping[str, Relating]:
         """All relations by name."""
@@ -127,7 +131,7 @@ class Types:
 
     def loaded(self, type: str, values: Mapping[str, Any]) -> dict[str, Value]:
         """What `stored` was made of, without what is not set, and without what the types do not know."""
-        return _loaded(self._properties[type], values)
+        return _loaded(type, self._properties[type], values)
 
     def check_relation(self, source: str, relation: str, target: str) -> None:
         """Make sure that there may be a relation between nodes of two types.
@@ -142,6 +146,19 @@ class Types:
             known = " or ".join(f"from {first} to {second}" for first, second in sorted(ends))
             raise RuleError(f"{relation} does not go from {source} to {target}, but {known}")
 
+    def check_end(self, type: str, relation: str, *, back: bool = False) -> None:
+        """Make sure that nodes of a type may have a relation; `back`: that it may lead to them.
+
+        Raises:
+            RuleError: There is no such type or relation, or not there.
+        """
+        self._check(type)
+        ends = {pair[1 if back else 0] for pair in self.relating(relation).ends}
+        if not any(self.is_a(type, end) for end in ends):
+            raise RuleError(
+                f"{relation} goes {'to' if back else 'from'} {' or '.join(sorted(ends))}, not {'to' if back else 'from'} {type}"
+            )
+
     def relating(self, relation: str) -> Relating:
         """A relation by its name.
 
@@ -151,8 +168,8 @@ class Types:
         found = self._relations.get(relation)
         if found is None:
             raise RuleError(
-                f"there is no relation {relation!r}{nearest(relation, self._relations)} To add one, write under a type in "
-                f"a file of your own (setting ontology.types):\n  relations: {{{relation}: Thing}}"
+                f"there is no relation {relation!r}{nearest(relation, self._relations)} (to add it, write under a type in "
+                f"a file of your own, setting ontology.types: relations: {{{relation}: Thing}})"
             )
         return found
 
@@ -162,7 +179,7 @@ class Types:
 
     def loaded_of(self, relation: str, values: Mapping[str, Any]) -> dict[str, Value]:
         """As `loaded`, for the properties of a relation."""
-        return _loaded(self.relating(relation).properties, values)
+        return _loaded(relation, self.relating(relation).properties, values)
 
     # ------------------------------------------------------------------------------- internals
 
@@ -180,8 +197,8 @@ class Types:
     def _check(self, type: str) -> None:
         if type not in self._types:
             raise RuleError(
-                f"there is no type {type!r}{nearest(type, self._types)} To add one, write in a file of your own (setting "
-                f"ontology.types):\n{type}: {{is: Thing}}"
+                f"there is no type {type!r}{nearest(type, self._types)} (to add it, write in a file of your own, setting "
+                f"ontology.types: {type}: {{is: Thing}})"
             )
 
 
@@ -190,8 +207,8 @@ def _stored(owner: str, kinds: Mapping[str, Kind], values: Mapping[str, Value]) 
     for name, value in values.items():
         if name not in kinds:
             raise RuleError(
-                f"{owner} has no {name!r}{nearest(name, kinds)} (it has {', '.join(kinds) or 'nothing'}). To add it, write "
-                f"in a file of your own (setting ontology.types):\n{owner}:\n  has: {{{name}: text}}"
+                f"{owner} has no {name!r}{nearest(name, kinds)} (it has {', '.join(kinds) or 'nothing'}; to add it, write "
+                f"in a file of your own, setting ontology.types: {owner}: {{has: {{{name}: text}}}})"
             )
         found[name] = None if value is None else _as_stored(f"{owner}.{name}", kinds[name], value)
     return found
@@ -200,7 +217,9 @@ def _stored(owner: str, kinds: Mapping[str, Kind], values: Mapping[str, Value]) 
 def _as_stored(what: str, kind: Kind, value: Value) -> Any:
     if kind == "text" and isinstance(value, str):
         if any("\ud800" <= letter <= "\udfff" for letter in value):
-            raise RuleError(f"{what}: {value!r} has surrogates, which no text can be stored with: remove them")
+            raise RuleError(
+                f"{what}: {value!r} has surrogates, which no text can be stored with: remove them"
+            )
         return value
     if kind == "yes/no" and isinstance(value, bool):
         return value
@@ -212,7 +231,10 @@ def _as_stored(what: str, kind: Kind, value: Value) -> Any:
     if kind == "number" and isinstance(value, float) and math.isfinite(value):
         return value
     if kind == "time" and isinstance(value, datetime) and value.tzinfo is not None:
-        return value.astimezone(UTC).isoformat(timespec="microseconds")
+        try:
+            return value.astimezone(UTC).isoformat(timespec="microseconds")
+        except OverflowError:  # in the first or the last hours that there are
+            pass
     if kind == "date" and isinstance(value, date) and not isinstance(value, datetime):
         return value.isoformat()
     shown = repr(value)
@@ -220,15 +242,22 @@ def _as_stored(what: str, kind: Kind, value: Value) -> Any:
     raise RuleError(f"{what} is of kind {kind}, not {shown}: write for example {_EXAMPLES[kind]}")
 
 
-def _loaded(kinds: Mapping[str, Kind], values: Mapping[str, Any]) -> dict[str, Value]:
+def _loaded(owner: str, kinds: Mapping[str, Kind], values: Mapping[str, Any]) -> dict[str, Value]:
     return {
-        name: _as_loaded(kind, values[name]) for name, kind in kinds.items() if values.get(name) is not None
+        name: _as_loaded(f"{owner}.{name}", kind, values[name])
+        for name, kind in kinds.items()
+        if values.get(name) is not None
     }
 
 
-def _as_loaded(kind: Kind, value: Any) -> Value:
-    if kind == "date":
-        return date.fromisoformat(value)
-    if kind == "time":
-        return datetime.fromisoformat(value)
-    return float(value) if kind == "number" else value
+def _as_loaded(what: str, kind: Kind, value: Any) -> Value:
+    try:
+        if kind == "date":
+            return date.fromisoformat(value)
+        if kind == "time":
+            return datetime.fromisoformat(value)
+        if kind == "number":
+            return float(value)
+    except (TypeError, ValueError):
+        raise RuleError(f"memory has {what} = {value!r}, which is no {kind}: set it anew") from None
+    return value

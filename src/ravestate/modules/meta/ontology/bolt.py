@@ -1,0 +1,200 @@
+"""A graph database on a server that speaks Bolt and Cypher: Neo4j, and others."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from collections.abc import Coroutine, Generator, Mapping, Sequence
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from ravestate.errors import PlatformError
+
+from .store import FORMAT, RawNode, RawRelation, check_format
+from .types import Types
+
+if TYPE_CHECKING:
+    from neo4j import AsyncResult, AsyncSession, AsyncTransaction
+
+__all__ = ["BoltStore"]
+
+T = TypeVar("T")
+
+META = "_ravestate"
+"""The label of the node that says how the rest is laid out."""
+
+LIVELY = 5.0
+"""Seconds after which a connection is tried before it is used again: the server may have been restarted."""
+
+
+class BoltStore:
+    """A database on a server, by Neo4j's official driver.
+
+    The driver that waits without blocking is used although this is a thread of its own, because its waiting can be
+    ended: a server that stalls costs `timeout` seconds and no thread.
+    """
+
+    def __init__(self, url: str, user: str, password: str, database: str | None, timeout: float) -> None:
+        """Connect.
+
+        Args:
+            url: E.g. ``bolt://localhost:7687``; ``neo4j+s://...`` for one with encryption.
+            user: Who signs in.
+            password: Empty for a server that wants none.
+            database: Its name on the server; the server's default where it is None.
+            timeout: Seconds until a server that does not answer counts as absent.
+
+        Raises:
+            PlatformError: The package is missing, or the server is absent, stalls or refuses.
+        """
+        try:
+            import neo4j
+        except ImportError as error:
+            raise PlatformError(
+                f"ontology needs neo4j for the server {url}: pip install 'ravestate[neo4j]'"
+            ) from error
+        # It tells, at length, that a property asked for has never been set, which is no fault.
+        logging.getLogger("neo4j.notifications").setLevel(logging.ERROR)
+        self._neo4j: Any = neo4j  # much of the driver is typed in part only
+        self._place = url
+        self._user = user
+        self._database = database
+        self._timeout = timeout
+        self._transaction: AsyncTransaction | None = None
+        self._loop = asyncio.new_event_loop()
+        self._driver: Any = None
+        try:
+            self._driver = self._connected(url, user, password)
+            self._wait(self._driver.verify_connectivity())
+        except BaseException:
+            self.close()
+            raise
+
+    def _connected(self, url: str, user: str, password: str) -> Any:
+        try:
+            return self._neo4j.AsyncGraphDatabase.driver(
+                url,
+                auth=(user, password) if password else None,
+                connection_timeout=self._timeout,
+                connection_acquisition_timeout=self._timeout,
+                liveness_check_timeout=LIVELY,
+            )
+        except (ValueError, self._neo4j.exceptions.ConfigurationError) as error:
+            raise PlatformError(
+                f"ontology.url = {url!r} is no server's address ({error}): write for example bolt://localhost:7687"
+            ) from error
+
+    # ------------------------------------------------------------------------------------ statements
+
+    def read(self, statement: str, parameters: Mapping[str, Any]) -> list[Sequence[Any]]:
+        """Run a statement."""
+        return self._wait(self._run(statement, parameters))
+
+    write = read
+
+    @contextmanager
+    def transaction(self) -> Generator[None]:
+        """All statements within are done together, or none."""
+        session = self._session()
+        try:
+            self._transaction = transaction = self._wait(session.begin_transaction())
+            try:
+                yield
+            except BaseException:
+                self._transaction = None
+                self._wait(transaction.close())  # which takes it back
+                raise
+            self._transaction = None
+            self._wait(transaction.commit())
+        finally:
+            self._transaction = None
+            self._wait(session.close())
+
+    def _session(self) -> AsyncSession:
+        return self._driver.session(database=self._database)
+
+    async def _run(self, statement: str, parameters: Mapping[str, Any]) -> list[Sequence[Any]]:
+        if self._transaction is not None:
+            return await _rows(await self._transaction.run(statement, dict(parameters)))  # type: ignore[arg-type]
+        async with self._session() as session:
+            return await _rows(await session.run(statement, dict(parameters)))  # type: ignore[arg-type]
+
+    def _wait(self, work: Coroutine[Any, Any, T]) -> T:
+        errors = self._neo4j.exceptions
+        try:
+            return self._loop.run_until_complete(asyncio.wait_for(work, self._timeout))
+        except TimeoutError as error:
+            raise PlatformError(
+                f"memory {self._place} did not answer within {self._timeout:g} s: look after the server, or give it longer with "
+                "--set ontology.timeout=SECONDS"
+            ) from error
+        except errors.AuthError as error:
+            raise PlatformError(
+                f"memory {self._place} refuses the user {self._user!r}: set RAVESTATE_ONTOLOGY_PASSWORD, or another user with "
+                "--set ontology.user=NAME"
+            ) from error
+        except errors.Neo4jError as error:
+            code = error.code or ""
+            if "DatabaseNotFound" in code or "DatabaseUnavailable" in code:
+                named = (
+                    f"has no database {self._database!r}"
+                    if self._database
+                    else "has no database of its own choice"
+                )
+                raise PlatformError(
+                    f"memory {self._place} {named}: make it there, or name another with --set ontology.database=NAME"
+                ) from error
+            raise PlatformError(f"memory {self._place} failed: {error.message or error}") from error
+        except (errors.DriverError, OSError) as error:
+            raise PlatformError(
+                f"memory {self._place} cannot be reached ({_first_line(error)}): start the server, or name another with --set "
+                "ontology.url=bolt://HOST:PORT"
+            ) from error
+
+    # ------------------------------------------------------------------------------------ types
+
+    def prepare(self, types: Types) -> None:
+        """Have ids looked up by an index; a server needs no more."""
+        rows = self.read(f"MATCH (m:`{META}` {{`key`: 'format'}}) RETURN m.`value`", {})
+        if rows:
+            check_format(self._place, rows[0][0])
+        else:
+            self.write(f"MERGE (m:`{META}` {{`key`: 'format'}}) SET m.`value` = {FORMAT}", {})
+        for name in types:
+            self.write(f"CREATE CONSTRAINT IF NOT EXISTS FOR (n:`{name}`) REQUIRE n.`id` IS UNIQUE", {})
+
+    def undeclared(self, types: Types) -> list[str]:
+        """The labels on the server that `types` do not have."""
+        rows = self.read("MATCH (n) UNWIND labels(n) AS name RETURN DISTINCT name", {})
+        return sorted({str(name) for [name] in rows} - {META, *types})
+
+    def close(self) -> None:
+        """Hang up."""
+        try:
+            if self._driver is not None:
+                self._wait(self._driver.close())
+        finally:
+            self._loop.run_until_complete(self._loop.shutdown_asyncgens())
+            self._loop.close()
+
+
+async def _rows(result: AsyncResult) -> list[Sequence[Any]]:
+    rows: list[Sequence[Any]] = [[_decoded(value) for value in record.values()] async for record in result]
+    await result.consume()
+    return rows
+
+
+def _decoded(value: Any) -> Any:
+    from neo4j.graph import Node, Relationship
+
+    if isinstance(value, Node):
+        values = dict(value.items())
+        label = str(values.get("id", "")).partition(":")[0]  # one of several, where somebody added some
+        return RawNode(label if label in value.labels else min(value.labels, default=""), values)
+    if isinstance(value, Relationship):
+        return RawRelation(value.type, dict(value.items()))
+    return value
+
+
+def _first_line(error: BaseException) -> str:
+    return next(iter(str(error).splitlines()), "") or type(error).__name__

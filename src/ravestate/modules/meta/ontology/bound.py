@@ -1,0 +1,65 @@
+"""Slots that are bound to memory: who writes the slot, writes the graph."""
+
+from __future__ import annotations
+
+import ravestate as rs
+from ravestate.errors import DeclarationError, PlatformError, RuleError
+
+from . import memory
+from . import module as ontology
+from .node import Node
+
+__all__ = ["bound"]
+
+
+def bound(module: rs.Module, name: str, type: str) -> rs.Slot[Node | None]:
+    """Declare a slot whose node is written to memory whenever the slot is.
+
+    It adds to the module the slot, and a rule in the background, ``remember_<name>``, that saves what is written to
+    it: in the order of the writes, one after the other. A write that fails is an error of that rule (``rs.error``).
+    None is not written: it forgets nobody.
+
+    Args:
+        module: The module that the slot is to belong to; it requires `ontology`.
+        name: The slot's name.
+        type: The type of its nodes; subtypes are welcome.
+
+    Raises:
+        DeclarationError: The module does not require `ontology`, or the name is none.
+
+    Example:
+        ::
+
+            host = rs.Module("host", requires=[ontology])
+            guest = ontology.bound(host, "guest", "Person")
+
+            @host.rule(when=introduced, writes=guest)
+            async def meet(ctx):
+                ctx[guest] = Node("Person", {"name": ctx.payload(introduced)})
+    """
+    if ontology not in module.requires:
+        raise DeclarationError(
+            f"module {module.name} ({module.origin}) binds {name} to memory: write rs.Module({module.name!r}, "
+            "requires=[ontology, ...])"
+        )
+    slot: rs.Slot[Node | None] = module.slot(name, type=Node)
+
+    @module.rule(
+        when=slot.changed.max_age(None).detached(),
+        reads=memory,
+        background=True,
+        name=f"remember_{name}",
+    )
+    async def remember(ctx: rs.RuleContext) -> None:
+        """Write to memory what was written to the slot."""
+        node: object = ctx.payload(slot.changed)
+        if node is None:
+            return
+        if not isinstance(node, Node):
+            raise RuleError(f"{slot.name} was set to {node!r}: write a Node, e.g. Node({type!r}, {{...}})")
+        opened = ctx[memory]
+        if opened is None:
+            raise PlatformError(f"{node.id} is not remembered: there is no memory, see the error before")
+        await opened.save(node, of=type)
+
+    return slot

@@ -1,0 +1,325 @@
+"""The embedded graph database: ladybug, one file."""
+
+from __future__ import annotations
+
+import contextlib
+import ctypes
+import logging
+import os
+import re
+import shutil
+from collections.abc import Generator, Mapping, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any, cast
+
+from ravestate.errors import PlatformError
+
+from .store import FORMAT, RawNode, RawRelation, check_format
+from .types import Kind, Types
+
+__all__ = ["EmbeddedStore"]
+
+BUFFER = 128 * 2**20
+"""Bytes of memory that pages of the file may take at most."""
+
+LARGEST = 2**36
+"""Bytes of address space for the file: it cannot grow beyond."""
+
+RESERVE = 16 * 2**20
+"""Free bytes on the disk below which nothing is written any more: the database stands no write that fails."""
+
+LOG_LIMIT = 4 * 2**20
+"""Bytes of the write-ahead log from which it is worked into the file."""
+
+COLUMNS: dict[Kind, str] = {
+    "text": "STRING",
+    "integer": "INT64",
+    "number": "DOUBLE",
+    "yes/no": "BOOL",
+    "date": "STRING",
+    "time": "STRING",
+}
+
+META = "_ravestate"
+"""The table that says how the rest is laid out. No type of a user's begins with ``_``."""
+
+log = logging.getLogger("ravestate.ontology")
+
+
+class EmbeddedStore:
+    """A file that ladybug keeps, in this process alone.
+
+    What is committed is in the write-ahead log, on disk. Two faults of the database's are kept from the agent:
+    when a write to the log fails, the next one would hang, and closing would end the process. So there is a look
+    at the free space before each write; should one fail all the same, nothing more is written, and the database is
+    neither closed nor collected until its files can be written again.
+    """
+
+    def __init__(self, path: Path) -> None:
+        """Open a file, or make a new one.
+
+        Args:
+            path: The file; its folder is made where it is missing, for the user alone.
+
+        Raises:
+            PlatformError: The package is missing, or the file is in use, broken, newer, or cannot be written.
+        """
+        try:
+            import ladybug
+        except ImportError as error:
+            raise PlatformError("ontology needs ladybug: pip install 'ravestate[ontology]'") from error
+        self._ladybug = ladybug
+        self._path = path
+        self._log = path.with_name(path.name + ".wal")
+        self._log_limit = LOG_LIMIT
+        self._stuck = ""
+        self._within = False
+        try:
+            path.parent.mkdir(parents=True, exist_ok=True, mode=0o700)
+        except OSError as error:
+            raise PlatformError(f"memory {path}: cannot make its folder: {error.strerror}") from error
+        self._check_space(0)
+        self._open()
+
+    # ------------------------------------------------------------------------------------ statements
+
+    def read(self, statement: str, parameters: Mapping[str, Any]) -> list[Sequence[Any]]:
+        """Run a statement that writes nothing."""
+        return [[_decoded(value) for value in row] for row in self._execute(statement, parameters)]
+
+    def write(self, statement: str, parameters: Mapping[str, Any]) -> list[Sequence[Any]]:
+        """Run a statement that writes."""
+        self._be_writable(sum(len(value) for value in parameters.values() if isinstance(value, str)))
+        rows = self.read(statement, parameters)
+        if not self._within:
+            self._shorten_log()
+        return rows
+
+    @contextmanager
+    def transaction(self) -> Generator[None]:
+        """All statements within are done together, or none."""
+        self._be_writable(0)
+        self._execute("BEGIN TRANSACTION")
+        self._within = True
+        try:
+            yield
+            self._execute("COMMIT")
+        except BaseException:
+            with contextlib.suppress(PlatformError):  # one that failed is rolled back already
+                self._execute("ROLLBACK")
+            raise
+        finally:
+            self._within = False
+        self._shorten_log()
+
+    def _execute(self, statement: str, parameters: Mapping[str, Any] | None = None) -> list[list[Any]]:
+        try:
+            result: Any = self._connection.execute(statement, dict(parameters or {}))
+            return result.get_all()
+        except RuntimeError as error:
+            said = str(error)
+            if "Cannot write to file" in said or "Cannot sync file" in said:
+                self._get_stuck(said)
+                raise PlatformError(
+                    f"memory {self._path} cannot be written: {_reason(said)}. Make room on the disk; what was acknowledged is "
+                    "safe, and memory goes on when there is"
+                ) from error
+            raise PlatformError(f"memory {self._path} failed: {said.strip()}") from error
+
+    # ------------------------------------------------------------------------------------ tables
+
+    def prepare(self, types: Types) -> None:
+        """Make room for all types, properties and relations that are not there yet."""
+        with self.transaction():
+            tables = {name for name, _ in self._execute("CALL show_tables() RETURN name, type")}
+            if META in tables:
+                [[found]] = self._execute(f"MATCH (m:`{META}` {{`key`: 'format'}}) RETURN m.`value`") or [
+                    [None]
+                ]
+                check_format(str(self._path), found)
+            elif tables:
+                raise PlatformError(
+                    f"{self._path} is a ladybug database of something else (it has {', '.join(sorted(tables)[:3])}): name another "
+                    "file with --set ontology.path=FILE. Nothing was changed"
+                )
+            else:
+                self._execute(f"CREATE NODE TABLE `{META}` (`key` STRING PRIMARY KEY, `value` INT64)")
+                self._execute(f"CREATE (:`{META}` {{`key`: 'format', `value`: {FORMAT}}})")
+            for name in types:
+                columns = types.properties(name)
+                if name not in tables:
+                    listed = ", ".join(["`id` STRING PRIMARY KEY", *_columns(columns)])
+                    self._execute(f"CREATE NODE TABLE `{name}` ({listed})")
+                else:
+                    self._add_columns(name, columns)
+            for name, relation in types.relations.items():
+                pairs = types.pairs(name)
+                if name not in tables:
+                    ends = [f"FROM `{source}` TO `{target}`" for source, target in pairs]
+                    self._execute(
+                        f"CREATE REL TABLE `{name}` ({', '.join([*ends, *_columns(relation.properties)])})"
+                    )
+                else:
+                    present = {
+                        (row[0], row[1]) for row in self._execute(f"CALL show_connection('{name}') RETURN *")
+                    }
+                    for source, target in pairs:
+                        if (source, target) not in present:
+                            self._execute(f"ALTER TABLE `{name}` ADD FROM `{source}` TO `{target}`")
+                    self._add_columns(name, relation.properties)
+
+    def _add_columns(self, table: str, properties: Mapping[str, Kind]) -> None:
+        present = self._info(table)
+        for name, kind in properties.items():
+            if name not in present:
+                self._execute(f"ALTER TABLE `{table}` ADD `{name}` {COLUMNS[kind]}")
+            elif present[name] != COLUMNS[kind]:
+                held = next((k for k, column in COLUMNS.items() if column == present[name]), present[name])
+                raise PlatformError(
+                    f"memory {self._path} has {table}.{name} as {held}, and the types say {kind}: write {name}: {held}, or give the "
+                    "property another name. Nothing was changed"
+                )
+
+    def _info(self, table: str) -> dict[str, str]:
+        return {row[0]: row[1] for row in self._execute(f"CALL table_info('{table}') RETURN name, type")}
+
+    def undeclared(self, types: Types) -> list[str]:
+        """The names of types in the file that `types` do not have."""
+        rows = self._execute("CALL show_tables() RETURN name, type")
+        known = {META, *types, *types.relations}
+        return sorted(name for name, _ in rows if name not in known)
+
+    # ------------------------------------------------------------------------------------ the file
+
+    def _open(self) -> None:
+        try:
+            self._database = self._ladybug.Database(
+                str(self._path),
+                buffer_pool_size=BUFFER,
+                max_db_size=LARGEST,
+                max_num_threads=1,
+                auto_checkpoint=False,  # done here, where it may fail
+            )
+            self._connection = self._ladybug.Connection(self._database, num_threads=1)
+            self._connection.execute("CALL force_checkpoint_on_close=false")
+        except RuntimeError as error:
+            raise PlatformError(_why_not(self._path, str(error))) from error
+        with contextlib.suppress(OSError):  # of another user's, who lets us write it
+            self._path.chmod(0o600)
+
+    def close(self) -> None:
+        """Let go of the file, its log worked in. If it cannot be written, the log is for the next opening."""
+        if self._stuck and not self._can_write():
+            log.warning("memory %s stays open until the process ends: %s", self._path, self._stuck)
+            return
+        self._shorten_log(limit=0)
+        self._connection.close()
+        self._database.close()
+
+    def _shorten_log(self, limit: int | None = None) -> None:
+        size = self._log_size()
+        if size <= (self._log_limit if limit is None else limit) or self._stuck:
+            return
+        try:
+            self._check_space(4 * size)
+            self._execute("CHECKPOINT")
+            self._log_limit = LOG_LIMIT
+        except PlatformError as error:  # nothing is lost, and it may go better next time
+            self._log_limit = 2 * size
+            log.warning("memory %s keeps a log of %d bytes: %s", self._path, size, error)
+
+    def _log_size(self) -> int:
+        try:
+            return self._log.stat().st_size
+        except OSError:
+            return 0
+
+    def _check_space(self, needed: int) -> None:
+        try:
+            free = shutil.disk_usage(self._path.parent).free
+        except OSError:
+            return  # the write itself will tell
+        if free < RESERVE + needed:
+            raise PlatformError(
+                f"memory {self._path} cannot be written: the disk is full ({free // 2**20} MB free, and it wants "
+                f"{(RESERVE + needed) // 2**20 + 1}). Make room; what was acknowledged is safe, and memory goes on when there is"
+            )
+
+    def _be_writable(self, size: int) -> None:
+        self._check_space(4 * size)
+        if not self._stuck:
+            return
+        if not self._can_write():
+            raise PlatformError(
+                f"memory {self._path} cannot be written: {self._stuck}. Make room on the disk; what was acknowledged is safe, "
+                "and memory goes on when there is"
+            )
+        self._connection.close()
+        self._database.close()
+        self._stuck = ""
+        self._open()
+
+    def _get_stuck(self, said: str) -> None:
+        self._stuck = _reason(said)
+        for held in (self._connection, self._database):  # never collected: that would end the process
+            ctypes.pythonapi.Py_IncRef(ctypes.py_object(held))
+
+    def _can_write(self) -> bool:
+        """Whether a file beside the log can be made a little longer than the log is."""
+        probe = self._path.with_name(self._path.name + ".probe")
+        try:
+            with probe.open("wb") as file:
+                file.truncate(self._log_size())
+                file.seek(0, os.SEEK_END)
+                file.write(bytes(2**20))
+                file.flush()
+                os.fsync(file.fileno())
+            return True
+        except OSError:
+            return False
+        finally:
+            probe.unlink(missing_ok=True)
+
+
+def _columns(properties: Mapping[str, Kind]) -> list[str]:
+    return [f"`{name}` {COLUMNS[kind]}" for name, kind in properties.items()]
+
+
+def _decoded(value: Any) -> Any:
+    if isinstance(value, dict) and "_LABEL" in value:
+        found = cast("dict[str, Any]", value)
+        return (RawRelation if "_SRC" in found else RawNode)(found["_LABEL"], found)
+    return cast("Any", value)
+
+
+def _reason(said: str) -> str:
+    """Why a write failed, of what ladybug says about it."""
+    reason = said.rpartition("Error: ")[2].strip().rstrip(".")
+    return reason if reason not in ("", "Success", "No such file or directory") else "the disk is full"
+
+
+def _why_not(path: Path, said: str) -> str:
+    """What a user is told when a file cannot be opened."""
+    first = said.strip().splitlines()[0] if said.strip() else "no reason given"
+    if "set lock" in said:
+        held = re.search(r"PID (\d+)", said)
+        who = f"process {held[1]}" if held else "another process"
+        return (
+            f"memory {path} is in use by {who}: only one process may have it open. End that agent, or name another file "
+            "with --set ontology.path=FILE"
+        )
+    if version := re.search(r"file version: (\d+), Current build storage version: (\d+)", said):
+        newer = int(version[1]) > int(version[2])
+        return (
+            f"memory {path} was written by {'a newer' if newer else 'an older'} version of ladybug (format {version[1]}; this one "
+            f"reads {version[2]}): "
+            + ("pip install --upgrade ladybug" if newer else "export it with that one, and load it here")
+            + ", or name another file with --set ontology.path=FILE. Nothing was changed"
+        )
+    if "Cannot open file" in said or "directory" in said:
+        return f"memory {path} cannot be opened: {first.rpartition(': ')[2] or first}. Name another file with --set ontology.path=FILE"
+    return (
+        f"memory {path} is broken, or no file of memory ({first}): move it away to begin anew, or put a copy of it in its "
+        "place. Nothing was changed"
+    )

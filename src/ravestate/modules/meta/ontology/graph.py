@@ -1,0 +1,304 @@
+"""The operations on the graph, in Cypher. Each is one transaction."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from ravestate.errors import RuleError
+
+from .document import read_document, write_document
+from .node import Node, Relation, Value
+from .store import RawNode, RawRelation, Store
+from .types import Types
+
+__all__ = ["Graph"]
+
+AGENT = "Agent"
+"""Of this type is who may have told things about himself."""
+
+
+class Graph:
+    """A store seen through types."""
+
+    def __init__(self, store: Store, types: Types) -> None:
+        self._store = store
+        self._types = types
+
+    def prepare(self) -> None:
+        """Make room for the types."""
+        self._store.prepare(self._types)
+
+    # ------------------------------------------------------------------------------------ nodes
+
+    def save(self, node: Node, of: str | None = None) -> Node:
+        """Set the properties that a node has, whether it is known or not."""
+        if of is not None and not self._types.is_a(node.type, of):
+            raise RuleError(f"{node.id} is a {node.type}, and a {of} is wanted")
+        return self._write(_known(node), self._types.stored(node.type, node.properties))
+
+    def ensure(self, type: str, properties: Mapping[str, Value]) -> Node:
+        """The oldest node that matches, or a new one."""
+        with self._store.transaction():
+            found = self.find(type, properties)
+            return found[0] if found else self.save(Node(type, properties))
+
+    def find(self, type: str, properties: Mapping[str, Value]) -> list[Node]:
+        """All nodes of a type and its subtypes that match, oldest first."""
+        wanted = self._types.stored(type, properties)
+        tests = ["n.`id` IS NOT NULL"]
+        tests += [f"n.`{key}` IS NULL" if wanted[key] is None else f"n.`{key}` = $p_{key}" for key in wanted]
+        return self._nodes(
+            f"MATCH (n:{self._labels(type)}) WHERE {' AND '.join(tests)} RETURN n",
+            _parameters({key: value for key, value in wanted.items() if value is not None}),
+        )
+
+    def get(self, id: str) -> Node | None:
+        """The node with this id."""
+        label, _, _ = id.partition(":")
+        if label not in self._types:
+            return None
+        found = self._nodes(f"MATCH (n:`{label}` {{`id`: $id}}) RETURN n", {"id": id})
+        return found[0] if found else None
+
+    def update(self, node: Node, properties: Mapping[str, Value]) -> Node:
+        """Set properties of a node that is known."""
+        values = self._types.stored(node.type, properties)
+        with self._store.transaction():
+            self._must_know(node)
+            return self._write(node, values)
+
+    def _write(self, node: Node, values: Mapping[str, Any]) -> Node:
+        [[raw]] = self._store.write(
+            f"MERGE (n:`{node.type}` {{`id`: $id}}){_setting('n', values)} RETURN n",
+            {"id": node.id, **_parameters(values)},
+        )
+        return Node(node.type, self._types.loaded(node.type, raw.values), node.id)
+
+    # ------------------------------------------------------------------------------------ relations
+
+    def relate(self, node: Node, relation: str, other: Node, properties: Mapping[str, Value]) -> None:
+        """Relate two nodes that are known, and set properties of the relation."""
+        self._types.check_relation(node.type, relation, other.type)
+        values = self._types.stored_of(relation, properties)
+        with self._store.transaction():
+            self._must_know(node)
+            self._must_know(other)
+            self._relate(node, relation, other, values)
+
+    def unrelate(self, node: Node, relation: str, other: Node) -> None:
+        """End a relation."""
+        self._types.check_relation(node.type, relation, other.type)
+        self._store.write(
+            f"MATCH (a:`{node.type}` {{`id`: $a}})-[r:`{relation}`]->(b:`{other.type}` {{`id`: $b}}) DELETE r",
+            {"a": node.id, "b": other.id},
+        )
+
+    def related(self, node: Node, relation: str, *, back: bool) -> list[Node]:
+        """The nodes at the other end of a relation."""
+        self._types.check_end(node.type, relation, back=back)
+        pattern = f"<-[:`{relation}`]-" if back else f"-[:`{relation}`]->"
+        return self._nodes(
+            f"MATCH (a:`{node.type}` {{`id`: $id}}){pattern}(b) RETURN b", {"id": _known(node).id}
+        )
+
+    def relations(self, node: Node) -> list[Relation]:
+        """All relations from a node, then to it."""
+        found = [Relation(node, name, other, values) for name, values, other in self._ends(node, back=False)]
+        found += [
+            Relation(other, name, node, values)
+            for name, values, other in self._ends(node, back=True)
+            if other.id != node.id  # it stands above
+        ]
+        return found
+
+    def _relate(self, node: Node, relation: str, other: Node, values: Mapping[str, Any]) -> None:
+        self._store.write(
+            f"MATCH (a:`{node.type}` {{`id`: $a}}), (b:`{other.type}` {{`id`: $b}}) "
+            f"MERGE (a)-[r:`{relation}`]->(b){_setting('r', values)}",
+            {"a": node.id, "b": other.id, **_parameters(values)},
+        )
+
+    def _ends(self, node: Node, *, back: bool) -> list[tuple[str, dict[str, Value], Node]]:
+        """The relations of a node, by name, properties and the other end; those alone that the types know."""
+        found: list[tuple[str, dict[str, Value], Node]] = []
+        for relation, raw in self._edges(node, back=back):
+            other = self._node(raw)
+            if other is not None and relation.name in self._types.relations:
+                found.append((relation.name, self._types.loaded_of(relation.name, relation.values), other))
+        return sorted(found, key=lambda end: (end[0], _age(end[2])))
+
+    def _edges(self, node: Node, *, back: bool) -> list[tuple[RawRelation, RawNode]]:
+        self._types.properties(node.type)  # there is such a type
+        pattern = "<-[r]-" if back else "-[r]->"
+        rows = self._store.read(
+            f"MATCH (a:`{node.type}` {{`id`: $id}}){pattern}(b) RETURN r, b", {"id": _known(node).id}
+        )
+        return [(row[0], row[1]) for row in rows]
+
+    # ------------------------------------------------------------------------------------ whole lives
+
+    def merge(self, keep: Node, duplicate: Node) -> Node:
+        """Make one node of two."""
+        if keep.id == duplicate.id:
+            raise RuleError(f"{keep.id} cannot be merged with itself")
+        if not self._types.is_a(keep.type, duplicate.type):
+            hint = " the other way round" if self._types.is_a(duplicate.type, keep.type) else ""
+            raise RuleError(
+                f"{keep.id} cannot take over what {duplicate.id} has: a {keep.type} is no {duplicate.type}"
+                + (f"; merge them{hint}" if hint else "")
+            )
+        with self._store.transaction():
+            kept, other = self._must_know(keep), self._must_know(duplicate)
+            self._must_declare(other)
+            for name, values, target in self._ends(other, back=False):
+                if target.id != kept.id:
+                    self._take_over(kept, name, kept if target.id == other.id else target, values)
+            for name, values, source in self._ends(other, back=True):
+                if source.id not in (other.id, kept.id):
+                    self._take_over(source, name, kept, values)
+            missing = {key: value for key, value in other.properties.items() if key not in kept.properties}
+            self._remove(other)
+            return self._write(kept, self._types.stored(kept.type, missing))
+
+    def _take_over(self, source: Node, name: str, target: Node, values: Mapping[str, Value]) -> None:
+        """Move a relation to other ends; where there is one already, its properties go first."""
+        present: Mapping[str, Value] = {}
+        for known, had, end in self._ends(source, back=False):
+            if known == name and end.id == target.id:
+                present = had
+        self._relate(source, name, target, self._types.stored_of(name, {**values, **present}))
+
+    def only_about(self, node: Node) -> list[Node]:
+        """A node, and what is known on its account alone; nothing if it is not known."""
+        start = self.get(node.id)
+        if start is None:
+            return []
+        going = {start.id: start}
+        reached = [start]
+        for one in reached:  # grows on the way
+            for _, _, other in self._ends(one, back=False):
+                if other.id not in going and not self._has_own_life(other, start):
+                    going[other.id] = other
+                    reached.append(other)
+        while staying := [one for one in going if one != start.id and self._is_wanted(going[one], going)]:
+            for one in staying:
+                del going[one]
+        return list(going.values())
+
+    def forget(self, node: Node) -> list[Node]:
+        """Remove a node with everything about it."""
+        with self._store.transaction():
+            going = self.only_about(node)
+            for one in going:
+                self._remove(one)
+            return going
+
+    def _has_own_life(self, other: Node, start: Node) -> bool:
+        """Whether it is an agent of which more than the name is known."""
+        if AGENT not in self._types or not self._types.is_a(other.type, AGENT):
+            return False
+        return bool(other.properties.keys() - {"name"}) or any(
+            raw.values.get("id") != start.id for _, raw in self._edges(other, back=False)
+        )
+
+    def _is_wanted(self, node: Node, going: Mapping[str, Node]) -> bool:
+        """Whether anything that stays is related to it."""
+        return any(raw.values.get("id") not in going for _, raw in self._edges(node, back=True))
+
+    def _must_declare(self, node: Node) -> None:
+        """Make sure that the types know all relations of a node, so that none is lost with it."""
+        edges = self._edges(node, back=False) + self._edges(node, back=True)
+        unknown = {relation.name for relation, _ in edges} - self._types.relations.keys()
+        unknown |= {raw.label for _, raw in edges if raw.label not in self._types}
+        if unknown:
+            raise RuleError(
+                f"{node.id} is related by {', '.join(sorted(unknown))}, which no file of types has: name the file that has it in "
+                "the setting ontology.types"
+            )
+
+    def _remove(self, node: Node) -> None:
+        self._store.write(f"MATCH (n:`{node.type}` {{`id`: $id}}) DETACH DELETE n", {"id": node.id})
+
+    # ------------------------------------------------------------------------------------ documents
+
+    def export(self) -> dict[str, Any]:
+        """Everything, as a document."""
+        nodes = sorted(
+            (node for type in self._types for node in self._nodes(f"MATCH (n:`{type}`) RETURN n", {})),
+            key=_age,
+        )
+        known = {node.id for node in nodes}
+        relations = [
+            Relation(node, name, other, values)
+            for node in nodes
+            for name, values, other in self._ends(node, back=False)
+            if other.id in known
+        ]
+        return write_document(nodes, relations)
+
+    def load(self, document: Mapping[str, Any]) -> int:
+        """Save what a document has."""
+        nodes, relations = read_document(document, self._types)
+        with self._store.transaction():
+            for node in nodes:
+                self.save(node)
+            for relation in relations:
+                self._types.check_relation(relation.source.type, relation.name, relation.target.type)
+                self._must_know(relation.source)
+                self._must_know(relation.target)
+                values = self._types.stored_of(relation.name, relation.properties)
+                self._relate(relation.source, relation.name, relation.target, values)
+        return len(nodes)
+
+    def undeclared(self) -> list[str]:
+        """The names of types that the store has and the types do not."""
+        return self._store.undeclared(self._types)
+
+    # ------------------------------------------------------------------------------------ internals
+
+    def _labels(self, type: str) -> str:
+        return "|".join(f"`{name}`" for name in self._types.subtypes(type))
+
+    def _nodes(self, statement: str, parameters: Mapping[str, Any]) -> list[Node]:
+        """The nodes that a statement returns, each once, oldest first."""
+        rows = self._store.read(statement, parameters)
+        found = {node.id: node for row in rows if (node := self._node(row[0])) is not None}
+        return sorted(found.values(), key=_age)
+
+    def _node(self, raw: RawNode) -> Node | None:
+        """A node as the types see it; None for one that they do not know."""
+        id = raw.values.get("id")
+        if raw.label not in self._types or not isinstance(id, str):
+            return None
+        return Node(raw.label, self._types.loaded(raw.label, raw.values), id)
+
+    def _must_know(self, node: Node) -> Node:
+        self._types.properties(node.type)
+        found = self.get(_known(node).id)
+        if found is None:
+            raise RuleError(
+                f"memory does not know {node.id} (or no longer): save it first, with await memory.save(node)"
+            )
+        return found
+
+
+def _known(node: Node) -> Node:
+    """A node whose id is of its type: by it the node is found again."""
+    if not node.id.startswith(f"{node.type}:"):
+        raise RuleError(f"the id {node.id!r} of a {node.type} must begin with '{node.type}:'")
+    return node
+
+
+def _age(node: Node) -> tuple[str, str]:
+    return node.id.partition(":")[2], node.id
+
+
+def _setting(variable: str, values: Mapping[str, Any]) -> str:
+    """The clause that sets properties, to parameters that no id's parameter is called like."""
+    settings = ", ".join(f"{variable}.`{key}` = $p_{key}" for key in values)
+    return f" SET {settings}" if settings else ""
+
+
+def _parameters(values: Mapping[str, Any]) -> dict[str, Any]:
+    return {f"p_{key}": value for key, value in values.items()}

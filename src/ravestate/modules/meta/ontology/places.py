@@ -1,0 +1,71 @@
+"""Where memory is, by the settings, and how it is opened there."""
+
+from __future__ import annotations
+
+import os
+import sys
+from importlib.resources import files
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from .keeper import Keeper
+from .memory import Memory
+from .type_files import read_types
+from .types import Types
+
+if TYPE_CHECKING:
+    from . import Settings
+
+__all__ = ["default_path", "open_memory", "types_of"]
+
+
+def default_path(agent: str) -> Path:
+    """The file of an agent's memory in the user's data folder, as the platform has it."""
+    if sys.platform == "win32":
+        base = Path(os.environ.get("LOCALAPPDATA") or Path.home() / "AppData" / "Local")
+    elif sys.platform == "darwin":
+        base = Path.home() / "Library" / "Application Support"
+    else:
+        given = os.environ.get("XDG_DATA_HOME", "")  # a relative one does not count, says its standard
+        base = Path(given) if Path(given).is_absolute() else Path.home() / ".local" / "share"
+    return base / "ravestate" / agent / "memory.lbug"
+
+
+def types_of(settings: Settings) -> Types:
+    """The types that come with the module, and the user's.
+
+    Raises:
+        DeclarationError: A file is no file of types, or contradicts another.
+        PlatformError: A file cannot be read.
+    """
+    built_in = files("ravestate.modules.meta.ontology") / "types.yaml"
+    return read_types([built_in, *(path.expanduser() for path in settings.types)])
+
+
+def open_memory(settings: Settings) -> Memory:
+    """Begin to open memory where the settings say; all of it happens in memory's thread.
+
+    What is wrong is raised by ``memory.opened()``.
+    """
+
+    def read() -> Types:
+        return types_of(settings)
+
+    if settings.url is not None:
+        return Memory(Keeper(settings.url, lambda: _server(settings)), read)
+    path = Path(os.path.realpath((settings.path or default_path(settings.agent)).expanduser()))
+    return Memory(Keeper.shared(str(path), str(path), lambda: _file(path)), read)
+
+
+def _file(path: Path) -> Any:
+    from .embedded import EmbeddedStore
+
+    return EmbeddedStore(path)
+
+
+def _server(settings: Settings) -> Any:
+    from .bolt import BoltStore
+
+    assert settings.url is not None  # as asked for above
+    password = "" if settings.password is None else settings.password.get_secret_value()
+    return BoltStore(settings.url, settings.user, password, settings.database, settings.timeout)

@@ -1,0 +1,36 @@
+"""When memory is opened and closed."""
+
+from __future__ import annotations
+
+import asyncio
+
+import ravestate as rs
+
+from . import memory, module
+from .places import open_memory
+
+
+@module.rule(when=rs.startup.detached(), writes=memory, detached=True, background=True)
+async def open_up(ctx: rs.RuleContext) -> None:
+    """Open memory where the settings say. The slot has it at once, as what is asked of it waits until it is open."""
+    opening = open_memory(ctx.settings)
+    ctx[memory] = opening
+    try:
+        await opening.opened()
+    except BaseException:
+        ctx[memory] = None  # the talk goes on without
+        opening.close()
+        raise
+
+
+@module.rule(when=rs.shutdown.detached(), reads=memory, background=True)
+async def close(ctx: rs.RuleContext) -> None:
+    """Close memory, after what others still want to write."""
+    opened = ctx[memory]
+    if opened is None:
+        return
+    try:
+        await ctx.quiet()
+        await asyncio.sleep(0)  # what the last of them wrote to bound slots is on its way
+    finally:
+        await opened.close()
