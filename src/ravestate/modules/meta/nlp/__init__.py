@@ -5,10 +5,10 @@ from __future__ import annotations
 import ravestate as rs
 from ravestate.modules import rawio
 
+from .answer import YesNo
 from .entity import Entity
 from .question_word import QuestionWord
 from .triple import Triple
-from .answer import YesNo
 
 __all__ = [
     "Entity",

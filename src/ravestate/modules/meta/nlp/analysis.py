@@ -6,19 +6,20 @@ import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+from .answer import YesNo, yesno_of
 from .entity import Entity
+from .inquiry import question_of
 from .intents import says_bye, says_hi, wants_to_play
 from .pipeline import Pipeline
-from .inquiry import question_of
 from .question_word import QuestionWord
+from .statements import triples_of
 from .tree import Tree
 from .triple import Triple
-from .statements import triples_of
-from .answer import YesNo, yesno_of
+from .word_set import word_set
 
 __all__ = ["Analysis", "analyse"]
 
-_SECOND_PERSON = frozenset("you your yours yourself u ur".split())
+_SECOND_PERSON = word_set("you your yours yourself u ur")
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,7 +10,8 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
-from .answer_cues import CUES, FOLLOWERS, STRICT, Cue
+from .answer_cues import CUES, FOLLOWERS, STATERS, STRICT, UNKNOWNS, Cue
+from .word_set import word_set
 
 __all__ = ["YesNo", "yesno_of"]
 
@@ -43,8 +44,8 @@ _TOKEN = re.compile(r"[^\W_]+(?:[-'][^\W_]+)*|[.,;:!?…\n]+|👍|👎")
 _STRETCHED = re.compile(r"(.)\1{2,}")
 _PUNCTUATION = frozenset(".,;:!?…\n")
 _TURNS = frozenset(["but", "although", "though", "however"])
-_IDLE = frozenset(
-    "really honestly just actually simply truly quite personally still totally absolutely definitely".split()
+_IDLE = word_set(
+    "really honestly just actually simply truly quite personally still totally absolutely definitely"
 )
 """Adverbs that change nothing between *I* and its verb: *I really don't know*."""
 _LONGEST_CUE = max(len(cue) for cue in CUES)
@@ -114,8 +115,15 @@ def _words(text: str) -> list[str]:
     return [
         word
         for index, word in enumerate(found)
-        if not (word in _IDLE and index and found[index - 1] in ("i", "we") and found[index + 1 : index + 2])
+        if not (word in _IDLE and 0 < index < len(found) - 1 and _is_idle(found[index - 1], found[index + 1]))
     ]
+
+
+def _is_idle(before: str, after: str) -> bool:
+    """Whether an adverb between these words changes nothing."""
+    return (before in ("i", "we", "have", "am", "do") and after != "not") or (
+        before == "not" and after in ("know", "want", "mind", "think", "believe", "like")
+    )
 
 
 def _answer(words: list[str]) -> tuple[YesNo, int]:
@@ -175,6 +183,10 @@ class _Reader:
         words = self._words
         if index == len(words) or words[index][0] in _PUNCTUATION or words[index] in _TURNS:
             return True
+        if cue is Cue.UNSURE and words[index] in UNKNOWNS:
+            return True
+        if cue in (Cue.HEDGE, Cue.MAYBE) and words[index] in STATERS:
+            return False
         if phrase not in STRICT:
             if cue in (Cue.FILLER, Cue.NOT) or words[index] in FOLLOWERS:
                 return True
@@ -211,7 +223,7 @@ def _weigh(cues: list[Cue]) -> YesNo:
     if not sides:
         return _of_adverbs(cues)
     said = sides[0][0]
-    if said == "unsure":
+    if said == "unsure" or (hedged and len({side for side, _ in sides}) > 1):  # maybe yes, maybe no
         return UNSURE
     strength = max(strong for side, strong in sides if side == said)
     if hedged or any(side == "unsure" for side, _ in sides):

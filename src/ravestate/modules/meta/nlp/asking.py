@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from .question_word import QuestionWord
 from .tree import Word
+from .word_set import word_set
 
 __all__ = ["AUXILIARIES", "QUESTION_WORDS", "kind_at"]
 
@@ -22,24 +23,24 @@ QUESTION_WORDS = {
     "which": QuestionWord.OBJECT,
 }
 
-AUXILIARIES = frozenset(
-    "do does did am is are was were 's 're s re have has had 've can could will would shall should may might must 'll 'd ca wo "
-    "ai".split()
+AUXILIARIES = word_set(
+    "do does did am is are was were 's 're s re have has had 've can could will would shall should may might must 'll 'd ca wo ",
+    "ai",
 )
 """Verbs that change place with the subject in a question."""
 
-_MEASURES = frozenset(
-    "many much old long far tall big large high deep heavy fast hot cold cool warm expensive often wide small short "
-    "young late soon close near thick strong loud rich quickly regularly frequently little few costly".split()
+_MEASURES = word_set(
+    "many much old long far tall big large high deep heavy fast hot cold cool warm expensive often wide small short ",
+    "young late soon close near thick strong loud rich quickly regularly frequently little few costly",
 )
 _CLASSES = {
-    QuestionWord.TIME: "time day date hour week month year weekday century".split(),
-    QuestionWord.PLACE: "place city town village country state street".split(),
-    QuestionWord.PERSON: "person people man woman boy girl guy child".split(),
+    QuestionWord.TIME: word_set("time day date hour week month year weekday century"),
+    QuestionWord.PLACE: word_set("place city town village country state street"),
+    QuestionWord.PERSON: word_set("person people man woman boy girl guy child"),
 }
 _CLASS_OF = {noun: kind for kind, nouns in _CLASSES.items() for noun in nouns}
-_FOUGHT_FOR = frozenset(
-    "look wait ask search pay care stand work hope vote apply prepare fight study go know famous long plan shop hunt".split()
+_FOUGHT_FOR = word_set(
+    "look wait ask search pay care stand work hope vote apply prepare fight study go know famous long plan shop hunt"
 )
 """Verbs with which *what ... for* asks for a thing."""
 

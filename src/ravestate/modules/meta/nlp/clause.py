@@ -11,6 +11,7 @@ from .noun_phrase import adjective_phrase, gerund_phrase, noun_phrase
 from .question_word import QuestionWord
 from .tree import Tree, Word
 from .triple import Triple
+from .word_set import word_set
 
 __all__ = ["Clause"]
 
@@ -25,26 +26,26 @@ _DIRECT = (
 _HEADS = ("ROOT", "conj", "ccomp", "xcomp", "advcl", "relcl", "parataxis", "pcomp", "csubj", "dep", "acl")
 _VERBAL = ("VERB", "AUX")
 
-_PLACES = frozenset(
-    "here there home abroad outside inside upstairs downstairs away everywhere nowhere somewhere".split()
+_PLACES = word_set(
+    "here there home abroad outside inside upstairs downstairs away everywhere nowhere somewhere"
 )
-_FEELINGS = frozenset(
-    "interested tired bored married divorced scared excited worried surprised pleased disappointed confused retired "
-    "annoyed satisfied".split()
+_FEELINGS = word_set(
+    "interested tired bored married divorced scared excited worried surprised pleased disappointed confused retired ",
+    "annoyed satisfied",
 )
-_PURSUITS = frozenset("hobby job passion dream goal plan interest pastime task habit".split())
+_PURSUITS = word_set("hobby job passion dream goal plan interest pastime task habit")
 """*My hobby is reading* says what the hobby is, not what it does."""
-_MOTION = frozenset("come go travel fly drive run move stay".split())
+_MOTION = word_set("come go travel fly drive run move stay")
 """Verbs after which an infinitive tells the purpose, so that it is an action of its own."""
-_GERUND_TAKERS = frozenset(
-    "like love hate enjoy prefer dislike start stop begin continue keep practise practice try".split()
+_GERUND_TAKERS = word_set(
+    "like love hate enjoy prefer dislike start stop begin continue keep practise practice try"
 )
 _NEGATIONS = frozenset(["not", "n't", "nt", "never"])
 _BE = frozenset(["be", "am", "is", "are", "was", "were", "m", "s", "re", "'s", "'m", "'re"])
-_SENSES = frozenset("be feel look seem sound".split())
-_STATES = frozenset("better worse well fine good bad great ok okay awful".split())
+_SENSES = word_set("be feel look seem sound")
+_STATES = word_set("better worse well fine good bad great ok okay awful")
 """Words that the tagger takes for adverbs, but that tell how somebody is."""
-_MISTAKEN = frozenset("like love play work live study dance swim paint cook".split())
+_MISTAKEN = word_set("like love play work live study dance swim paint cook")
 """Verbs that the tagger often takes for something else."""
 _SHORT = {"wan": "want", "gon": "go", "got": "get", "ca": "can", "wo": "will"}
 

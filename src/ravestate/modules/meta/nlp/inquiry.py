@@ -11,25 +11,26 @@ from collections.abc import Sequence
 from .asking import AUXILIARIES, QUESTION_WORDS, kind_at
 from .question_word import QuestionWord
 from .tree import Tree, Word
+from .word_set import word_set
 
 __all__ = ["question_of"]
 
-_OPENERS = frozenset(
-    "well so oh ok okay hi hello hey hallo good morning evening afternoon um uh hmm ah and but or then now please sorry excuse "
-    "me thanks great fine yes no yeah nice cool right alright also actually just by the way anyway sure wow haha".split()
+_OPENERS = word_set(
+    "well so oh ok okay hi hello hey hallo good morning evening afternoon um uh hmm ah and but or then now please sorry excuse ",
+    "me thanks great fine yes no yeah nice cool right alright also actually just by the way anyway sure wow haha",
 )
 """What may stand before a question, and says nothing."""
 
-_PRONOUNS = frozenset(
-    "i you u he she it we they there this that these those someone somebody anyone anybody everyone everybody your my his her "
-    "our their ya yours his hers".split()
+_PRONOUNS = word_set(
+    "i you u he she it we they there this that these those someone somebody anyone anybody everyone everybody your my his her ",
+    "our their ya yours his hers",
 )
-_DETERMINERS = frozenset("the a an any some all".split())
+_DETERMINERS = word_set("the a an any some all")
 _NOT = frozenset(["not", "n't", "nt", "n’t"])
-_BE = frozenset("am is are was were 's 're s re".split())
-_KNOWING = frozenset(
-    "know remember tell say explain guess wonder wondering ask asking see understand show recall forget idea sure figure "
-    "mean heard matter care curious describe".split()
+_BE = word_set("am is are was were 's 're s re")
+_KNOWING = word_set(
+    "know remember tell say explain guess wonder wondering ask asking see understand show recall forget idea sure figure ",
+    "mean heard matter care curious describe",
 )
 """Words after which a question word begins an indirect question."""
 
@@ -90,7 +91,7 @@ _WANT_TO_KNOW = (
 """How indirect questions begin."""
 _TELL = tuple(tuple(opening.split()) for opening in _WANT_TO_KNOW if "tell" in opening)
 _OPENINGS = tuple(sorted((tuple(opening.split()) for opening in _WANT_TO_KNOW), key=len, reverse=True))
-_PERFORMED = frozenset("joke story tale poem riddle secret lie fairytale anecdote goodnight".split())
+_PERFORMED = word_set("joke story tale poem riddle secret lie fairytale anecdote goodnight")
 """What is told for its own sake: asking for it is no question."""
 
 

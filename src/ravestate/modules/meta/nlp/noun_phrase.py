@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from .tree import Tree, Word
+from .word_set import word_set
 
 __all__ = ["DETERMINERS", "adjective_phrase", "gerund_phrase", "noun_phrase", "without_determiners"]
 
-DETERMINERS = frozenset("the a an this that these those some any every each all both no another".split())
+DETERMINERS = word_set("the a an this that these those some any every each all both no another")
 """What is left out of a phrase, unless it is all of it."""
 
 _KEPT = ("amod", "compound", "poss", "nummod", "nmod", "case", "det", "quantmod")

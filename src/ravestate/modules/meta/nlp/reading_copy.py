@@ -11,7 +11,7 @@ READ_AS = {"need": "like"}
 short sentences above all; another verb in its place is not."""
 
 # Control characters, and halves of characters, which cannot be encoded.
-_UNREADABLE = {code: " " for code in (*range(0x20), *range(0x7F, 0xA0), *range(0xD800, 0xE000))}
+_UNREADABLE = dict.fromkeys((*range(0x20), *range(0x7F, 0xA0), *range(0xD800, 0xE000)), " ")
 _LIKES = re.compile(
     r"(?:\b(?:i|you|we|they|who|to|not|really|also|always|never|would|do|does|both|people|"
     r"(?:do|does|did|don't|doesn't|didn't|and) (?:(?:my|your|his|her|the|their|our) )?\w+)|"
