@@ -14,6 +14,7 @@ from prompt_toolkit.input import PipeInput, create_pipe_input
 from prompt_toolkit.output import DummyOutput
 from prompt_toolkit.output.vt100 import Vt100_Output
 
+from ravestate.modules.platform.conio import terminal as terminal_file
 from ravestate.modules.platform.conio.terminal import Terminal, _full_row, _history
 
 
@@ -73,6 +74,20 @@ def test_lines_are_typed_and_edited() -> None:
         keys.send_text("abc\x03")
         with pytest.raises(KeyboardInterrupt):
             await terminal.read()
+
+    play(scene)
+
+
+def test_a_line_that_is_full_takes_no_more_keys(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(terminal_file, "LONGEST", 5)
+
+    async def scene(terminal: Terminal, keys: PipeInput, paper: Paper) -> None:
+        keys.send_text("abcdefgh\x7fxyz\r")  # the delete key makes room for one
+        assert await terminal.read() == "abcdx"
+        keys.send_text("ab\x1b[200~cdefgh\x1b[201~ij\x1b[D\x7fk\r")
+        assert await terminal.read() == "abcdefh"
+        keys.send_text("abc\r")
+        assert await terminal.read() == "abc"
 
     play(scene)
 

@@ -11,9 +11,12 @@ from pathlib import Path
 
 from prompt_toolkit import PromptSession
 from prompt_toolkit.application import in_terminal
+from prompt_toolkit.filters import Condition
 from prompt_toolkit.formatted_text import StyleAndTextTuples
 from prompt_toolkit.history import FileHistory, History, InMemoryHistory
 from prompt_toolkit.input import Input
+from prompt_toolkit.key_binding import KeyBindings, KeyPressEvent
+from prompt_toolkit.keys import Keys
 from prompt_toolkit.output import Output
 from prompt_toolkit.patch_stdout import patch_stdout
 from prompt_toolkit.utils import get_cwidth
@@ -22,6 +25,10 @@ from ravestate.modules._text import without_controls
 
 __all__ = ["Terminal"]
 
+
+LONGEST = 10_000
+"""Characters in a line after which keys add nothing: each may cost as much memory as the line, as it can be undone.
+What a terminal pastes at once is taken whole."""
 
 _OPEN = "…"
 """Stands behind a line that was being streamed when another was typed."""
@@ -60,7 +67,7 @@ class Terminal:
         self._printing: asyncio.Task[None] | None = None
         self._lost = False
         self._session: PromptSession[str] = PromptSession(
-            self._message, history=_history(history), input=input, output=output
+            self._message, history=_history(history), key_bindings=self._keys(), input=input, output=output
         )
         self._patch = contextlib.ExitStack()
         self._context = contextvars.copy_context()
@@ -119,6 +126,18 @@ class Terminal:
             self.show(line)
 
     # ------------------------------------------------------------------------------- internals
+
+    def _keys(self) -> KeyBindings:
+        keys = KeyBindings()
+        is_full = Condition(lambda: len(self._session.default_buffer.text) >= LONGEST)
+
+        @keys.add(
+            Keys.Any, filter=is_full
+        )  # all that would insert itself; editing, Enter and pasting are others
+        def leave_out(event: KeyPressEvent) -> None:
+            """The line is full."""
+
+        return keys
 
     def _message(self) -> StyleAndTextTuples:
         before: StyleAndTextTuples = []
