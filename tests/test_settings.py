@@ -134,7 +134,7 @@ def test_all_faults_are_told_at_once() -> None:
     )
     assert len(found) == 4
     text = "\n".join(found)
-    assert "settings for 'plain': module 'plain' has no settings" in text
+    assert "settings for 'plain': module 'plain' has no settings" in found  # and nothing like it is proposed
     assert "settings for 'voise': module 'voise' is not part of this agent; did you mean 'voice'?" in text
     assert "setting voice.speed = 'fast': Input should be a valid number" in text
     assert "setting voice.sped: module 'voice' has no such setting; did you mean 'speed'?" in text

@@ -83,10 +83,10 @@ def load_settings(
     names = {module.name for module in modules}
     for name in given:
         if name not in known:
-            why = "has no settings" if name in names else "is not part of this agent"
-            faults.append(
-                DeclarationError(f"settings for {name!r}: module {name!r} {why}{nearest(name, known)}")
-            )
+            why = "has no settings"
+            if name not in names:
+                why = f"is not part of this agent{nearest(name, names)}"
+            faults.append(DeclarationError(f"settings for {name!r}: module {name!r} {why}"))
     found: dict[str, Any] = {}
     for name, model in known.items():
         values = given.get(name, {})

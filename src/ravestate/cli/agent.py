@@ -136,7 +136,7 @@ def load_module(name: str, folder: Path = Path()) -> Module:
             value = getattr(value, attribute)
         return _as_module(name, value)
     raise UsageError(
-        f"there is no module {name!r}{nearest(name, [*BUILT_IN, *installed])}; built in: {', '.join(BUILT_IN)}"
+        f"there is no module {name!r}{nearest(name, [*BUILT_IN, *installed])} (built in: {', '.join(BUILT_IN)})"
     )
 
 
