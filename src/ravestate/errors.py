@@ -1,16 +1,16 @@
 """Every exception that Ravestate raises on purpose.
 
-::
-
-    RavestateError
-    ├── DeclarationError(ValueError)     the designer's mistake, found before running
-    ├── DeclarationErrors(ExceptionGroup) all of them at once, raised by ``rs.compile``
-    ├── RuleError(RuntimeError)          a rule did what it may not, or failed
-    │   ├── UndeclaredError(LookupError) it touched what its declaration does not name
-    │   ├── RuleTimeout(TimeoutError)    it took longer than its ``timeout``
-    │   └── RunEnded                     its run was over (interrupted, timed out) when it acted
-    ├── EngineError(RuntimeError)        an event that the automaton cannot take in its state
-    └── PlatformError(RuntimeError)      the world failed: a device, a server, a file, a package
+```text
+RavestateError
+├── DeclarationError(ValueError)     the designer's mistake, found before running
+├── DeclarationErrors(ExceptionGroup) all of them at once, raised by ``rs.compile``
+├── RuleError(RuntimeError)          a rule did what it may not, or failed
+│   ├── UndeclaredError(LookupError) it touched what its declaration does not name
+│   ├── RuleTimeout(TimeoutError)    it took longer than its ``timeout``
+│   └── RunEnded                     its run was over (interrupted, timed out) when it acted
+├── EngineError(RuntimeError)        an event that the automaton cannot take in its state
+└── PlatformError(RuntimeError)      the world failed: a device, a server, a file, a package
+```
 
 Every message gives the offending value, where it was declared, the nearest valid name, and the line
 to write instead.

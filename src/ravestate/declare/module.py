@@ -233,7 +233,21 @@ class Module:
         background: bool = False,
         name: str | None = None,
     ) -> Callable[[Callable[P, R]], Rule[P, R]]:
-        """Make a rule of a function that takes the rule context; see `Rule` for the arguments.
+        """Make a rule of a function that takes the rule context: ``async def`` runs on the loop, a plain one in a thread.
+
+        Args:
+            when: The condition: signals, combined with ``&`` and ``|``.
+            reads: The slot, or the slots, whose values the function may read.
+            writes: What it may write, and read; rules that write one slot for the same cause exclude each other (L10).
+            emits: The signals that it may emit.
+            weight: Factor on the utility (L9), above 0.
+            cooldown: Seconds over which the utility recovers from 0 after a run (L9).
+            patience: Seconds that the rule, when others wait for it, has to become ready (L16); the context's by default.
+            until: A condition that interrupts a run (L21).
+            timeout: Seconds that a run may take (L18); any by default.
+            detached: Whether what the rule causes begins new causal groups (L19).
+            background: Whether the rule leaves ``rs.activity`` alone (L22).
+            name: Its name within the module; the function's by default.
 
         Raises:
             DeclarationError: An argument of the wrong type. Faulty values are collected by ``rs.compile``.

@@ -1,19 +1,23 @@
 """What an agent may say for what it means: phrases by intent and language, from YAML files.
 
-A file maps each intent to its languages, and each language to phrases; parameters stand in braces::
+A file maps each intent to its languages, and each language to phrases; parameters stand in braces:
 
-    greet:
-      en:
-        - Hello!
-        - Hello {name}, good to see you.
-      de: [Hallo!, "Schön, dich zu sehen, {name}."]
-    farewell: Goodbye!           # without a language: the default one
+```yaml
+greet:
+  en:
+    - Hello!
+    - Hello {name}, good to see you.
+  de: [Hallo!, "Schön, dich zu sehen, {name}."]
+farewell: Goodbye!           # without a language: the default one
+```
 
 Several files make one book. In a later file an intent's phrases of a language *replace* those of earlier
-files, and ``!add`` in front of them adds them instead; what a file does not mention stays::
+files, and ``!add`` in front of them adds them instead; what a file does not mention stays:
 
-    greet:
-      en: !add [Ahoy!]
+```yaml
+greet:
+  en: !add [Ahoy!]
+```
 
 Everything is text: ``no`` is Norwegian and ``1`` is a phrase. ``{{`` and ``}}`` stand for braces.
 """

@@ -60,11 +60,11 @@ class Console:
     iteration ends.
 
     Example:
-        ::
-
-            async with Console() as console:
-                async for line in console:
-                    console.write(f"You said {line!r}.")
+        ```python
+        async with Console() as console:
+            async for line in console:
+                console.write(f"You said {line!r}.")
+        ```
     """
 
     def __init__(

@@ -26,12 +26,12 @@ class LlamaBackend:
     """Runs a GGUF file by llama.cpp, in a process that all contexts with the same file share.
 
     Example:
-        ::
-
-            backend = LlamaBackend()
-            async for piece in backend.stream([Message("user", "Hello!")]):
-                print(piece, end="", flush=True)
-            await backend.close()
+        ```python
+        backend = LlamaBackend()
+        async for piece in backend.stream([Message("user", "Hello!")]):
+            print(piece, end="", flush=True)
+        await backend.close()
+        ```
     """
 
     def __init__(

@@ -25,11 +25,11 @@ class OpenAIBackend:
     """Streams answers from ``POST {base_url}/chat/completions``.
 
     Example:
-        ::
-
-            backend = OpenAIBackend("http://localhost:11434/v1", "llama3.2")
-            async for piece in backend.stream([Message("user", "Hello!")]):
-                print(piece, end="", flush=True)
+        ```python
+        backend = OpenAIBackend("http://localhost:11434/v1", "llama3.2")
+        async for piece in backend.stream([Message("user", "Hello!")]):
+            print(piece, end="", flush=True)
+        ```
     """
 
     def __init__(

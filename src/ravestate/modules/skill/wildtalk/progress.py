@@ -17,10 +17,10 @@ class ProgressBar:
     error and prints it line by line), it is a line for each quarter. Elsewhere it is nothing.
 
     Example:
-        ::
-
-            with ProgressBar("Loading the language model") as bar:
-                await backend.load(bar)
+        ```python
+        with ProgressBar("Loading the language model") as bar:
+            await backend.load(bar)
+        ```
     """
 
     def __init__(self, label: str, *, delay: float = 1.0, stream: TextIO | None = None) -> None:
