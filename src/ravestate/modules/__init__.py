@@ -16,10 +16,11 @@ if TYPE_CHECKING:
     from ravestate.modules.meta import idle, nlp, ontology, verbaliser
     from ravestate.modules.modality import emotion, interloc, rawio
     from ravestate.modules.platform import conio
-    from ravestate.modules.skill import fillers, hibye, wildtalk
+    from ravestate.modules.skill import agenda, fillers, hibye, wildtalk
 
 __all__ = [
     "BUILT_IN",
+    "agenda",
     "conio",
     "emotion",
     "fillers",
@@ -43,6 +44,7 @@ BUILT_IN = {
     "ontology": "meta",
     "verbaliser": "meta",
     "hibye": "skill",
+    "agenda": "skill",
     "fillers": "skill",
     "wildtalk": "skill",
 }

@@ -1,0 +1,50 @@
+"""Conditions, rewritten: one that only looks, one that holds when another does not."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import ravestate as rs
+from ravestate.declare.condition import AllOf, AnyOf, Condition, Constraint, Holds
+
+__all__ = ["negated", "watching"]
+
+
+def watching(condition: Condition) -> Condition:
+    """Return the condition with all its constraints detached, so that it consumes nothing and excludes nobody."""
+    match condition:
+        case rs.Signal():
+            return condition.max_age(None).detached()
+        case Constraint():
+            return condition.detached()
+        case AllOf(parts):
+            return AllOf(tuple(map(watching, parts)))
+        case AnyOf(parts):
+            return AnyOf(tuple(map(watching, parts)))
+        case _:
+            return condition
+
+
+def negated(condition: Condition) -> Condition:
+    """Return what holds when the condition, which is made of ``slot.holds(...)`` alone, does not.
+
+    Raises:
+        rs.DeclarationError: There is a signal in it, of which nobody can say that it will not come.
+    """
+    match condition:
+        case Holds(slot, predicate):
+
+            def otherwise(value: Any) -> bool:
+                return not predicate(value)
+
+            otherwise.__name__ = f"not_{getattr(predicate, '__name__', 'so')}"
+            return slot.holds(otherwise)
+        case AllOf(parts):
+            return AnyOf(tuple(map(negated, parts)))
+        case AnyOf(parts):
+            return AllOf(tuple(map(negated, parts)))
+        case _:
+            raise rs.DeclarationError(
+                f"unless={condition} has a signal in it: write unless=slot.holds(predicate), and keep in a slot what the "
+                "signal tells"
+            )

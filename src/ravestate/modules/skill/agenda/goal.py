@@ -1,0 +1,242 @@
+"""Declaring a goal: it is an ordinary rule of its module, and another one or two that end it."""
+
+from __future__ import annotations
+
+import inspect
+import math
+import re
+import sys
+from collections.abc import Awaitable, Callable, Iterable
+from dataclasses import dataclass
+from typing import Any, cast
+
+import ravestate as rs
+from ravestate.declare.condition import Condition, Constraint
+from ravestate.modules import rawio, verbaliser
+from ravestate.modules.meta.verbaliser.intents import Intent
+
+from . import goals, opportunity
+from .conditions import negated, watching
+from .state import OPEN, GoalState, Status
+
+__all__ = ["Goal", "goal"]
+
+Words = str | Iterable[str] | Callable[[rs.RuleContext], str | Awaitable[str]]
+
+MOMENT = 1.0
+"""Seconds for which an opportunity lasts: what must hold for a goal is to hold then."""
+
+LONGEST = 1000
+"""Characters of the user's words that are searched."""
+
+
+@dataclass(frozen=True, slots=True)
+class Goal:
+    """A goal that was declared.
+
+    Attributes:
+        name: The name of its rule, ``module:name``, under which `agenda.goals` has its state.
+        rule: The rule that pursues it; it retires when the goal is over.
+        pursued: It has just been pursued. A constraint for rules of one's own, such as
+            ``when=offer.pursued.max_age(60) & rawio.input.changed``: the user's answer to it.
+    """
+
+    name: str
+    rule: rs.Rule[Any, Any]
+    pursued: Constraint
+
+    def state(self, agent: rs.Context | Any) -> GoalState:
+        """How it stands with the goal in an agent: a context, or a simulation."""
+        return agent.read(goals).get(self.name, OPEN)
+
+
+def goal(
+    module: rs.Module,
+    name: str,
+    *,
+    say: Words | None = None,
+    intent: str | Intent | None = None,
+    reads: rs.Slot[Any] | Iterable[rs.Slot[Any]] = (),
+    when: Condition | None = None,
+    unless: Condition | None = None,
+    priority: float = 1.0,
+    cooldown: float = 60.0,
+    done: Condition | str | None = None,
+    refused: Condition | str | None = None,
+    tries: int = 2,
+) -> Goal:
+    """Declare something that the agent wants.
+
+    It is pursued, by saying something, when the agent is bored and no other goal has just had its turn. It is over when
+    `done` or `refused` comes, or after the last try. What the user says always goes first: it ends a pursuit that is
+    being worded, and takes the opportunity away.
+
+    The rule is ``module:name``. What a rule can do for you, such as ``sim.explain("module:name")``, a goal can.
+
+    Args:
+        module: Whose goal it is; it must require `agenda`.
+        name: Its name within the module.
+        say: What to say: a text; several, one for each try in turn; or a function of the rule context that returns one,
+            which may be async, and take its time.
+        intent: What to mean, instead; the verbaliser words it.
+        reads: The slots that the function reads.
+        when: What else must hold or have happened, e.g. ``interloc.users.holds(bool)``.
+        unless: What must not hold: a condition of ``slot.holds(...)`` alone.
+        priority: Factor on the utility (L9); of two goals for the same opportunity the one of greater utility goes first.
+        cooldown: Seconds until it may be tried again; also the time that an answer to it has.
+        done: A signal or condition that means success, whenever it comes; or a regular expression, of whole words, for
+            what the user says after a try. Without it, to have said it is all.
+        refused: The same for the user's "no": the goal is dropped.
+        tries: How often it is tried before it is dropped.
+
+    Raises:
+        rs.DeclarationError: Neither or both of `say` and `intent`, a number that is none, a faulty expression.
+
+    Example:
+        >>> import ravestate as rs
+        >>> from ravestate.modules import agenda
+        >>> game = rs.Module("game", requires=[agenda])
+        >>> playing = game.flag("playing")
+        >>> offer = agenda.goal(game, "offer", say="Shall we play a game?", unless=playing.holds(bool), done=playing.true)
+        >>> offer.name
+        'game:offer'
+    """
+    whole = f"{module.name}:{name}"
+    _check(whole, say, intent, priority, cooldown, tries)
+    frame = sys._getframe(1)  # pyright: ignore[reportPrivateUsage]  # messages say where the goal is declared
+    origin = f"{frame.f_code.co_filename}:{frame.f_lineno}"
+    known = len(module.rules)
+    texts = (say,) if isinstance(say, str) else say if callable(say) or say is None else tuple(say)
+    done_words, refused_words = _expression(whole, "done", done), _expression(whole, "refused", refused)
+
+    def is_over(entry: Any) -> bool:
+        return entry.key == whole and entry.item.is_over
+
+    def is_pursued(entry: Any) -> bool:
+        return entry.key == whole and entry.item.status == "pursued"
+
+    def was_the_last_try(entry: Any) -> bool:
+        return is_pursued(entry) and entry.item.tries >= tries
+
+    condition: Condition = opportunity.max_age(MOMENT)
+    if when is not None:
+        condition = condition & when
+    if unless is not None:
+        condition = condition & negated(unless)
+
+    @module.rule(
+        when=condition | goals.changed.where(is_over).detached(),
+        reads=reads,
+        writes=(rawio.output, goals) if intent is None else (verbaliser.intent, rawio.output, goals),
+        weight=priority,
+        cooldown=cooldown,
+        until=rawio.input.changed | goals.changed.where(is_over),  # it may be reached while it is worded
+        detached=True,  # an answer to it may be answered: what comes of it begins a new causal group
+        name=name,
+    )
+    async def pursue(ctx: rs.RuleContext) -> rs.Resign | rs.Retire | None:
+        state = ctx[goals].get(whole, OPEN)
+        if state.is_over:
+            return rs.Retire(f"it is {state.status}")
+        past = ctx.now - state.since
+        if state.tries and (past < cooldown or state.tries >= tries):
+            return rs.Resign(
+                f"it was pursued {past:.0f} s ago, and rests for another {max(cooldown - past, 0):.0f} s"
+            )
+        words = await _worded(ctx, texts, state.tries) if intent is None else ""
+        over = done is None
+        ctx[goals].add(whole, GoalState("done" if over else "pursued", state.tries + 1, ctx.now))
+        if intent is None:
+            ctx[rawio.output] = words
+        else:
+            ctx[verbaliser.intent] = intent
+        return rs.Retire("it is said") if over else None
+
+    def end(ctx: rs.RuleContext, status: Status, *, by_words: bool) -> rs.Resign | None:
+        state = ctx[goals].get(whole, OPEN)
+        if state.is_over:
+            return rs.Resign(f"it is {state.status} already")
+        if by_words and not (state.status == "pursued" and ctx.now - state.since <= cooldown):
+            return rs.Resign("it was not pursued lately: the words were meant for something else")
+        ctx[goals].add(whole, GoalState(status, state.tries, state.since))
+        return None
+
+    def ends(how: str, by: Condition) -> Callable[[Callable[[rs.RuleContext], Any]], object]:
+        return module.rule(when=by, writes=goals, detached=True, background=True, name=f"{name}_{how}")
+
+    if done is not None:
+
+        @ends("given_up", goals.changed.where(was_the_last_try).min_age(cooldown).max_age(None).detached())
+        async def give_up(ctx: rs.RuleContext) -> rs.Resign | None:
+            return end(ctx, "dropped", by_words=False)
+
+        @ends("done", _condition(done, done_words, refused_words))
+        async def finish(ctx: rs.RuleContext) -> rs.Resign | None:
+            return end(ctx, "done", by_words=done_words is not None)
+
+    if refused is not None:
+
+        @ends("refused", _condition(refused, refused_words, None))
+        async def drop(ctx: rs.RuleContext) -> rs.Resign | None:
+            return end(ctx, "dropped", by_words=refused_words is not None)
+
+    for rule in module.rules[known:]:
+        rule.origin = origin
+    return Goal(whole, pursue, goals.changed.where(is_pursued))
+
+
+async def _worded(ctx: rs.RuleContext, say: Any, tries: int) -> str:
+    """What to say at a try; `tries` were made before."""
+    if not callable(say):
+        return say[min(tries, len(say) - 1)]
+    words: Any = say(ctx)
+    return await words if inspect.isawaitable(words) else words
+
+
+def _condition(
+    event: Condition | str, words: re.Pattern[str] | None, unless: re.Pattern[str] | None
+) -> Condition:
+    """What ends a goal, as a condition that consumes nothing."""
+    if words is None:
+        assert not isinstance(event, str)  # else there were words
+        return watching(event)
+
+    def says_so(text: str) -> bool:
+        text = text[:LONGEST]
+        return bool(words.search(text)) and not (unless and unless.search(text))
+
+    return rawio.input.changed.where(says_so).max_age(None).detached()
+
+
+def _expression(goal: str, what: str, event: Condition | str | None) -> re.Pattern[str] | None:
+    if event is None or isinstance(event, Condition):
+        return None
+    if not isinstance(event, str):  # pyright: ignore[reportUnnecessaryIsInstance]  # users may not type-check
+        hint = f": write {what}={event}.changed" if isinstance(event, rs.Slot) else ""
+        raise rs.DeclarationError(f"goal {goal}: {what}={event!r} is neither a condition nor a text{hint}")
+    try:
+        return re.compile(rf"(?<!\w)(?:{event})(?!\w)", re.IGNORECASE)
+    except re.error as error:
+        raise rs.DeclarationError(
+            f"goal {goal}: {what}={event!r} is no regular expression ({error}): write for example {what}='yes|sure'"
+        ) from None
+
+
+def _check(goal: str, say: object, intent: object, priority: object, cooldown: object, tries: object) -> None:
+    if (say is None) == (intent is None):
+        raise rs.DeclarationError(
+            f"goal {goal}: say={say!r} and intent={intent!r}: write one of them, such as say='Shall we play?'"
+        )
+    if say is not None and not callable(say):
+        texts = list(
+            cast("Iterable[object]", (say,) if isinstance(say, str) or not isinstance(say, Iterable) else say)
+        )
+        if not texts or not all(isinstance(text, str) and text for text in texts):
+            raise rs.DeclarationError(
+                f"goal {goal}: say={say!r}: write a text, several, or a function of the rule context"
+            )
+    for what, number in (("priority", priority), ("cooldown", cooldown)):
+        if isinstance(number, bool) or not isinstance(number, (int, float)) or not 0 < number < math.inf:
+            raise rs.DeclarationError(f"goal {goal}: {what}={number!r} must be above 0: write {what}=1.0")
+    if isinstance(tries, bool) or not isinstance(tries, int) or tries < 1:
+        raise rs.DeclarationError(f"goal {goal}: tries={tries!r} must be a whole number of at least 1")

@@ -1,0 +1,40 @@
+"""When the agent may take the initiative."""
+
+from __future__ import annotations
+
+import ravestate as rs
+from ravestate.modules import idle, rawio
+
+from . import Settings, goals, module, opportunity, topics
+
+
+@module.rule(when=idle.bored, reads=(goals, topics), emits=opportunity)
+async def take_initiative(ctx: rs.RuleContext) -> rs.Resign | None:
+    """Nothing happens: let one goal be pursued, unless another has just had its turn, or the talk has a topic."""
+    if ctx[topics]:
+        return rs.Resign(f"the talk is about {', '.join(ctx[topics])}")
+    for name, state in ctx[goals].items():
+        past = ctx.now - state.since
+        if state.tries and past < ctx.settings.gap:
+            return rs.Resign(f"{name} was pursued {past:.0f} s ago; agenda.gap is {ctx.settings.gap:g} s")
+    ctx.emit(opportunity, ctx.now)
+    return None
+
+
+@module.rule(when=rawio.input.changed.max_age(None).detached(), background=True)
+async def yield_to_the_user(ctx: rs.RuleContext) -> None:
+    """The user speaks: whatever was about to be pursued is not."""
+    ctx.wipe(opportunity)
+
+
+@module.rule(when=rs.startup.detached(), background=True)
+async def adopt_wishes(ctx: rs.RuleContext) -> None:
+    """Add the goals from the settings to this context, and to no other that shares the policy."""
+    from .goal import goal
+
+    settings: Settings = ctx.settings
+    own = rs.Module(module.name)
+    for wish in settings.goals:
+        goal(own, **wish.model_dump())
+    for rule in own.rules:
+        ctx.add_rule(rule)

@@ -1,0 +1,33 @@
+"""How it stands with a goal."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+__all__ = ["OPEN", "GoalState", "Status"]
+
+Status = Literal["open", "pursued", "done", "dropped"]
+
+
+@dataclass(frozen=True, slots=True)
+class GoalState:
+    """How it stands with a goal.
+
+    Attributes:
+        status: ``open`` until it is first pursued, then ``pursued``; at last ``done`` or ``dropped``.
+        tries: How often it was pursued.
+        since: When it was pursued last, in seconds since the context began.
+    """
+
+    status: Status = "open"
+    tries: int = 0
+    since: float = 0.0
+
+    @property
+    def is_over(self) -> bool:
+        """Whether it is done or dropped."""
+        return self.status in ("done", "dropped")
+
+
+OPEN = GoalState()

@@ -1,0 +1,69 @@
+"""A goal as it stands in an agent's file: words alone."""
+
+from __future__ import annotations
+
+import re
+from typing import Annotated
+
+from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field
+
+__all__ = ["Wish", "without_twins"]
+
+Text = Annotated[str, Field(min_length=1)]
+
+
+def _expression(pattern: str) -> str:
+    try:
+        re.compile(pattern)
+    except re.error as error:
+        raise ValueError(f"{pattern!r} is no regular expression: {error}") from None
+    return pattern
+
+
+def _no_truth(value: object) -> object:
+    if isinstance(value, bool):
+        raise ValueError(
+            f'YAML reads yes and no without quotes as {value}: write "{"yes" if value else "no"}"'
+        )
+    return value
+
+
+Expression = Annotated[str, Field(min_length=1), AfterValidator(_expression), BeforeValidator(_no_truth)]
+
+
+class Wish(BaseModel):
+    """A goal in the settings; the fields are the arguments of `goal`.
+
+    Example:
+        >>> Wish(name="ice_cream", say="Do you know my ice cream?", done="yes|ice cream").tries
+        2
+    """
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    name: Annotated[str, Field(pattern=r"^[A-Za-z_][A-Za-z0-9_-]*$")]
+    """Its rule is ``agenda:<name>``."""
+    say: Text | Annotated[tuple[Text, ...], Field(min_length=1)]
+    """What is said for it; of several the next one at each try."""
+    priority: Annotated[float, Field(gt=0)] = 1.0
+    """Goals of higher priority come first."""
+    cooldown: Annotated[float, Field(gt=0)] = 60.0
+    """Seconds until it may be tried again."""
+    tries: Annotated[int, Field(ge=1)] = 2
+    """How often it is tried."""
+    done: Expression | None = None
+    """A regular expression: the user's words that mean success; without one it is done once it was said."""
+    refused: Expression | None = None
+    """A regular expression: the user's words that mean that he does not want to."""
+
+
+def _no_twins(wishes: tuple[Wish, ...]) -> tuple[Wish, ...]:
+    names = [wish.name for wish in wishes]
+    for name in names:
+        if names.count(name) > 1:
+            raise ValueError(f"two goals are named {name!r}: rename one")
+    return wishes
+
+
+without_twins = AfterValidator(_no_twins)
+"""Refuses goals of one name."""

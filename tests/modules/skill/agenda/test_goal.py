@@ -1,0 +1,65 @@
+"""A goal that cannot be meant is refused where it is declared, with what to write instead."""
+
+from typing import Any
+
+import pytest
+
+import ravestate as rs
+from ravestate.modules import agenda, rawio
+from ravestate.modules.skill.agenda.conditions import negated, watching
+
+guide = rs.Module("guide", requires=[agenda])
+asked = guide.signal("asked")
+lit = guide.flag("lit")
+number = guide.slot("number", 3)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({}, r"say=None and intent=None: write one of them"),
+        ({"say": "a", "intent": "b"}, r"say='a' and intent='b': write one"),
+        ({"say": ""}, r"say='': write a text"),
+        ({"say": []}, r"say=\[\]: write a text"),
+        ({"say": ["a", 3]}, r"write a text, several"),
+        ({"say": 3}, r"say=3"),
+        ({"say": "a", "priority": 0}, r"priority=0 must be above 0"),
+        ({"say": "a", "priority": True}, r"priority=True"),
+        ({"say": "a", "cooldown": -1}, r"cooldown=-1"),
+        ({"say": "a", "cooldown": float("inf")}, r"cooldown=inf"),
+        ({"say": "a", "tries": 0}, r"tries=0 must be a whole number"),
+        ({"say": "a", "tries": 1.5}, r"tries=1\.5"),
+        ({"say": "a", "done": "("}, r"done='\(' is no regular expression"),
+        ({"say": "a", "refused": 7}, r"refused=7 is neither"),
+        ({"say": "a", "done": number}, r"write done=guide:number\.changed"),
+        ({"say": "a", "unless": asked}, r"has a signal in it: write unless=slot\.holds"),
+    ],
+)
+def test_faulty_goals(arguments: dict[str, Any], message: str) -> None:
+    module = rs.Module("guide", requires=[agenda])
+    with pytest.raises(rs.DeclarationError, match=message):
+        agenda.goal(module, "goal", **arguments)
+    assert module.rules == []
+
+
+def test_a_module_that_does_not_require_the_agenda_is_told_so() -> None:
+    module = rs.Module("forgetful", requires=[rawio])
+    agenda.goal(module, "goal", say="a")
+    with pytest.raises(rs.DeclarationErrors) as caught:
+        rs.compile(module)
+    assert any("requires=[agenda]" in str(fault) for fault in caught.value.exceptions)
+
+
+def test_negation_follows_de_morgan() -> None:
+    both = negated(lit.holds(bool) & number.holds(bool))
+    assert str(both) == "guide:lit.holds(not_bool) | guide:number.holds(not_bool)"
+    either = negated(lit.holds(bool) | number.holds(bool))
+    assert str(either) == "guide:lit.holds(not_bool) & guide:number.holds(not_bool)"
+
+
+def test_watching_detaches_every_constraint_and_keeps_the_rest() -> None:
+    condition = watching(asked & lit.true.min_age(2) & number.holds(bool) | lit.false)
+    assert str(condition) == (
+        "guide:asked.max_age(None).detached() & guide:lit:true.min_age(2.0).detached() & guide:number.holds(bool) | "
+        "guide:lit:false.max_age(None).detached()"
+    )
