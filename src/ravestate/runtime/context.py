@@ -14,6 +14,7 @@ from ravestate.declare.module import Module
 from ravestate.declare.rule import Rule
 from ravestate.declare.signal import Signal
 from ravestate.declare.slot import Slot
+from ravestate.declare.wording import spelt
 from ravestate.engine.effects import Ended
 from ravestate.engine.engine import DEFAULT_PATIENCE, Engine
 from ravestate.engine.events import AddRule, Emit, Event, Start, Stop, Wipe, Write
@@ -319,7 +320,7 @@ class Context:
         if not isinstance(name, str) or names.get(name) is not thing:
             hint = ""
             if what == "signal" and isinstance(thing, Slot):
-                hint = f"; it is a slot: write {name}.changed"
+                hint = f"; it is a slot: write {spelt(name)}.changed"
             elif isinstance(name, str):
                 hint = nearest(name, names) or f"; add module {name.split(':')[0]} to the context"
             raise UndeclaredError(f"this context has no {what} {thing!r}{hint}")
