@@ -14,6 +14,7 @@ from ravestate.modules.skill.wildtalk.backend import Message, Progress
 from ravestate.modules.skill.wildtalk.llama import LlamaBackend
 from ravestate.modules.skill.wildtalk.openai import OpenAIBackend
 from ravestate.modules.skill.wildtalk.rules import KEPT, make_backend
+from ravestate.modules.skill.wildtalk.transformers import TransformersBackend
 from ravestate.testing import Simulation, simulate
 
 Settings = wildtalk.Settings
@@ -256,6 +257,7 @@ def test_the_settings_choose_the_model() -> None:
     server = make_backend(Settings(backend="openai", base_url="http://here/v1", model="big", api_key="k"))  # type: ignore[arg-type]
     assert isinstance(server, OpenAIBackend)
     assert repr(server) == "OpenAIBackend('http://here/v1', 'big')"
+    assert isinstance(make_backend(Settings(backend="transformers")), TransformersBackend)
 
 
 @pytest.mark.parametrize(

