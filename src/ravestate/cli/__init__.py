@@ -20,6 +20,7 @@ COMMANDS = {
     "run": "run an agent from modules or an agent file",
     "check": "print an agent's faults, ties, rules that can never win, and signals nobody hears",
     "graph": "draw an agent's Signal-Rule-Slot diagram",
+    "nlp": "show what the agent sees in a text: words, names, triples, yes or no, signals",
     "new": "write a small project to begin with",
 }
 

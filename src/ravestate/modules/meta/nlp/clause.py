@@ -132,7 +132,9 @@ class Clause:
             word.low == "longer" and (before := self.tree.before(word)) and before.low == "no" for word in own
         ):
             return True
-        if any(word.low == "no" and word.dep == "det" for word in own):
+        if any(word.low == "no" and word.dep == "det" and not _is_no_one(self.tree, word) for word in own):
+            return True
+        if any(word.low == "neither" and word.dep in ("cc", "preconj", "det") for word in own):
             return True
         head = self._head_clause
         if self.verb.dep == "conj" and head is not None and head.negated and not self._own_subjects:
@@ -164,6 +166,10 @@ class Clause:
                 continue
             if child.tag not in ("VBG", "VB") and not infinitive:
                 continue
+            if any(
+                w.low in QUESTION_WORDS and w.index > verb.index for w in tree.children(child)
+            ):  # learn how to cook
+                continue
             between = [
                 w for w in tree.words[verb.index + 1 : child.index] if w.head in (verb.index, child.index)
             ]
@@ -185,7 +191,11 @@ class Clause:
         return any(child.low in ("to", "na") for child in self.tree.children(verb, "aux"))
 
     def _particles(self, verb: Word) -> list[str]:
-        return [child.low for child in self.tree.children(verb, "prt")]
+        return [
+            child.low
+            for child in self.tree.children(verb, "prt", "advmod")
+            if child.dep == "prt" or (child.low == "back" and child.index == verb.index + 1)
+        ]
 
     @cached_property
     def _passive(self) -> Word | None:
@@ -302,7 +312,11 @@ class Clause:
         asked = unknown.top.dep in _SUBJECTS and not any(
             word for word in self._own_subjects if word != unknown.top
         )
-        if asked and not self._agents:
+        if self._agents and unknown.top.dep == "agent":  # who was it written by
+            return [unknown.kind], objects
+        if self._agents and asked:  # what was written by him
+            return subjects, [(unknown.kind, False)]
+        if asked:
             return [unknown.kind], objects or [("", False)]
         adverbial = unknown.kind in (
             QuestionWord.PLACE,
@@ -418,6 +432,9 @@ class Clause:
         for verb in reversed(self.chain):
             direct = [word for word in tree.children(verb, *_DIRECT) if word not in self.chain]
             direct = [word for word in direct if unknown is None or word != unknown.top]
+            if not direct:  # it makes me happy
+                small = [word for word in tree.children(verb, "ccomp") if word.index not in self._others]
+                direct = [subject for word in small for subject in tree.children(word, *_SUBJECTS)]
             if direct and relative and direct[0].low in ("that", "which", "who", "whom"):
                 return [(part, False) for part in self._antecedents]
             if direct:
@@ -600,3 +617,9 @@ def _lemma(verb: Word) -> str:
     if verb.low in _BE:
         return "be"
     return _SHORT.get(verb.low, verb.lemma.lower())
+
+
+def _is_no_one(tree: Tree, no: Word) -> bool:
+    """*No one* is a pronoun in two words."""
+    after = tree.after(no)
+    return after is not None and after.low == "one"

@@ -143,10 +143,9 @@ def _kind(sentence: Sequence[Word], asked: bool) -> QuestionWord | None:
         return kind
     if _has_tag(sentence):
         return QuestionWord.YES_NO
+    if sentence[-1].low in QUESTION_WORDS and (asked or sentence[0].low == "you"):  # you live where
+        return kind_at(sentence, len(sentence) - 1)
     if asked:
-        last = sentence[-1]
-        if last.low in QUESTION_WORDS:  # you live where?
-            return kind_at(sentence, len(sentence) - 1)
         return QuestionWord.YES_NO
     if [word.low for word in sentence[:3]] in (["and", "you"], ["and", "yours"]):
         return QuestionWord.YES_NO

@@ -7,7 +7,9 @@ from .word_set import word_set
 
 __all__ = ["DETERMINERS", "adjective_phrase", "gerund_phrase", "noun_phrase", "without_determiners"]
 
-DETERMINERS = word_set("the a an this that these those some any every each all both no another")
+DETERMINERS = word_set(
+    "the a an this that these those some any every each all both no another neither either"
+)
 """What is left out of a phrase, unless it is all of it."""
 
 _KEPT = ("amod", "compound", "poss", "nummod", "nmod", "case", "det", "quantmod")
@@ -20,7 +22,8 @@ def noun_phrase(tree: Tree, head: Word) -> list[Word]:
         return gerund_phrase(tree, head)
     kept = [head]
     for child in tree.children(head):
-        if child.dep in _KEPT and child.pos != "ADV" and child.low not in DETERMINERS:
+        determiner = child.low in DETERMINERS and not (child.low == "no" and head.low == "one")
+        if child.dep in _KEPT and child.pos != "ADV" and not determiner:
             kept += _joined_adjectives(tree, child) if child.dep == "amod" else noun_phrase(tree, child)
         elif child.dep == "prep" and child.low == "of" and child.index > head.index:
             for object in tree.children(child, "pobj", "pcomp"):

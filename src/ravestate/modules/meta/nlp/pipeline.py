@@ -11,6 +11,7 @@ from ravestate.errors import PlatformError
 
 from .entity import Entity
 from .reading_copy import READ_AS, reading_copy
+from .repair import repaired
 from .tree import Tree, Word
 
 __all__ = ["DEFAULTS", "LONGEST", "Pipeline", "pipeline"]
@@ -73,7 +74,7 @@ class Pipeline:
                 )
                 for found in doc.ents
             )
-        return Tree(text, words), entities
+        return Tree(text, repaired(words)), entities
 
     @staticmethod
     def shorten(text: str) -> str:
@@ -112,11 +113,12 @@ def _as_written(text: str, numbers: dict[int, int], token: Any) -> Word:
     number = numbers[token.i]
     written: str = text[token.idx : token.idx + len(token)]
     lemma: str = token.lemma_
+    replaced = token.text in READ_AS and written != token.text
     return Word(
         index=number,
         text=written,
-        lemma=lemma if written == token.text else READ_AS.get(lemma, lemma),
-        pos=token.pos_,
+        lemma=READ_AS[token.text] if replaced else lemma,
+        pos="VERB" if replaced else token.pos_,
         tag=token.tag_,
         dep=token.dep_,
         head=numbers.get(token.head.i, number),
@@ -125,8 +127,8 @@ def _as_written(text: str, numbers: dict[int, int], token: Any) -> Word:
 
 
 @lru_cache(maxsize=8)
-def pipeline(name: str = "") -> Pipeline:
-    """The pipeline of this name that all contexts share, loaded or not."""
+def pipeline(name: str) -> Pipeline:
+    """The pipeline of this name that all contexts share, loaded or not; empty for the default one."""
     return Pipeline(name)
 
 

@@ -1,0 +1,134 @@
+"""``ravestate nlp``: what the agent sees in a text."""
+
+from __future__ import annotations
+
+import argparse
+import dataclasses
+import json
+import sys
+from collections.abc import Iterable, Iterator, Sequence
+from typing import TYPE_CHECKING, Any
+
+from ravestate.cli import UsageError
+
+if TYPE_CHECKING:
+    from ravestate.modules.meta.nlp.analysis import Analysis
+
+__all__ = ["add_arguments", "run"]
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """The command's options."""
+    parser.add_argument(
+        "text", nargs="*", metavar="TEXT", help="what to read; each line of standard input by default"
+    )
+    parser.add_argument("--json", action="store_true", help="print a JSON object for each text, one a line")
+    parser.add_argument(
+        "--pipeline",
+        default="",
+        metavar="NAME",
+        help="a spaCy pipeline, or its folder; the setting nlp.pipeline",
+    )
+    parser.add_argument(
+        "--agent-name",
+        dest="agent_names",
+        action="append",
+        metavar="NAME",
+        help="what the agent is called (may be repeated); the setting nlp.agent_names",
+    )
+
+
+def run(options: argparse.Namespace) -> int:
+    """Carry the command out."""
+    from ravestate.modules._text import printable
+    from ravestate.modules.meta.nlp import Settings
+    from ravestate.modules.meta.nlp.analysis import analyse
+    from ravestate.modules.meta.nlp.pipeline import pipeline
+
+    names: Sequence[str] = options.agent_names or Settings().agent_names
+    texts: Iterable[str] = [" ".join(options.text)] if options.text else _lines()
+    for number, text in enumerate(map(printable, texts)):  # it is shown, and must not steer the terminal
+        seen = analyse(text, pipeline(options.pipeline), names)
+        if options.json:
+            print(json.dumps(_plain(text, seen), ensure_ascii=False), flush=True)
+        else:
+            print(("\n" if number else "") + _table(seen), flush=True)
+    return 0
+
+
+def _lines() -> Iterator[str]:
+    try:
+        for line in sys.stdin:
+            if line.strip():
+                yield line.rstrip("\n")
+    except UnicodeDecodeError as error:
+        raise UsageError(f"standard input is no UTF-8 text: {error}") from None
+
+
+def _table(seen: Analysis) -> str:
+    """Everything for people: the words in columns, then the rest."""
+    words = [
+        (word.text, word.lemma, word.pos, word.tag, word.dep, seen.tree.head(word).text)
+        for word in seen.tree.words
+    ]
+    rows = [("TOKEN", "LEMMA", "POS", "TAG", "DEP", "HEAD"), *words]
+    widths = [max(len(row[column]) for row in rows) for column in range(6)]
+    table = [
+        "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in rows
+    ]
+    facts = [
+        ("entities", ", ".join(f"{entity.text} ({entity.label})" for entity in seen.entities)),
+        ("triples", " ".join(str(triple) for triple in seen.triples)),
+        ("yes/no", _answer(seen)),
+        ("question", seen.question.name if seen.question else ""),
+        ("signals", ", ".join(_signals(seen))),
+    ]
+    return "\n".join([*table, "", *(f"{name:<9} {value or '-'}" for name, value in facts)])
+
+
+def _answer(seen: Analysis) -> str:
+    answer = seen.yesno
+    if answer.unsure:
+        return "unsure"
+    if answer.yes or answer.no:
+        return ("yes" if answer.yes else "no") + (", surely" if 2 in (answer.yes, answer.no) else ", weakly")
+    return ""
+
+
+def _signals(seen: Analysis) -> list[str]:
+    raised = {
+        "is_question": seen.question is not None,
+        "about_agent": seen.about_agent,
+        "intent_play": seen.intent_play,
+        "intent_hi": seen.intent_hi,
+        "intent_bye": seen.intent_bye,
+    }
+    return [name for name, is_raised in raised.items() if is_raised]
+
+
+def _plain(text: str, seen: Analysis) -> dict[str, Any]:
+    """Everything for programs."""
+
+    def part(value: Any) -> Any:
+        return value if isinstance(value, str) else {"asks_for": value.name}
+
+    return {
+        "text": text,
+        "tokens": [
+            {
+                "text": word.text,
+                "lemma": word.lemma,
+                "pos": word.pos,
+                "tag": word.tag,
+                "dep": word.dep,
+                "head": word.head,
+                "start": word.start,
+            }
+            for word in seen.tree.words
+        ],
+        "entities": [dataclasses.asdict(entity) for entity in seen.entities],
+        "triples": [[part(t.subject), t.predicate, part(t.object)] for t in seen.triples],
+        "yesno": dataclasses.asdict(seen.yesno),
+        "question": seen.question.name if seen.question else None,
+        "signals": _signals(seen),
+    }

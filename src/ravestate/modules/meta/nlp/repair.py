@@ -1,0 +1,166 @@
+"""Mends what the pipeline regularly gets wrong in short sentences. Each repair tells what it looks like.
+
+A repair takes words and changes the tree among them; it knows its case by the words and labels alone, so that what the
+pipeline gets right is left as it is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+from .tree import Word
+from .word_set import word_set
+
+__all__ = ["repaired"]
+
+_BE = word_set("am is are was were 's")
+_GERUND_TAKERS = word_set(
+    "enjoy like love hate prefer dislike enjoyed liked loved hated preferred enjoys likes loves hates"
+)
+_SAID_OF_ONE = word_set("sings swims reads writes sleeps laughs cries paints dances barks")
+_BESIDE = word_set("next close near far")
+
+
+def repaired(words: list[Word]) -> list[Word]:
+    """Return `words` with a better tree."""
+    tree = _Draft(words)
+    for word in words:
+        for repair in (
+            _gerund,
+            _called,
+            _passive_question,
+            _noun_for_verb,
+            _noun_for_infinitive,
+            _names,
+            _beside,
+        ):
+            repair(tree, tree.words[word.index])
+    return tree.words
+
+
+class _Draft:
+    """A tree that is being changed."""
+
+    def __init__(self, words: list[Word]) -> None:
+        self.words = list(words)
+
+    def children(self, head: Word, *deps: str) -> Iterator[Word]:
+        for word in self.words:
+            if word.head == head.index and word.index != head.index and (not deps or word.dep in deps):
+                yield word
+
+    def change(
+        self, word: Word, *, dep: str = "", head: int = -1, pos: str = "", tag: str = "", lemma: str = ""
+    ) -> None:
+        now = self.words[word.index]
+        self.words[word.index] = replace(
+            now,
+            dep=dep or now.dep,
+            head=head if head >= 0 else now.head,
+            pos=pos or now.pos,
+            tag=tag or now.tag,
+            lemma=lemma or now.lemma,
+        )
+
+    def promote(self, word: Word, over: Word, dep: str) -> None:
+        """Let `word` take the place of `over`, which it depends on; `over` depends on it as `dep`, and keeps nothing else."""
+        self.change(word, dep=over.dep, head=word.index if over.head == over.index else over.head)
+        for child in list(self.children(over)):
+            self.change(child, head=word.index)
+        self.change(over, dep=dep, head=word.index)
+
+
+def _gerund(tree: _Draft, word: Word) -> None:
+    """*I enjoy cooking*, with *enjoy* for an auxiliary of *cooking*."""
+    if word.dep == "aux" and word.low in _GERUND_TAKERS and tree.words[word.head].tag == "VBG":
+        gerund = tree.words[word.head]
+        own = [
+            child for child in tree.children(gerund) if child.index > gerund.index and child.pos != "PUNCT"
+        ]
+        tree.change(word, pos="VERB")
+        tree.promote(word, gerund, "xcomp")
+        for child in own:
+            tree.change(child, head=gerund.index)
+
+
+def _called(tree: _Draft, word: Word) -> None:
+    """*What is your dog called*, with *what is* for the subject."""
+    if word.low in _BE and word.dep in ("csubjpass", "csubj"):
+        verb = tree.words[word.head]
+        for child in list(tree.children(word)):
+            tree.change(
+                child, head=verb.index, dep="oprd" if child.tag in ("WP", "WDT", "WRB") else child.dep
+            )
+        for child in tree.children(verb, "nsubj"):
+            tree.change(child, dep="nsubjpass")
+        tree.change(word, dep="auxpass", pos="AUX")
+
+
+def _passive_question(tree: _Draft, word: Word) -> None:
+    """*Was the cake eaten by the dog*, with *eaten by the dog* for what kind of cake it is."""
+    if word.low not in _BE or word.dep != "ROOT":
+        return
+    for subject in tree.children(word, "nsubj", "attr"):
+        if subject.index < word.index or any(
+            w.pos in ("NOUN", "ADJ", "PRON") and w.dep in ("attr", "acomp") and w.tag not in ("WP", "WRB")
+            for w in tree.children(word)
+            if w.index != subject.index
+        ):
+            continue
+        for verb in tree.children(subject, "acl"):
+            if verb.tag == "VBN":
+                tree.change(subject, dep="nsubjpass")
+                tree.change(verb, dep="ROOT", head=verb.index)
+                for child in list(tree.children(word)):
+                    tree.change(child, head=verb.index)
+                tree.change(word, dep="auxpass", head=verb.index)
+                for by in tree.children(verb, "agent"):
+                    for asked in tree.children(verb, "attr"):  # who was it written by
+                        tree.change(asked, dep="pobj", head=by.index)
+                return
+
+
+def _noun_for_verb(tree: _Draft, word: Word) -> None:
+    """*She plays the piano and sings*, *they neither smoke nor drink*, with the second verb for a noun."""
+    if (
+        word.dep != "conj"
+        or word.pos not in ("NOUN", "PROPN")
+        or any(tree.children(word, "det", "amod", "poss", "compound"))
+    ):
+        return
+    before = tree.words[word.index - 1]
+    head = tree.words[word.head]
+    if before.low == "nor" and head.pos == "VERB":
+        tree.change(word, pos="VERB", tag=head.tag)
+    elif before.low == "and" and word.low in _SAID_OF_ONE and head.dep == "dobj":
+        verb = tree.words[head.head]
+        if verb.tag == "VBZ":
+            tree.change(word, pos="VERB", tag="VBZ", head=verb.index)
+
+
+def _noun_for_infinitive(tree: _Draft, word: Word) -> None:
+    """*I drive to work*, with *to work* for what one does."""
+    if word.dep == "xcomp" and word.pos == "NOUN":
+        for to in tree.children(word, "aux"):
+            if to.low == "to":
+                tree.change(to, dep="prep", head=word.head, pos="ADP")
+                tree.change(word, dep="pobj", head=to.index)
+                return
+
+
+def _names(tree: _Draft, word: Word) -> None:
+    """*My name's Ada*, with *my name's* for a possessive."""
+    after = tree.words[word.index + 1] if word.index + 1 < len(tree.words) else None
+    if word.low == "name" and word.dep == "poss" and after is not None and after.low == "'s":
+        owner = tree.words[word.head]
+        tree.promote(after, owner, "attr")
+        tree.change(after, pos="AUX", tag="VBZ", lemma="be")
+        tree.change(word, dep="nsubj", head=after.index)
+
+
+def _beside(tree: _Draft, word: Word) -> None:
+    """*I live next to the station*: the preposition is *next to*."""
+    if word.low in _BESIDE and word.dep == "advmod" and tree.words[word.head].pos in ("VERB", "AUX"):
+        for preposition in tree.children(word, "prep"):
+            tree.change(preposition, head=word.head)

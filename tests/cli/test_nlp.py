@@ -1,0 +1,67 @@
+"""``ravestate nlp``: shows what is seen in a text."""
+
+import io
+import json
+
+import pytest
+
+from cli.examples import call
+
+Capture = pytest.CaptureFixture[str]
+
+
+def test_a_table_for_people(capsys: Capture) -> None:
+    code, out, errors = call(capsys, "nlp", "Where do you live? I live in Berlin.")
+    assert (code, errors) == (0, "")
+    lines = out.splitlines()
+    assert lines[0].split() == ["TOKEN", "LEMMA", "POS", "TAG", "DEP", "HEAD"]
+    assert lines[3].split() == ["you", "you", "PRON", "PRP", "nsubj", "live"]
+    facts = dict(line.split(None, 1) for line in lines[lines.index("") + 1 :])
+    assert facts == {
+        "entities": "Berlin (GPE)",
+        "triples": "(you, live, PLACE) (I, live, Berlin)",
+        "yes/no": "-",
+        "question": "PLACE",
+        "signals": "is_question, about_agent",
+    }
+
+
+@pytest.mark.parametrize(
+    ("text", "shown"),
+    [("yes", "yes, surely"), ("probably not", "no, weakly"), ("no idea", "unsure"), ("I swim", "-")],
+)
+def test_answers_in_words(text: str, shown: str, capsys: Capture) -> None:
+    _, out, _ = call(capsys, "nlp", text)
+    assert f"yes/no    {shown}\n" in out
+
+
+def test_words_need_no_quotes(capsys: Capture) -> None:
+    code, out, _ = call(capsys, "nlp", "who", "are", "you")
+    assert code == 0 and "(you, be, PERSON)" in out
+
+
+def test_lines_of_standard_input_as_json(capsys: Capture, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("sys.stdin", io.StringIO("Grüße aus Rom!\n\nwho wrote Hamlet\n"))
+    code, out, errors = call(capsys, "nlp", "--json")
+    assert (code, errors) == (0, "")
+    first, second = (json.loads(line) for line in out.splitlines())
+    assert first["text"] == "Grüße aus Rom!" and "Grüße" in out
+    assert second["triples"] == [[{"asks_for": "PERSON"}, "write", "Hamlet"]]
+    assert second["question"] == "PERSON" and second["signals"] == ["is_question"]
+    assert second["yesno"] == {"yes": None, "no": None, "unsure": None}
+    assert [token["text"] for token in second["tokens"]] == ["who", "wrote", "Hamlet"]
+
+
+def test_the_agents_name_can_be_given(capsys: Capture) -> None:
+    _, out, _ = call(capsys, "nlp", "--agent-name", "Lina", "lina is here")
+    assert "signals   about_agent\n" in out
+
+
+def test_nothing_steers_the_terminal(capsys: Capture) -> None:
+    code, out, _ = call(capsys, "nlp", "\x1b[31mred\udcff")
+    assert code == 0 and "\x1b" not in out and "red" in out
+
+
+def test_an_unknown_pipeline_is_a_message(capsys: Capture) -> None:
+    code, out, errors = call(capsys, "nlp", "--pipeline", "nonsense", "hello")
+    assert (code, out) == (1, "") and "there is no spaCy pipeline 'nonsense'" in errors

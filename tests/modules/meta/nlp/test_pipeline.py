@@ -1,0 +1,113 @@
+"""Reading with spaCy: what comes out, what is missing, and what nobody should write."""
+
+import builtins
+import sys
+import threading
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from ravestate.errors import PlatformError
+from ravestate.modules.meta.nlp.analysis import analyse
+from ravestate.modules.meta.nlp.pipeline import LONGEST, Pipeline, pipeline
+
+
+def test_words_are_as_written(reader: Pipeline) -> None:
+    text = "I’d LIKE  to\tvisit München, wouldn't you?"
+    tree, _ = reader.read(text)
+    assert all(text[word.start : word.end] == word.text for word in tree.words)
+    assert "".join(word.text for word in tree.words) == "".join(text.split())
+    assert [word.index for word in tree.words] == list(range(len(tree.words)))
+
+
+def test_entities_know_where_they_stand(reader: Pipeline) -> None:
+    text = "Tom Miller has lived in Berlin since 1999."
+    _, entities = reader.read(text)
+    assert {(text[e.start : e.end], e.label) for e in entities} >= {("Berlin", "GPE"), ("1999", "DATE")}
+    assert all(text[e.start : e.end] == e.text for e in entities)
+
+
+def test_like_is_a_verb_and_keeps_its_lemma(reader: Pipeline) -> None:
+    tree, _ = reader.read("Tom and Anna like games.")
+    (like,) = [word for word in tree.words if word.text == "like"]
+    assert (like.lemma, like.pos) == ("like", "VERB")
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["", " ", "\n\n", "\x00\x1b[31mred\x07", "😀👍🏽👨‍👩‍👧", "שלום, מה שלומך?", "مرحبا كيف حالك", "Wo wohnst du denn?", "你好，你叫什么名字？",
+     "a\udcffb", "?" * 500, "and " * 500, "((((((((((", "\u202ehello\u202c", "http://example.org/?q=1&r=2", "'s 's 's n't n't", "-" * 3000,
+     "who who who is is is", "what", "not not not", "that that that that is is that"],
+)  # fmt: skip
+def test_nothing_that_is_said_is_too_much(reader: Pipeline, text: str) -> None:
+    seen = analyse(text, reader, ["Ravestate", "", "(?"])
+    assert "".join(word.text for word in seen.tree.words).strip() == "".join(
+        seen.tree.text.split()
+    ).strip() or any(not character.isprintable() for character in text)
+
+
+def test_of_a_long_text_the_beginning_is_read(reader: Pipeline, caplog: pytest.LogCaptureFixture) -> None:
+    seen = analyse("where do you live " * 6000, reader)
+    assert seen.about_agent and seen.question is not None
+    assert len(seen.tree.text) <= LONGEST and seen.tree.text.endswith(("where", "do", "you", "live"))
+    assert f"analysed only the first {LONGEST} of 108000 characters" in caplog.text
+    assert len(reader.shorten("x" * 100_000)) == LONGEST
+
+
+def test_words_are_not_kept_for_ever(reader: Pipeline) -> None:
+    strings = reader._nlp.vocab.strings  # pyright: ignore[reportPrivateUsage]
+    reader.read("warm up")
+    before = len(strings)
+    for number in range(20):
+        reader.read(f"unheardof{number} word{number}")
+    assert len(strings) == before
+
+
+def test_many_threads_may_read_at_once(reader: Pipeline) -> None:
+    found: list[list[str]] = []
+
+    def read() -> None:
+        for _ in range(5):
+            tree, _ = reader.read("Where do you live?")
+            found.append([word.text for word in tree.words])
+
+    threads = [threading.Thread(target=read) for _ in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert found == [["Where", "do", "you", "live", "?"]] * 20
+
+
+def test_contexts_share_a_pipeline() -> None:
+    assert pipeline("") is pipeline("")
+    assert pipeline("another") is not pipeline("") and not pipeline("another").loaded
+
+
+def test_an_unknown_pipeline_is_named() -> None:
+    with pytest.raises(
+        PlatformError,
+        match=r"no spaCy pipeline 'de_core_nonsense': python -m spacy download de_core_nonsense",
+    ):
+        Pipeline("de_core_nonsense").read("Hallo")
+
+
+def test_a_broken_pipeline_is_told_of(tmp_path: Path) -> None:
+    (tmp_path / "config.cfg").write_text("nonsense", encoding="utf-8")
+    with pytest.raises(PlatformError, match="cannot be loaded"):
+        Pipeline(str(tmp_path)).load()
+
+
+def test_without_spacy_the_extra_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delitem(sys.modules, "spacy", raising=False)
+    importing = builtins.__import__
+
+    def without_spacy(name: str, *arguments: Any, **named: Any) -> Any:
+        if name.partition(".")[0] == "spacy":
+            raise ImportError(name)
+        return importing(name, *arguments, **named)
+
+    monkeypatch.setattr(builtins, "__import__", without_spacy)
+    with pytest.raises(PlatformError, match=r"nlp needs spacy: pip install 'ravestate\[nlp\]'"):
+        Pipeline().read("hello")
