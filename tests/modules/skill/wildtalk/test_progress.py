@@ -38,13 +38,21 @@ def test_what_is_done_at_once_needs_no_bar() -> None:
     assert screen.getvalue() == ""
 
 
-def test_above_a_prompt_it_is_a_line_for_each_quarter(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_above_a_prompt_it_is_one_line(monkeypatch: pytest.MonkeyPatch) -> None:
     screen = Terminal()
     monkeypatch.setattr(sys, "stderr", screen)
     with ProgressBar("Loading", delay=0.0) as bar:
         for percent in range(101):
             bar(percent / 100)
-    assert screen.getvalue().splitlines() == [f"Loading: {p} %" for p in (25, 50, 75, 100)]
+    assert screen.getvalue() == "Loading…\n"
+
+
+def test_above_a_prompt_what_is_done_is_not_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    screen = Terminal()
+    monkeypatch.setattr(sys, "stderr", screen)
+    with ProgressBar("Loading", delay=0.0) as bar:
+        bar(1.0)
+    assert screen.getvalue() == ""
 
 
 def test_without_tqdm_or_standard_error_it_is_silent(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -13,8 +13,9 @@ __all__ = ["ProgressBar"]
 class ProgressBar:
     """Shows how far something is, once it has taken `delay` seconds, and only to a person.
 
-    On a terminal it is a bar of tqdm. Where something else owns the terminal (a prompt that redirects standard
-    error and prints it line by line), it is a line for each quarter. Elsewhere it is nothing.
+    On a terminal it is a bar of tqdm, which goes when it is done. Where something else owns the terminal (a prompt that
+    redirects standard error and prints it line by line, so that nothing can be taken back), it is one line. Elsewhere
+    it is nothing.
 
     Example:
         ```python
@@ -29,7 +30,7 @@ class ProgressBar:
         self._delay = delay
         self._stream = stream
         self._began = time.monotonic()
-        self._quarter = 0
+        self._told = False
         self._bar: Any = None
 
     def __call__(self, fraction: float) -> None:
@@ -40,10 +41,9 @@ class ProgressBar:
         if time.monotonic() - self._began < self._delay:
             return
         if self._stream is None and stream is not sys.__stderr__:
-            quarter = int(fraction * 4)
-            if quarter > self._quarter:
-                stream.write(f"{self._label}: {quarter * 25} %\n")
-                self._quarter = quarter
+            if not self._told and fraction < 1.0:
+                stream.write(f"{self._label}…\n")
+                self._told = True
             return
         if self._bar is None:
             if fraction >= 1.0:
