@@ -50,10 +50,10 @@ log = logging.getLogger("ravestate.ontology")
 class EmbeddedStore:
     """A file that ladybug keeps, in this process alone.
 
-    What is committed is in the write-ahead log, on disk. Two faults of the database's are kept from the agent:
-    when a write to the log fails, the next one would hang, and closing would end the process. So there is a look
-    at the free space before each write; should one fail all the same, nothing more is written, and the database is
-    neither closed nor collected until its files can be written again.
+    What is committed is in the write-ahead log, on disk. When a write to that log fails, the database would hang in
+    the next one, and end the process when it is closed. So there is a look at the free space before each write;
+    should one fail all the same, its torn record is cut off, nothing more is written, and the database is neither
+    closed nor collected until its files can be written again.
     """
 
     def __init__(self, path: Path) -> None:
@@ -73,6 +73,7 @@ class EmbeddedStore:
         self._path = path
         self._log = path.with_name(path.name + ".wal")
         self._log_limit = LOG_LIMIT
+        self._log_good = 0
         self._stuck = ""
         self._within = False
         try:
@@ -93,7 +94,7 @@ class EmbeddedStore:
         self._be_writable(sum(len(value) for value in parameters.values() if isinstance(value, str)))
         rows = self.read(statement, parameters)
         if not self._within:
-            self._shorten_log()
+            self._acknowledge()
         return rows
 
     @contextmanager
@@ -111,7 +112,12 @@ class EmbeddedStore:
             raise
         finally:
             self._within = False
+        self._acknowledge()
+
+    def _acknowledge(self) -> None:
+        """What has been written up to here is on disk."""
         self._shorten_log()
+        self._log_good = self._log_size()
 
     def _execute(self, statement: str, parameters: Mapping[str, Any] | None = None) -> list[list[Any]]:
         try:
@@ -187,26 +193,52 @@ class EmbeddedStore:
     def undeclared(self, types: Types) -> list[str]:
         """The names of types in the file that `types` do not have."""
         rows = self._execute("CALL show_tables() RETURN name, type")
-        known = {META, *types, *types.relations}
-        return sorted(name for name, _ in rows if name not in known)
+        return sorted({name for name, kind in rows if kind == "NODE"} - {META, *types})
 
     # ------------------------------------------------------------------------------------ the file
 
     def _open(self) -> None:
         try:
-            self._database = self._ladybug.Database(
-                str(self._path),
-                buffer_pool_size=BUFFER,
-                max_db_size=LARGEST,
-                max_num_threads=1,
-                auto_checkpoint=False,  # done here, where it may fail
-            )
-            self._connection = self._ladybug.Connection(self._database, num_threads=1)
-            self._connection.execute("CALL force_checkpoint_on_close=false")
+            self._connect()
         except RuntimeError as error:
-            raise PlatformError(_why_not(self._path, str(error))) from error
+            if "wal file" not in str(error).lower():
+                raise PlatformError(_why_not(self._path, str(error))) from error
+            self._save_what_can_be_read()
+        self._log_good = self._log_size()
         with contextlib.suppress(OSError):  # of another user's, who lets us write it
             self._path.chmod(0o600)
+
+    def _connect(self, *, whole_log: bool = True) -> None:
+        self._database = self._ladybug.Database(
+            str(self._path),
+            buffer_pool_size=BUFFER,
+            max_db_size=LARGEST,
+            max_num_threads=1,
+            auto_checkpoint=False,  # done here, where it may fail
+            throw_on_wal_replay_failure=whole_log,
+        )
+        self._connection = self._ladybug.Connection(self._database, num_threads=1)
+        self._connection.execute("CALL force_checkpoint_on_close=false")
+
+    def _save_what_can_be_read(self) -> None:
+        """Open with a log that is damaged, mostly at its end, where a power failure has torn a record."""
+        number = 1
+        while (copy := self._log.with_name(f"{self._log.name}.damaged-{number}")).exists():
+            number += 1
+        try:
+            shutil.copyfile(self._log, copy)
+            self._connect(whole_log=False)
+        except OSError as error:
+            raise PlatformError(
+                f"memory {self._path} has a damaged log, which cannot be copied before it is mended: {error.strerror}"
+            ) from error
+        except RuntimeError as error:
+            raise PlatformError(_why_not(self._path, str(error))) from error
+        log.warning(
+            "memory %s has a damaged log: what stands before the damage was read, and the log as it was is kept as %s",
+            self._path,
+            copy,
+        )
 
     def close(self) -> None:
         """Let go of the file, its log worked in. If it cannot be written, the log is for the next opening."""
@@ -262,6 +294,8 @@ class EmbeddedStore:
 
     def _get_stuck(self, said: str) -> None:
         self._stuck = _reason(said)
+        with contextlib.suppress(OSError):
+            os.truncate(self._log, self._log_good)  # a record that is torn would stop the next opening
         for held in (self._connection, self._database):  # never collected: that would end the process
             ctypes.pythonapi.Py_IncRef(ctypes.py_object(held))
 

@@ -6,7 +6,7 @@ import threading
 from collections.abc import Callable
 from concurrent.futures import Future
 from queue import SimpleQueue
-from typing import Any, TypeVar
+from typing import TypeVar
 
 from .store import Store
 
@@ -15,6 +15,8 @@ __all__ = ["Keeper"]
 T = TypeVar("T")
 
 _shared: dict[str, Keeper] = {}
+_closing: dict[str, Future[None]] = {}
+"""Stores that are being closed; the next who opens one waits for that."""
 _lock = threading.Lock()
 
 
@@ -35,22 +37,29 @@ class Keeper:
         self.place = place
         self._jobs: SimpleQueue[Callable[[], None] | None] = SimpleQueue()
         self._users = 1
-        self._key: str | None = None
+        self._key = ""
         self._store: Store | None = None
         self._failure: BaseException | None = None
         self._jobs.put(lambda: self._open(make))
         threading.Thread(target=self._work, name="ravestate-memory", daemon=True).start()
 
     @classmethod
-    def shared(cls, key: str, place: str, make: Callable[[], Store]) -> Keeper:
-        """The keeper of a store that is known in this process by `key`, or a new one."""
+    def shared(cls, key: str, make: Callable[[], Store]) -> Keeper:
+        """The keeper of a store that is known in this process by `key`, which is its place, or a new one."""
         with _lock:
             keeper = _shared.get(key)
-            if keeper is None:
-                keeper = _shared[key] = cls(place, make)
-                keeper._key = key
-            else:
+            if keeper is not None:
                 keeper._users += 1
+                return keeper
+            before = _closing.get(key)
+
+            def make_after() -> Store:
+                if before is not None:
+                    before.exception()
+                return make()
+
+            keeper = _shared[key] = cls(key, make_after)
+            keeper._key = key
             return keeper
 
     def submit(self, job: Callable[[Store], T]) -> Future[T]:
@@ -73,13 +82,21 @@ class Keeper:
         done: Future[None] = Future()
         with _lock:
             self._users -= 1
-            last = self._users == 0
-            if last:
-                self._jobs.put(lambda: self._close(done))
-                self._jobs.put(None)
-        if not last:
-            self._jobs.put(lambda: done.set_result(None))
+            if self._users:
+                self._jobs.put(lambda: done.set_result(None))
+                return done
+            if self._key:
+                del _shared[self._key]
+                _closing[self._key] = done
+            self._jobs.put(lambda: self._close(done))
+            self._jobs.put(None)
+        done.add_done_callback(self._closed)
         return done
+
+    def _closed(self, done: Future[None]) -> None:
+        with _lock:
+            if _closing.get(self._key) is done:
+                del _closing[self._key]
 
     # ------------------------------------------------------------------------------- in the thread
 
@@ -93,7 +110,7 @@ class Keeper:
         except BaseException as error:  # whoever asks for something gets it
             self._failure = error
 
-    def _close(self, done: Future[Any]) -> None:
+    def _close(self, done: Future[None]) -> None:
         try:
             if self._store is not None:
                 self._store.close()

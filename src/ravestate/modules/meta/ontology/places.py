@@ -54,7 +54,7 @@ def open_memory(settings: Settings) -> Memory:
     if settings.url is not None:
         return Memory(Keeper(settings.url, lambda: _server(settings)), read)
     path = Path(os.path.realpath((settings.path or default_path(settings.agent)).expanduser()))
-    return Memory(Keeper.shared(str(path), str(path), lambda: _file(path)), read)
+    return Memory(Keeper.shared(str(path), lambda: _file(path)), read)
 
 
 def _file(path: Path) -> Any:

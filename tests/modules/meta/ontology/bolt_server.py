@@ -1,0 +1,31 @@
+"""A real Bolt server (ArcadeDB), as a process: ``python bolt_server.py FOLDER BOLT_PORT HTTP_PORT PASSWORD DATABASE``.
+
+It says ``ready`` when it is, and ends when its standard input does, and so with the tests however these end.
+"""
+
+import sys
+
+
+def main(folder: str, bolt_port: int, http_port: int, password: str, database: str) -> None:
+    from arcadedb_embedded.server import ArcadeDBServer
+
+    server = ArcadeDBServer(
+        folder,
+        root_password=password,
+        config={
+            "host": "127.0.0.1",
+            "http_port": http_port,
+            "server_plugins": "Bolt:com.arcadedb.bolt.BoltProtocolPlugin",
+            "bolt_port": bolt_port,
+        },
+        jvm_kwargs={"heap_size": "256m"},
+    )
+    server.start()
+    server.create_database(database)
+    print("ready", flush=True)
+    sys.stdin.read()
+    server.stop()
+
+
+if __name__ == "__main__":
+    main(sys.argv[1], int(sys.argv[2]), int(sys.argv[3]), sys.argv[4], sys.argv[5])

@@ -1,0 +1,258 @@
+"""What a file of memory stands, and what is said when it cannot be used."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import stat
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from modules.meta.ontology.conftest import Open
+from ravestate.errors import PlatformError, RuleError
+from ravestate.modules import ontology
+from ravestate.modules.meta.ontology import embedded
+from ravestate.modules.meta.ontology.embedded import EmbeddedStore
+from ravestate.modules.meta.ontology.places import open_memory
+
+HERE = Path(__file__).parent
+
+
+def failure(**settings: Any) -> str:
+    """Why memory cannot be opened."""
+    memory = open_memory(ontology.Settings(**settings))
+    with pytest.raises(PlatformError) as caught:
+        memory.opened().result(60)
+    memory.close().result(60)
+    return str(caught.value)
+
+
+@pytest.fixture
+def file(tmp_path: Path, open_here: Open) -> Path:
+    """A file of memory that knows Ada, and that nobody has open."""
+    path = tmp_path / "memory.lbug"
+    memory = open_here(path=path)
+    memory.create("Person", name="Ada").result()
+    memory.close().result()
+    return path
+
+
+@pytest.fixture
+def writer(tmp_path: Path) -> Iterator[tuple[Path, subprocess.Popen[str]]]:
+    """Another process that writes to a file of memory."""
+    path = tmp_path / "memory.lbug"
+    process = subprocess.Popen([sys.executable, HERE / "writer.py", path], stdout=subprocess.PIPE, text=True)
+    with process:
+        yield path, process
+        process.kill()
+
+
+@pytest.mark.parametrize("writes", [1, 7, 300])
+def test_what_was_acknowledged_survives_being_killed(
+    writer: tuple[Path, subprocess.Popen[str]], open_here: Open, writes: int
+) -> None:
+    path, process = writer
+    assert process.stdout is not None
+    for _ in range(writes):
+        process.stdout.readline()
+    process.kill()
+    acknowledged = writes + len(process.stdout.readlines())
+    process.wait()
+    memory = open_here(path=path)
+    [here] = memory.find("City").result()
+    names = [node["name"] for node in memory.related(here, "lives_in", back=True).result()]
+    assert names[:acknowledged] == [f"person {number}" for number in range(acknowledged)]
+    assert len(names) <= acknowledged + 1  # one may be written, and not yet acknowledged
+    assert memory.create("Person", name="after").result()["name"] == "after"
+
+
+def test_a_second_process_is_told_who_has_the_file(writer: tuple[Path, subprocess.Popen[str]]) -> None:
+    path, process = writer
+    assert process.stdout is not None and process.stdout.readline() == "0\n"
+    said = failure(path=path)
+    assert f"memory {path} is in use by process {process.pid}" in said
+    assert "--set ontology.path=FILE" in said
+
+
+def test_one_process_opens_a_file_once_however_it_is_named(tmp_path: Path, open_here: Open) -> None:
+    (tmp_path / "link").symlink_to(tmp_path, target_is_directory=True)
+    first = open_here(path=tmp_path / "memory.lbug")
+    second = open_here(path=tmp_path / "link" / ".." / tmp_path.name / "memory.lbug")
+    ada = first.create("Person", name="Ada").result()
+    assert second.find("Person").result() == [ada]
+    first.close().result()
+    second.update(ada, age=36).result()  # it is open as long as anybody uses it
+    second.close().result()
+    assert open_here(path=tmp_path / "memory.lbug").get(ada.id).result() == ada.with_properties(age=36)
+
+
+@pytest.mark.parametrize("ending", ["full", "room"])
+def test_a_full_disk_is_told_nothing_is_lost_and_it_goes_on(
+    tmp_path: Path, open_here: Open, ending: str
+) -> None:
+    path = tmp_path / "memory.lbug"
+    run = subprocess.run(
+        [sys.executable, HERE / "full_disk.py", path, ending],
+        capture_output=True, text=True, check=False, timeout=60,
+    )  # fmt: skip
+    assert run.returncode == 0, run.stderr
+    told = json.loads(run.stdout)
+    assert len(told["errors"]) == 3
+    for error in told["errors"]:
+        assert f"memory {path} cannot be written" in error and "Make room on the disk" in error
+    assert told["read"] == len(told["acknowledged"])
+    found = [node["name"] for node in open_here(path=path).find("Person").result()]
+    assert [name for name in found if name in told["acknowledged"]] == told["acknowledged"]
+    assert len(found) <= len(told["acknowledged"]) + 1
+
+
+def test_nothing_is_written_when_there_is_hardly_space(
+    file: Path, open_here: Open, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    memory = open_here(path=file)
+    usage = shutil.disk_usage(file.parent)
+    monkeypatch.setattr(shutil, "disk_usage", lambda _: usage._replace(free=embedded.RESERVE - 1))
+    for write in (lambda: memory.create("Person"), lambda: memory.ensure("City", name="x")):
+        with pytest.raises(PlatformError, match="the disk is full"):
+            write().result()
+    assert len(memory.find("Person").result()) == 1
+    monkeypatch.undo()
+    memory.create("Person", name="Bob").result()
+    assert len(memory.find("Thing").result()) == 2
+
+
+def test_the_log_is_worked_in_on_the_way(
+    tmp_path: Path, open_here: Open, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(embedded, "LOG_LIMIT", 50_000)
+    path = tmp_path / "memory.lbug"
+    memory = open_here(path=path)
+    sizes: list[int] = []
+    for number in range(60):
+        memory.create("Person", name=f"{number}" * 1000).result()
+        sizes.append(os.path.getsize(f"{path}.wal") if Path(f"{path}.wal").exists() else 0)
+    assert max(sizes) < 60_000 and sizes.count(0) >= 1
+    memory.close().result()
+    assert not Path(f"{path}.wal").exists()
+    assert len(open_here(path=path).find("Person").result()) == 60
+
+
+def test_a_log_that_cannot_be_worked_in_is_kept(
+    tmp_path: Path, open_here: Open, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    path = tmp_path / "memory.lbug"
+    memory = open_here(path=path)
+    memory.create("Person", name="Ada").result()
+    usage = shutil.disk_usage(tmp_path)
+    monkeypatch.setattr(shutil, "disk_usage", lambda _: usage._replace(free=0))
+    memory.close().result()
+    assert f"memory {path} keeps a log" in caplog.text
+    monkeypatch.undo()
+    assert len(open_here(path=path).find("Person").result()) == 1
+
+
+def test_a_newer_file_is_told_and_left_alone(file: Path) -> None:
+    newer = bytearray(file.read_bytes())
+    newer[4] = 200  # the version of ladybug's format
+    file.write_bytes(newer)
+    said = failure(path=file)
+    assert "was written by a newer version of ladybug (format 200; " in said
+    assert "pip install --upgrade ladybug" in said and "Nothing was changed" in said
+    assert file.read_bytes() == newer
+
+
+@pytest.mark.parametrize("content", [b"no database at all " * 300, b"x", None])
+def test_a_broken_file_is_told_and_left_alone(file: Path, content: bytes | None) -> None:
+    broken = file.read_bytes()[:9000] if content is None else content
+    file.write_bytes(broken)
+    said = failure(path=file)
+    assert f"memory {file} is broken, or no file of memory" in said and "Nothing was changed" in said
+    assert file.read_bytes() == broken
+
+
+@pytest.mark.parametrize("damage", ["torn", "zeros", "rubbish"])
+def test_of_a_damaged_log_what_can_be_read_is_read_and_the_rest_kept(
+    tmp_path: Path,
+    open_here: Open,
+    caplog: pytest.LogCaptureFixture,
+    monkeypatch: pytest.MonkeyPatch,
+    damage: str,
+) -> None:
+    path = tmp_path / "memory.lbug"
+    log = Path(f"{path}.wal")
+    memory = open_here(path=path)
+    memory.create("Person", name="Ada").result()
+    memory.close().result()
+    monkeypatch.setattr(EmbeddedStore, "_shorten_log", lambda *_, **__: None)  # as if the power had failed
+    memory = open_here(path=path)
+    for name in ("Bob", "Cy"):
+        memory.create("Person", name=name).result()
+    memory.close().result()
+    monkeypatch.undo()
+    content = log.read_bytes()
+    damaged = {"torn": content[:-9], "zeros": content + bytes(99), "rubbish": b"rubbish" * 99}[damage]
+    expected = {"torn": ["Ada", "Bob"], "zeros": ["Ada", "Bob", "Cy"], "rubbish": ["Ada"]}[damage]
+    for number in (1, 2):
+        log.write_bytes(damaged)
+        caplog.clear()
+        memory = open_here(path=path)
+        assert [node["name"] for node in memory.find("Person").result()][: len(expected)] == expected
+        memory.close().result()
+        copy = Path(f"{log}.damaged-{number}")
+        assert copy.read_bytes() == damaged
+        assert f"memory {path} has a damaged log" in caplog.text and str(copy) in caplog.text
+        if damage != "rubbish":
+            break
+
+
+def test_a_database_of_something_else_is_left_alone(tmp_path: Path) -> None:
+    import ladybug
+
+    path = tmp_path / "other.lbug"
+    with (
+        ladybug.Database(str(path), max_db_size=2**30) as database,
+        ladybug.Connection(database) as connection,
+    ):
+        connection.execute("CREATE NODE TABLE Person(id STRING PRIMARY KEY)")
+    assert "is a ladybug database of something else (it has Person)" in failure(path=path)
+
+
+def test_a_folder_is_no_file_and_a_file_is_no_folder(file: Path, tmp_path: Path) -> None:
+    assert "cannot be opened" in failure(path=tmp_path)
+    assert "cannot make its folder" in failure(path=file / "memory.lbug")
+
+
+def test_a_property_does_not_change_its_kind(file: Path, tmp_path: Path, open_here: Open) -> None:
+    types = tmp_path / "mine.yaml"
+    types.write_text("Person: {has: {shoe_size: text}}")
+    memory = open_here(path=file, types=(types,))
+    memory.update(memory.find("Person").result()[0], shoe_size="38 or so").result()
+    memory.close().result()
+    types.write_text("Person: {has: {shoe_size: number, hat_size: number}}")
+    said = failure(path=file, types=(types,))
+    assert "has Person.shoe_size as text, and the types say number: write shoe_size: text" in said
+    types.write_text(
+        "Person: {has: {shoe_size: date}}"
+    )  # kept as a text too, so it comes out when it is read
+    memory = open_here(path=file, types=(types,))
+    with pytest.raises(RuleError, match=r"memory has Person\.shoe_size = '38 or so', which is no date"):
+        memory.find("Person").result()
+
+
+def test_the_file_is_the_users_alone(tmp_path: Path, open_here: Open) -> None:
+    path = tmp_path / "new" / "folder" / "memory.lbug"
+    open_here(path=path)
+    assert stat.S_IMODE(path.stat().st_mode) == 0o600
+    assert stat.S_IMODE(path.parent.stat().st_mode) == 0o700
+
+
+def test_the_package_is_named_where_it_is_missing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "ladybug", None)
+    assert failure(path=tmp_path / "x") == "ontology needs ladybug: pip install 'ravestate[ontology]'"
+    assert list(tmp_path.iterdir()) == []

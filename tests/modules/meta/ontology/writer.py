@@ -1,0 +1,22 @@
+"""Writes people to memory for ever, and says of each when it is acknowledged: ``python writer.py FILE [BATCH]``."""
+
+import sys
+from pathlib import Path
+
+from ravestate.modules import ontology
+from ravestate.modules.meta.ontology.places import open_memory
+
+
+def main(path: Path) -> None:
+    memory = open_memory(ontology.Settings(path=path))
+    place = memory.ensure("City", name="here").result()
+    number = 0
+    while True:
+        person = memory.create("Person", name=f"person {number}", nickname="x" * 2000).result()
+        memory.relate(person, "lives_in", place).result()
+        print(number, flush=True)
+        number += 1
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]))
