@@ -197,7 +197,7 @@ class Runner:
                     if not self._todo:
                         break
                 some = True
-                while self._todo and not self._held():
+                while self._todo and not ((self.serial or self._cleaning) and self._held()):
                     self._perform(self._todo.popleft())
             else:
                 self._scheduled = True
