@@ -320,7 +320,7 @@ class Context:
         if not isinstance(name, str) or names.get(name) is not thing:
             hint = ""
             if what == "signal" and isinstance(thing, Slot):
-                hint = f"; it is a slot: write {spelt(name)}.changed"
+                hint = f"; it is a slot: write {spelt(str(name))}.changed"
             elif isinstance(name, str):
                 hint = nearest(name, names) or f"; add module {name.split(':')[0]} to the context"
             raise UndeclaredError(f"this context has no {what} {thing!r}{hint}")
