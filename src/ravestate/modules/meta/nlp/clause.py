@@ -42,8 +42,8 @@ _GERUND_TAKERS = word_set(
 )
 _NEGATIONS = frozenset(["not", "n't", "nt", "never"])
 _BE = frozenset(["be", "am", "is", "are", "was", "were", "m", "s", "re", "'s", "'m", "'re"])
-_SENSES = word_set("be feel look seem sound")
-_STATES = word_set("better worse well fine good bad great ok okay awful")
+_SENSES = word_set("be feel look seem sound taste smell")
+_STATES = word_set("better worse well fine good bad great ok okay awful hard")
 """Words that the tagger takes for adverbs, but that tell how somebody is."""
 _MISTAKEN = word_set("like love play work live study dance swim paint cook")
 """Verbs that the tagger often takes for something else."""
@@ -118,14 +118,15 @@ class Clause:
         words = [lemma, *self._particles(first)]
         for verb in others:
             if self._infinitive(verb) or (verb == self.verb and self._infinitive(self._head)):
-                words.append("to")
+                words += ["not", "to"] if verb != first and self._denied(verb) else ["to"]
             words += [verb.low, *self._particles(verb)]
         return " ".join(words)
 
     @cached_property
     def negated(self) -> bool:
         """Whether it is denied."""
-        own = [word for word in self._own if word.dep != "ROOT"]
+        later = self.chain[1:]  # "decide not to go" denies the going alone
+        own = [word for word in self._own if word.dep != "ROOT" and self.tree.head(word) not in later]
         if any(word.low in _NEGATIONS and not self._contrasts(word) for word in own):
             return True
         if any(
@@ -186,6 +187,9 @@ class Clause:
         return verb.low in ("going", "gon") and any(
             _lemma(aux) == "be" or verb.low == "gon" for aux in self.tree.children(verb, "aux") or [verb]
         )
+
+    def _denied(self, verb: Word) -> bool:
+        return any(child.low in _NEGATIONS for child in self.tree.children(verb, "neg"))
 
     def _infinitive(self, verb: Word) -> bool:
         return any(child.low in ("to", "na") for child in self.tree.children(verb, "aux"))

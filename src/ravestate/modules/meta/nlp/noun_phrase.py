@@ -22,7 +22,10 @@ def noun_phrase(tree: Tree, head: Word) -> list[Word]:
         return gerund_phrase(tree, head)
     kept = [head]
     for child in tree.children(head):
-        determiner = child.low in DETERMINERS and not (child.low == "no" and head.low == "one")
+        determiner = child.low in DETERMINERS and (child.low, head.low) not in (
+            ("no", "one"),
+            ("each", "other"),
+        )
         if child.dep in _KEPT and child.pos != "ADV" and not determiner:
             kept += _joined_adjectives(tree, child) if child.dep == "amod" else noun_phrase(tree, child)
         elif child.dep == "prep" and child.low == "of" and child.index > head.index:

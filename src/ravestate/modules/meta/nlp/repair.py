@@ -34,6 +34,9 @@ def repaired(words: list[Word]) -> list[Word]:
             _noun_for_infinitive,
             _names,
             _beside,
+            _adjective_for_noun,
+            _noun_after_do,
+            _verb_of_noun,
         ):
             repair(tree, tree.words[word.index])
     return tree.words
@@ -164,3 +167,42 @@ def _beside(tree: _Draft, word: Word) -> None:
     if word.low in _BESIDE and word.dep == "advmod" and tree.words[word.head].pos in ("VERB", "AUX"):
         for preposition in tree.children(word, "prep"):
             tree.change(preposition, head=word.head)
+
+
+def _adjective_for_noun(tree: _Draft, word: Word) -> None:
+    """*Are robots dangerous*, with *dangerous* for what kind of robots they are."""
+    if word.pos != "ADJ" or word.dep not in ("amod", "advmod"):
+        return
+    noun = tree.words[word.head]
+    verb = tree.words[noun.head]
+    if (
+        noun.index == word.index - 1
+        and noun.dep in ("nsubj", "attr")
+        and verb.low in _BE
+        and verb.index < noun.index
+    ):
+        tree.change(word, dep="acomp", head=verb.index)
+        tree.change(noun, dep="nsubj")
+
+
+def _noun_after_do(tree: _Draft, word: Word) -> None:
+    """*When did the war end*, with *war end* for a compound noun."""
+    if word.pos != "NOUN" or not any(aux.low in ("do", "does", "did") for aux in tree.children(word, "aux")):
+        return
+    for subject in tree.children(word, "compound", "nmod"):
+        if subject.index == word.index - 1:
+            for child in list(tree.children(word, "det", "poss", "amod")):
+                tree.change(child, head=subject.index)
+            tree.change(subject, dep="nsubj")
+            tree.change(word, pos="VERB", tag="VB")
+            return
+
+
+def _verb_of_noun(tree: _Draft, word: Word) -> None:
+    """*What is love*, with *is* for an auxiliary of *love*."""
+    noun = tree.words[word.head]
+    if word.dep == "aux" and word.low in _BE and noun.pos in ("NOUN", "PROPN") and noun.index > word.index:
+        own = [child for child in tree.children(noun) if child.index > word.index and child.pos != "PUNCT"]
+        tree.promote(word, noun, "nsubj")
+        for child in own:
+            tree.change(child, head=noun.index)
