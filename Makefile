@@ -1,7 +1,7 @@
 # Everything happens in the project's own environment, .venv. A machine with Python 3.11 or newer, pip and
 # make is enough: each target below fetches what it lacks, once, and then needs no network.
 #
-#   make chat ARGS='--set wildtalk.persona=pirate'     ARGS goes to the command, here `ravestate chat`
+#   make chat ARGS='--set idle.bored_after=20'         ARGS goes to the command, here `ravestate chat`
 #   make test ARGS='-k consent -x'                     ... here pytest
 #   make PYTHON=/usr/bin/python3.12 test               another interpreter
 

@@ -31,11 +31,11 @@ class TransformersBackend:
     """Runs a causal model in a thread of this process; contexts with the same model share it.
 
     Example:
-        ::
-
-            backend = TransformersBackend("gpt2")
-            async for piece in backend.stream([Message("user", "Hello!")]):
-                print(piece, end="", flush=True)
+        ```python
+        backend = TransformersBackend("gpt2")
+        async for piece in backend.stream([Message("user", "Hello!")]):
+            print(piece, end="", flush=True)
+        ```
     """
 
     def __init__(self, model: str, *, read_timeout: float = 60.0) -> None:
