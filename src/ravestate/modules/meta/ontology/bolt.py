@@ -23,6 +23,9 @@ T = TypeVar("T")
 META = "_ravestate"
 """The label of the node that says how the rest is laid out."""
 
+SCHEMES = ("bolt", "bolt+s", "bolt+ssc", "neo4j", "neo4j+s", "neo4j+ssc")
+"""How a server's address may begin; ``+s`` is with encryption, ``+ssc`` with a certificate that nobody has signed."""
+
 LIVELY = 5.0
 """Seconds after which a connection is tried before it is used again: the server may have been restarted."""
 
@@ -71,6 +74,11 @@ class BoltStore:
             raise
 
     def _connected(self, url: str, user: str, password: str) -> Any:
+        if url.partition("://")[0] not in SCHEMES:
+            raise PlatformError(
+                f"ontology.url = {url!r} does not begin with one of {', '.join(SCHEMES)}: write for example "
+                "bolt://localhost:7687"
+            )
         try:
             return self._neo4j.AsyncGraphDatabase.driver(
                 url,
@@ -145,7 +153,7 @@ class BoltStore:
                     f"memory {self._place} {named}: make it there, or name another with --set ontology.database=NAME"
                 ) from error
             raise PlatformError(f"memory {self._place} failed: {error.message or error}") from error
-        except (errors.DriverError, OSError) as error:
+        except (errors.DriverError, OSError, ValueError) as error:  # ValueError: a port that is none
             raise PlatformError(
                 f"memory {self._place} cannot be reached ({_first_line(error)}): start the server, or name another with --set "
                 "ontology.url=bolt://HOST:PORT"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ravestate as rs
-from ravestate.errors import DeclarationError, PlatformError, RuleError
+from ravestate.errors import DeclarationError, PlatformError
 
 from . import memory
 from . import module as ontology
@@ -52,11 +52,9 @@ def bound(module: rs.Module, name: str, type: str) -> rs.Slot[Node | None]:
     )
     async def remember(ctx: rs.RuleContext) -> None:
         """Write to memory what was written to the slot."""
-        node: object = ctx.payload(slot.changed)
+        node: Node | None = ctx.payload(slot.changed)
         if node is None:
             return
-        if not isinstance(node, Node):
-            raise RuleError(f"{slot.name} was set to {node!r}: write a Node, e.g. Node({type!r}, {{...}})")
         opened = ctx[memory]
         if opened is None:
             raise PlatformError(f"{node.id} is not remembered: there is no memory, see the error before")

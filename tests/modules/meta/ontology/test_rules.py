@@ -1,0 +1,230 @@
+"""Memory as a part of an agent."""
+
+from __future__ import annotations
+
+import asyncio
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import ravestate as rs
+from modules.meta.ontology.conftest import Open
+from ravestate.errors import DeclarationError, PlatformError
+from ravestate.modules import ontology
+from ravestate.testing import simulate
+
+Node = ontology.Node
+
+host = rs.Module("host", requires=[ontology])
+ask = host.signal("ask", payload=str)
+answer = host.slot("answer", "")
+begun = host.slot("begun", "")
+
+
+@host.rule(when=rs.startup, reads=ontology.memory, writes=begun)
+async def begin(ctx: rs.RuleContext) -> None:
+    """Memory may be used from the first moment."""
+    memory = ctx[ontology.memory]
+    ctx[begun] = "no memory" if memory is None else f"{len(await memory.find('Person'))} known"
+
+
+@host.rule(when=ask, reads=ontology.memory, writes=answer)
+async def look_up(ctx: rs.RuleContext) -> rs.Resign | None:
+    memory = ctx[ontology.memory]
+    if memory is None:
+        return rs.Resign("there is no memory")
+    found = await memory.ensure("Person", name=ctx.payload(ask))
+    ctx[answer] = f"{found['name']} of {len(await memory.find('Person'))}"
+    return None
+
+
+@host.rule(when=ask, reads=ontology.memory, writes=answer, weight=0.5)
+def look_up_in_a_thread(ctx: rs.RuleContext) -> None:
+    memory = ctx[ontology.memory]
+    ctx[answer] = "none" if memory is None else str(len(memory.find("Person").result()))
+
+
+def at(path: Path, **more: Any) -> dict[str, Any]:
+    return {"ontology": {"path": path, **more}}
+
+
+def test_memory_outlives_the_agent(tmp_path: Path) -> None:
+    for number, name in enumerate(("Ada", "Bob", "Cy"), start=1):
+        with simulate(host, settings=at(tmp_path / "m.lbug")) as sim:
+            assert sim.read(begun) == f"{number - 1} known"
+            sim.emit(ask, name)
+            assert sim.read(answer) == f"{name} of {number}"
+            assert sim.failures == [] and sim.now == 0.0
+
+
+def test_it_is_used_from_plain_functions_too(tmp_path: Path) -> None:
+    threads = rs.Module("threads", requires=[ontology])
+    go = threads.signal("go")
+    found = threads.slot("found", 0)
+
+    @threads.rule(when=go, reads=ontology.memory, writes=found)
+    def look(ctx: rs.RuleContext) -> None:
+        memory = ctx[ontology.memory]
+        assert memory is not None
+        memory.create("Person", name="Ada").result()
+        ctx[found] = len(memory.find("Person").result())
+
+    with simulate(threads, settings=at(tmp_path / "m.lbug")) as sim:
+        sim.emit(go)
+        assert sim.read(found) == 1
+
+
+def test_contexts_of_one_process_share_a_file(tmp_path: Path) -> None:
+    async def talk() -> list[str]:
+        settings = at(tmp_path / "m.lbug")
+        async with rs.Context(host, settings=settings) as one, rs.Context(host, settings=settings) as other:
+            said: list[str] = []
+            for context, name in ((one, "Ada"), (other, "Bob"), (one, "Cy")):
+                context.emit(ask, name)
+                said.append(await context.next(answer.changed, timeout=20))
+            return said
+
+    assert asyncio.run(talk()) == ["Ada of 1", "Bob of 2", "Cy of 3"]
+
+
+def test_the_loop_does_not_wait_for_memory(tmp_path: Path) -> None:
+    async def talk() -> float:
+        async with rs.Context(host, settings=at(tmp_path / "m.lbug")) as context:
+            memory = context.read(ontology.memory)
+            while memory is None:
+                await asyncio.sleep(0)
+                memory = context.read(ontology.memory)
+            blocker = memory._keeper.submit(lambda _: held.wait(20))
+            context.emit(ask, "Ada")
+            turns = 0
+            while turns < 100:  # the loop goes round while memory is held up
+                await asyncio.sleep(0)
+                turns += 1
+            assert not blocker.done() and context.read(answer) == ""
+            held.set()
+            await context.next(answer.changed, timeout=20)
+            return turns
+
+    import threading
+
+    held = threading.Event()
+    assert asyncio.run(talk()) == 100
+
+
+def test_without_the_package_everything_else_goes_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "ladybug", None)
+    with simulate(host, settings=at(tmp_path / "m.lbug")) as sim:
+        assert sim.read(ontology.memory) is None
+        sim.emit(ask, "Ada")
+        assert sim.read(answer) == "none"  # the next best rule
+        failed = [(rule, str(error)) for rule, error in sim.failures]
+    assert failed[0] == ("ontology:open_up", "ontology needs ladybug: pip install 'ravestate[ontology]'")
+    assert {rule for rule, _ in failed[1:]} <= {"host:begin"}
+
+
+def test_a_mistake_in_a_file_of_types_is_told(tmp_path: Path) -> None:
+    types = tmp_path / "mine.yaml"
+    types.write_text("Boat:\n  is: Thnig\n")
+    with simulate(ontology, settings=at(tmp_path / "m.lbug", types=(types,))) as sim:
+        [(rule, error)] = sim.failures
+        assert rule == "ontology:open_up" and isinstance(error, DeclarationError)
+        assert str(error) == f"{types}:2: Boat is a 'Thnig', which is no type; did you mean 'Thing'?"
+        assert sim.read(ontology.memory) is None
+
+
+# ------------------------------------------------------------------------------------ bound slots
+
+desk = rs.Module("desk", requires=[ontology])
+guest = ontology.bound(desk, "guest", "Person")
+said = desk.signal("said", payload=object)
+
+
+@desk.rule(when=said, reads=guest, writes=guest)
+async def meet(ctx: rs.RuleContext) -> None:
+    known = ctx[guest]
+    what = ctx.payload(said)
+    if isinstance(what, dict):
+        ctx[guest] = Node("Person", what) if known is None else known.with_properties(**what)
+    else:
+        ctx[guest] = what
+
+
+def test_who_writes_a_bound_slot_writes_memory(tmp_path: Path, open_here: Open) -> None:
+    with simulate(desk, settings=at(tmp_path / "m.lbug")) as sim:
+        for number in range(20):
+            sim.emit(said, {"name": f"Ada {number}", "age": number})
+        sim.emit(said, {"nickname": "A", "age": None})
+        ada = sim.read(guest)
+        assert ada is not None and sim.failures == []
+    memory = open_here(path=tmp_path / "m.lbug")
+    [found] = memory.find("Person").result()
+    assert (found.id, dict(found.properties)) == (ada.id, {"name": "Ada 19", "nickname": "A"})
+
+
+def test_none_in_a_bound_slot_forgets_nobody(tmp_path: Path, open_here: Open) -> None:
+    with simulate(desk, settings=at(tmp_path / "m.lbug")) as sim:
+        sim.emit(said, {"name": "Ada"})
+        sim.emit(said, None)
+        sim.emit(said, {"name": "Bob"})
+        assert sim.failures == []
+    memory = open_here(path=tmp_path / "m.lbug")
+    assert [node["name"] for node in memory.find("Person").result()] == ["Ada", "Bob"]
+
+
+def test_what_is_written_before_memory_is_open_and_right_before_the_end_is_kept(
+    tmp_path: Path, open_here: Open
+) -> None:
+    hasty = rs.Module("hasty", requires=[ontology])
+    first, last = ontology.bound(hasty, "first", "Person"), ontology.bound(hasty, "last", "Person")
+
+    @hasty.rule(when=rs.startup, writes=first)
+    async def begin(ctx: rs.RuleContext) -> None:
+        ctx[first] = Node("Person", {"name": "Ada"})
+
+    @hasty.rule(when=rs.shutdown, writes=last)
+    async def end(ctx: rs.RuleContext) -> None:
+        await ctx.sleep(0.5)
+        ctx[last] = Node("Person", {"name": "Zoe"})
+
+    with simulate(hasty, settings=at(tmp_path / "m.lbug")) as sim:
+        pass
+    assert sim.failures == []
+    memory = open_here(path=tmp_path / "m.lbug")
+    assert [node["name"] for node in memory.find("Person").result()] == ["Ada", "Zoe"]
+
+
+@pytest.mark.parametrize(
+    ("value", "message"),
+    [
+        (Node("Person", {"nmae": "Ada"}), "Person has no 'nmae'; did you mean 'name'?"),
+        (Node("City", {"name": "Ham"}), "is a City, and a Person is wanted"),
+        (Node("Boat"), "there is no type 'Boat'"),
+    ],
+)
+def test_a_write_that_fails_is_an_error(tmp_path: Path, value: object, message: str) -> None:
+    with simulate(desk, settings=at(tmp_path / "m.lbug")) as sim:
+        sim.emit(said, value)
+        [(rule, error)] = sim.failures
+        assert rule == "desk:remember_guest" and message in str(error)
+
+
+def test_a_write_without_memory_is_an_error(tmp_path: Path) -> None:
+    (tmp_path / "m.lbug").mkdir()
+    with simulate(desk, settings=at(tmp_path / "m.lbug")) as sim:
+        sim.emit(said, {"name": "Ada"})
+        (_, opening), (rule, error) = sim.failures
+        assert isinstance(opening, PlatformError) and "cannot be opened" in str(opening)
+        assert rule == "desk:remember_guest" and "is not remembered: there is no memory" in str(error)
+
+
+def test_a_bound_slot_wants_its_module_to_require_ontology() -> None:
+    with pytest.raises(DeclarationError, match=r"write rs.Module\('alone', requires=\[ontology, ...\]\)"):
+        ontology.bound(rs.Module("alone"), "guest", "Person")
+
+
+def test_a_policy_with_bound_slots_has_no_faults() -> None:
+    policy = rs.compile(desk)
+    assert "desk:remember_guest" in policy.rules
+    assert [finding for finding in policy.findings() if "guest" in str(finding)] == []
