@@ -45,6 +45,10 @@ chat: $(DONE)/chat $(DONE)/model ## set up and talk with the agent on the consol
 bench: setup ## measure speed against the peers and the floor
 	@$(BIN)/python -m benchmarks $(ARGS)
 
+.PHONY: quality
+quality: setup ## measure how well text is understood
+	@PYTHONPATH=tests $(BIN)/python -m quality.measure quality.modules $(ARGS)
+
 # ------------------------------------------------------------------------------------------- to work on it
 
 .PHONY: setup
