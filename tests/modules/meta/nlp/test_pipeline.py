@@ -1,6 +1,7 @@
 """Reading with spaCy: what comes out, what is missing, and what nobody should write."""
 
 import builtins
+import subprocess
 import sys
 import threading
 from pathlib import Path
@@ -111,3 +112,12 @@ def test_without_spacy_the_extra_is_named(monkeypatch: pytest.MonkeyPatch) -> No
     monkeypatch.setattr(builtins, "__import__", without_spacy)
     with pytest.raises(PlatformError, match=r"nlp needs spacy: pip install 'ravestate\[nlp\]'"):
         Pipeline().read("hello")
+
+
+def test_reading_takes_no_other_library_along() -> None:
+    code = (
+        "import sys; from ravestate.modules.meta.nlp.pipeline import pipeline; pipeline('').read('hello'); "
+        "print({'torch', 'tensorflow', 'mxnet', 'cupy'} & set(sys.modules))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout == "set()\n"

@@ -10,6 +10,7 @@ from typing import Any
 from ravestate.errors import PlatformError
 
 from .entity import Entity
+from .hiding import hidden
 from .reading_copy import READ_AS, reading_copy
 from .repair import repaired
 from .tree import Tree, Word
@@ -87,7 +88,10 @@ class Pipeline:
 
     def _load(self) -> Any:
         try:
-            import spacy
+            # spaCy's small pipelines need none of these; where one is installed, importing it would take a second
+            # more and 190 MB. A pipeline that the user names may well need them.
+            with hidden(*(() if self.name else ("torch", "tensorflow", "mxnet", "cupy"))):
+                import spacy
         except ImportError as error:
             raise PlatformError(f"nlp needs spacy: {_INSTALL}") from error
         wanted = (self.name,) if self.name else DEFAULTS

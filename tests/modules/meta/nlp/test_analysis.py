@@ -1,0 +1,34 @@
+"""All together: whatever is said, something comes out, and always the same."""
+
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from modules.meta.nlp.sentences import table
+from ravestate.modules.meta.nlp.analysis import analyse
+from ravestate.modules.meta.nlp.pipeline import Pipeline
+
+said = sorted(
+    {word for name in ("triples", "questions", "yesno") for row in table(name) for word in row[0].split()}
+)
+texts = st.lists(st.sampled_from([*said, "?", ",", ".", "\n"]), max_size=25).map(" ".join) | st.text(
+    max_size=60
+)
+
+
+@given(texts)
+@settings(max_examples=150, suppress_health_check=[HealthCheck.function_scoped_fixture])
+def test_any_words_in_any_order(reader: Pipeline, text: str) -> None:
+    seen = analyse(text, reader, ["Ravestate"])
+    assert seen.question is None or seen.question.name
+    assert all(triple.predicate for triple in seen.triples)
+    assert all(text[word.start : word.end] == word.text for word in seen.tree.words)
+
+
+def test_names_are_whole_words(reader: Pipeline) -> None:
+    for text, expected in (
+        ("Hi Ravestate!", True),
+        ("ravestates are many", False),
+        ("I like tea", False),
+        ("YOUR hat", True),
+    ):
+        assert analyse(text, reader, ["Ravestate"]).about_agent is expected, text

@@ -1,0 +1,50 @@
+"""A text as a tree of plain records."""
+
+from modules.meta.nlp.sentences import words
+from ravestate.modules.meta.nlp.tree import Tree
+
+# my old dog sleeps here
+TREE = Tree(
+    "my old dog sleeps here",
+    words("my/PRON/poss>2 old/ADJ/amod>2 dog/NOUN/nsubj>3 sleeps/VERB/ROOT>3 here/ADV/advmod>3"),
+)
+MY, OLD, DOG, SLEEPS, HERE = TREE.words
+
+
+def test_children_and_heads() -> None:
+    assert TREE.children(SLEEPS) == [DOG, HERE]
+    assert TREE.children(SLEEPS, "advmod", "dobj") == [HERE]
+    assert TREE.head(OLD) is DOG and TREE.head(SLEEPS) is SLEEPS
+    assert list(TREE.ancestors(MY)) == [DOG, SLEEPS]
+
+
+def test_subtrees_are_in_order() -> None:
+    assert TREE.subtree(DOG) == [MY, OLD, DOG]
+    assert TREE.subtree(SLEEPS) == list(TREE.words)
+
+
+def test_neighbours() -> None:
+    assert TREE.before(MY) is None and TREE.after(HERE) is None
+    assert TREE.before(DOG) is OLD and TREE.after(DOG) is SLEEPS
+
+
+def test_phrases_are_written_as_in_the_text() -> None:
+    glued = Tree("Anna's  dog", words("Anna/PROPN/poss>2 's/PART/case>0 dog/NOUN/ROOT>2"))
+    anna, s, dog = (
+        type(word)(word.index, word.text, word.lemma, word.pos, word.tag, word.dep, word.head, start)
+        for word, start in zip(glued.words, (0, 4, 8), strict=True)
+    )
+    assert glued.phrase([dog, s, anna]) == "Anna's dog"
+    assert glued.phrase([dog, anna]) == "Anna dog"
+    assert TREE.phrase([]) == ""
+
+
+def test_a_word_knows_where_it_ends_and_how_it_is_compared() -> None:
+    assert (HERE.start, HERE.end) == (18, 22)
+    (word,) = words("Don’T/AUX/ROOT>0")
+    assert word.low == "don't"
+
+
+def test_a_chain_of_any_length_is_walked() -> None:
+    long = Tree("", words(" ".join(f"w/NOUN/conj>{max(index - 1, 0)}" for index in range(5000))))
+    assert len(long.subtree(long.words[0])) == 5000
