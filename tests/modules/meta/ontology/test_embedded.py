@@ -9,6 +9,7 @@ import stat
 import subprocess
 import sys
 from collections.abc import Iterator
+from datetime import date
 from pathlib import Path
 from typing import Any
 
@@ -243,6 +244,55 @@ def test_a_property_does_not_change_its_kind(file: Path, tmp_path: Path, open_he
     memory = open_here(path=file, types=(types,))
     with pytest.raises(RuleError, match=r"memory has Person\.shoe_size = '38 or so', which is no date"):
         memory.find("Person").result()
+
+
+def test_who_is_forgotten_leaves_no_byte_in_any_file(tmp_path: Path, open_here: Open) -> None:
+    path = tmp_path / "memory.lbug"
+    types = tmp_path / "mine.yaml"
+    types.write_text(
+        "Boat: {is: Thing, has: {length: number}}\n"
+        "Person: {has: {shoe_size: number}, relations: {owns: {to: Boat, has: {since: date}}}}"
+    )
+    memory = open_here(path=path, types=(types,))
+    bob = memory.create("Person", name="Bob O'x 😀", born=date(2000, 2, 29), shoe_size=44.5).result()
+    boat = memory.create("Boat", name="Lady").result()
+    memory.relate(bob, "owns", boat, since=date(2020, 1, 1)).result()
+    memory.relate(bob, "likes", bob).result()
+    expected = memory.export().result()
+    ada = memory.create("Person", name="Ada Augusta Lovelace", nickname="Countess of the Engines").result()
+    memory.relate(ada, "lives_in", memory.create("City", name="Ockham in Surrey").result()).result()
+    memory.close().result()
+
+    memory = open_here(path=path)  # without that file of types, which its nodes survive
+    assert [node["name"] for node in memory.forget(ada).result()] == [ada["name"], "Ockham in Surrey"]
+    for file in tmp_path.iterdir():
+        content = file.read_bytes()
+        assert not any(trace in content for trace in (b"Ada Aug", b"Countess", b"Ockham", ada.id.encode()))
+    memory.create("Person", name="Eve").result()
+    memory.close().result()
+    assert sorted(file.name for file in tmp_path.iterdir()) == ["memory.lbug", "mine.yaml"]
+
+    memory = open_here(path=path, types=(types,))
+    memory.forget(memory.find("Person", name="Eve").result()[0]).result()
+    assert memory.export().result() == expected
+
+
+def test_what_cannot_be_written_anew_is_forgotten_all_the_same(
+    tmp_path: Path, open_here: Open, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    def fail(*_: Any) -> None:
+        raise OSError("no more space")
+
+    memory = open_here(path=tmp_path / "memory.lbug")
+    ada = memory.create("Person", name="Ada").result()
+    bob = memory.create("Person", name="Bob").result()
+    monkeypatch.setattr(embedded, "copy_database", fail)
+    assert memory.forget(ada).result() == [ada]
+    assert "the file still has its bytes: no more space" in caplog.text
+    assert memory.find("Person").result() == [bob]
+    monkeypatch.undo()
+    memory.update(bob, age=3).result()
+    assert not (tmp_path / "memory.lbug.new").exists()
 
 
 def test_the_file_is_the_users_alone(tmp_path: Path, open_here: Open) -> None:

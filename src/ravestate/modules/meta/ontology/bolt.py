@@ -171,6 +171,9 @@ class BoltStore:
         for name in types:
             self.write(f"CREATE CONSTRAINT IF NOT EXISTS FOR (n:`{name}`) REQUIRE n.`id` IS UNIQUE", {})
 
+    def purge(self) -> None:
+        """What a server keeps on its disk is its own affair."""
+
     def undeclared(self, types: Types) -> list[str]:
         """The labels on the server that `types` do not have."""
         rows = self.read("MATCH (n) UNWIND labels(n) AS name RETURN DISTINCT name", {})

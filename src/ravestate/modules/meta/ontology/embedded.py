@@ -15,6 +15,7 @@ from typing import Any, cast
 
 from ravestate.errors import PlatformError
 
+from .copying import copy_database
 from .store import FORMAT, RawNode, RawRelation, check_format
 from .types import Kind, Types
 
@@ -209,16 +210,20 @@ class EmbeddedStore:
             self._path.chmod(0o600)
 
     def _connect(self, *, whole_log: bool = True) -> None:
-        self._database = self._ladybug.Database(
-            str(self._path),
+        self._database, self._connection = self._connected(self._path, whole_log=whole_log)
+
+    def _connected(self, path: Path, *, whole_log: bool = True) -> tuple[Any, Any]:
+        database = self._ladybug.Database(
+            str(path),
             buffer_pool_size=BUFFER,
             max_db_size=LARGEST,
             max_num_threads=1,
             auto_checkpoint=False,  # done here, where it may fail
             throw_on_wal_replay_failure=whole_log,
         )
-        self._connection = self._ladybug.Connection(self._database, num_threads=1)
-        self._connection.execute("CALL force_checkpoint_on_close=false")
+        connection = self._ladybug.Connection(database, num_threads=1)
+        connection.execute("CALL force_checkpoint_on_close=false")
+        return database, connection
 
     def _save_what_can_be_read(self) -> None:
         """Open with a log that is damaged, mostly at its end, where a power failure has torn a record."""
@@ -239,6 +244,41 @@ class EmbeddedStore:
             self._path,
             copy,
         )
+
+    def purge(self) -> None:
+        """Write the file anew without what was deleted, of which it still has the bytes.
+
+        Should that fail, what was deleted is no longer known all the same; a warning says so.
+        """
+        new = self._path.with_name(self._path.name + ".new")
+        try:
+            self._check_space(2 * (self._path.stat().st_size + self._log_size()))
+            self._execute("CHECKPOINT")
+            for left_over in (new, new.with_name(new.name + ".wal")):  # of a process that was killed right here
+                left_over.unlink(missing_ok=True)
+            database, connection = self._connected(new)
+            try:
+                copy_database(self._connection, connection)
+                connection.execute("CHECKPOINT")
+            finally:
+                connection.close()
+                database.close()
+            with new.open("rb") as file:
+                os.fsync(file.fileno())
+            self._connection.close()
+            self._database.close()
+            try:
+                new.replace(self._path)
+            finally:
+                self._open()
+        except (PlatformError, RuntimeError, OSError) as error:
+            log.warning(
+                "memory %s: what was forgotten is gone, but the file still has its bytes: %s",
+                self._path,
+                error,
+            )
+            with contextlib.suppress(OSError):
+                new.unlink(missing_ok=True)
 
     def close(self) -> None:
         """Let go of the file, its log worked in. If it cannot be written, the log is for the next opening."""

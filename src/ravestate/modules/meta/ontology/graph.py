@@ -192,7 +192,9 @@ class Graph:
             going = self.only_about(node)
             for one in going:
                 self._remove(one)
-            return going
+        if going:
+            self._store.purge()
+        return going
 
     def _has_own_life(self, other: Node, start: Node) -> bool:
         """Whether it is an agent of which more than the name is known."""

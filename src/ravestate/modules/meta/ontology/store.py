@@ -73,6 +73,10 @@ class Store(Protocol):
         """
         ...
 
+    def purge(self) -> None:
+        """Leave no trace of what was deleted, where that is in this process's power."""
+        ...
+
     def undeclared(self, types: Types) -> list[str]:
         """The names of types in the database that `types` do not have."""
         ...
