@@ -21,6 +21,7 @@ COMMANDS = {
     "check": "print an agent's faults, ties, rules that can never win, and signals nobody hears",
     "graph": "draw an agent's Signal-Rule-Slot diagram",
     "nlp": "show what the agent sees in a text: words, names, triples, yes or no, signals",
+    "memory": "list, show, export and forget what an agent knows",
     "new": "write a small project to begin with",
 }
 

@@ -192,9 +192,10 @@ class EmbeddedStore:
         return {row[0]: row[1] for row in self._execute(f"CALL table_info('{table}') RETURN name, type")}
 
     def undeclared(self, types: Types) -> list[str]:
-        """The names of types in the file that `types` do not have."""
+        """The types of nodes in the file that `types` do not have."""
         rows = self._execute("CALL show_tables() RETURN name, type")
-        return sorted({name for name, kind in rows if kind == "NODE"} - {META, *types})
+        unknown = {str(name) for name, kind in rows if kind == "NODE"} - {META, *types}
+        return sorted(name for name in unknown if self._execute(f"MATCH (n:`{name}`) RETURN n.`id` LIMIT 1"))
 
     # ------------------------------------------------------------------------------------ the file
 
@@ -254,7 +255,10 @@ class EmbeddedStore:
         try:
             self._check_space(2 * (self._path.stat().st_size + self._log_size()))
             self._execute("CHECKPOINT")
-            for left_over in (new, new.with_name(new.name + ".wal")):  # of a process that was killed right here
+            for left_over in (
+                new,
+                new.with_name(new.name + ".wal"),
+            ):  # of a process that was killed right here
                 left_over.unlink(missing_ok=True)
             database, connection = self._connected(new)
             try:

@@ -16,7 +16,7 @@ from .types import Types
 if TYPE_CHECKING:
     from . import Settings
 
-__all__ = ["default_path", "open_memory", "types_of"]
+__all__ = ["default_path", "open_memory", "path_of", "types_of"]
 
 
 def default_path(agent: str) -> Path:
@@ -42,6 +42,13 @@ def types_of(settings: Settings) -> Types:
     return read_types([built_in, *(path.expanduser() for path in settings.types)])
 
 
+def path_of(settings: Settings) -> Path | None:
+    """The file of memory, its links resolved; None where memory is on a server."""
+    if settings.url is not None:
+        return None
+    return Path(os.path.realpath((settings.path or default_path(settings.agent)).expanduser()))
+
+
 def open_memory(settings: Settings) -> Memory:
     """Begin to open memory where the settings say; all of it happens in memory's thread.
 
@@ -51,9 +58,9 @@ def open_memory(settings: Settings) -> Memory:
     def read() -> Types:
         return types_of(settings)
 
-    if settings.url is not None:
-        return Memory(Keeper(settings.url, lambda: _server(settings)), read)
-    path = Path(os.path.realpath((settings.path or default_path(settings.agent)).expanduser()))
+    path = path_of(settings)
+    if path is None:
+        return Memory(Keeper(str(settings.url), lambda: _server(settings)), read)
     return Memory(Keeper.shared(str(path), lambda: _file(path)), read)
 
 

@@ -1,0 +1,223 @@
+"""``ravestate memory``: what an agent knows, listed, shown, exported, loaded, forgotten."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from collections import Counter
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ravestate.cli import UsageError
+from ravestate.errors import RavestateError, nearest
+
+if TYPE_CHECKING:
+    from ravestate.modules.meta.ontology import Memory, Node, Settings
+
+__all__ = ["add_arguments", "run"]
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """The command's options."""
+    parser.add_argument(
+        "--path", metavar="FILE", help="the file of memory; by default the one of the settings"
+    )
+    parser.add_argument("-f", "--file", metavar="FILE", help="an agent file, for its settings of ontology")
+    parser.add_argument(
+        "--set",
+        dest="sets",
+        action="append",
+        default=[],
+        metavar="ontology.KEY=VALUE",
+        help="a setting, before the file's and the environment's (may be repeated)",
+    )
+    does = parser.add_subparsers(dest="does", metavar="WHAT", required=True)
+    listing = does.add_parser("list", help="list what is known", allow_abbrev=False)
+    listing.add_argument("type", nargs="?", default="", metavar="TYPE", help="a type, e.g. Person")
+    listing.add_argument("--types", action="store_true", help="only count, by type")
+    showing = does.add_parser(
+        "show", help="show somebody or something with its relations", allow_abbrev=False
+    )
+    showing.add_argument("which", metavar="NAME|ID")
+    exporting = does.add_parser("export", help="write everything as JSON", allow_abbrev=False)
+    exporting.add_argument("to", nargs="?", default="-", metavar="FILE", help="by default standard output")
+    loading = does.add_parser("load", help="add what was exported", allow_abbrev=False)
+    loading.add_argument("document", metavar="FILE", help="a file that export wrote; - for standard input")
+    forgetting = does.add_parser(
+        "forget", help="forget somebody with everything about them", allow_abbrev=False
+    )
+    forgetting.add_argument("which", metavar="NAME|ID")
+    forgetting.add_argument("-y", "--yes", action="store_true", help="do not ask")
+
+
+def run(options: argparse.Namespace) -> int:
+    """Carry the command out; 1 if memory cannot be used."""
+    from ravestate.modules.meta.ontology.places import open_memory, path_of
+
+    settings = _settings(options)
+    path = path_of(settings)
+    if path is not None and not path.exists() and options.does != "load":
+        raise RavestateError(
+            f"there is no memory yet: {path} does not exist; name another with --path FILE, or an agent's settings "
+            "with -f agent.yaml"
+        )
+    memory = open_memory(settings)
+    try:
+        memory.opened().result()
+        unseen = memory.undeclared().result()
+        if unseen:
+            print(
+                f"ravestate memory: {memory.place} also has {', '.join(unseen)}, which no file of types has, so it is not "
+                "seen here: name the file with --set ontology.types=[FILE]",
+                file=sys.stderr,
+            )
+        does: dict[str, Callable[[Memory, argparse.Namespace], int]] = {
+            "list": _list,
+            "show": _show,
+            "export": _export,
+            "load": _load,
+            "forget": _forget,
+        }
+        return does[options.does](memory, options)
+    finally:
+        memory.close().result()
+
+
+def _settings(options: argparse.Namespace) -> Settings:
+    from ravestate.cli import agent
+    from ravestate.modules import ontology
+    from ravestate.settings import load_settings
+
+    named = argparse.Namespace(modules=["ontology"], file=options.file, sets=options.sets, seed=None)
+    given = dict(agent.load_agent(named).settings.get("ontology", {}))
+    if options.path:
+        given.update(path=options.path, url=None)
+    return load_settings([ontology.module], {"ontology": given})["ontology"]
+
+
+# ------------------------------------------------------------------------------------ what to do
+
+
+def _list(memory: Memory, options: argparse.Namespace) -> int:
+    type = options.type
+    if type and type not in memory.types:
+        raise UsageError(f"there is no type {type!r}{nearest(type, memory.types)}")
+    nodes = memory.find(type).result() if type else _everything(memory)
+    if options.types:
+        for name, count in sorted(Counter(node.type for node in nodes).items()):
+            print(f"{name:<16} {count}")
+    else:
+        for node in nodes:
+            print(f"{node.type:<16} {_name(node):<24} {node.id}")
+    print(f"{len(nodes)} known in {memory.place}", file=sys.stderr)
+    return 0
+
+
+def _show(memory: Memory, options: argparse.Namespace) -> int:
+    node = _chosen(memory, options.which)
+    print(f"{node.type} {_name(node)}  {node.id}")
+    for key, value in node.properties.items():
+        print(f"  {key}: {_shown(value)}")
+    for relation in memory.relations(node).result():
+        more = "".join(f", {key}: {_shown(value)}" for key, value in relation.properties.items())
+        if relation.source.id == node.id:
+            print(f"  {relation.name} -> {relation.target.type} {_name(relation.target)}{more}")
+        else:
+            print(f"  <- {relation.name} {relation.source.type} {_name(relation.source)}{more}")
+    return 0
+
+
+def _export(memory: Memory, options: argparse.Namespace) -> int:
+    document = memory.export().result()
+    text = json.dumps(document, ensure_ascii=False, indent=2) + "\n"
+    if options.to == "-":
+        sys.stdout.write(text)
+        return 0
+    target = Path(options.to)
+    new = target.with_name(target.name + ".new")
+    try:
+        new.touch(mode=0o600)  # it is about people
+        new.write_text(text, encoding="utf-8")
+        new.replace(target)
+    except OSError as error:
+        new.unlink(missing_ok=True)
+        raise UsageError(f"cannot write {target}: {error.strerror}") from None
+    print(f"wrote {target}: {len(document['nodes'])} known")
+    return 0
+
+
+def _load(memory: Memory, options: argparse.Namespace) -> int:
+    try:
+        text = (
+            sys.stdin.read()
+            if options.document == "-"
+            else Path(options.document).read_text(encoding="utf-8")
+        )
+        document: Any = json.loads(text)
+    except OSError as error:
+        raise UsageError(f"cannot read {options.document}: {error.strerror}") from None
+    except ValueError as error:
+        raise UsageError(f"{options.document} is no JSON: {error}") from None
+    print(f"loaded {memory.load(document).result()}")
+    return 0
+
+
+def _forget(memory: Memory, options: argparse.Namespace) -> int:
+    node = _chosen(memory, options.which)
+    going = memory.only_about(node).result()
+    if not options.yes:
+        for one in going:
+            print(f"{one.type:<16} {_name(one):<24} {one.id}")
+        try:
+            answer = input(f"Forget {'this' if len(going) == 1 else 'these'}, with all relations? [y/N] ")
+        except EOFError:
+            answer = ""
+            print()
+        if answer.strip().lower() not in ("y", "yes"):
+            print("nothing was forgotten")
+            return 1
+    print(f"forgot {len(memory.forget(node).result())}")
+    return 0
+
+
+# ------------------------------------------------------------------------------------ who, and how shown
+
+
+def _everything(memory: Memory) -> list[Node]:
+    found = {node.id: node for type in memory.types for node in memory.find(type).result()}
+    return sorted(found.values(), key=lambda node: (node.type, node.id))
+
+
+def _chosen(memory: Memory, which: str) -> Node:
+    """The one node with this id or name; capitals do not matter.
+
+    Raises:
+        UsageError: There is none, or there are several.
+    """
+    node = memory.get(which).result()
+    if node is not None:
+        return node
+    nodes = _everything(memory)
+    wanted = which.strip().casefold()
+    found = [node for node in nodes if str(node.get("name", "")).strip().casefold() == wanted]
+    if not found:
+        names = [str(node["name"]) for node in nodes if node.get("name")]
+        raise UsageError(f"nobody and nothing is called {which!r}{nearest(which, names)}")
+    if len(found) > 1:
+        ids = "".join(f"\n  {node.id}" for node in found)
+        raise UsageError(f"{len(found)} are called {which!r}: name one by its id{ids}")
+    return found[0]
+
+
+def _name(node: Node) -> str:
+    return _shown(node.get("name", "(no name)"))
+
+
+def _shown(value: object) -> str:
+    """A value in one line, fit for a terminal."""
+    from ravestate.modules._text import printable
+
+    text = " ".join(printable(str(value)).split())
+    return text if len(text) <= 200 else text[:199] + "…"

@@ -1,0 +1,192 @@
+"""``ravestate memory``: lists, shows, exports, loads and forgets; mistakes are 2, what cannot be used is 1."""
+
+from __future__ import annotations
+
+import io
+import json
+import stat
+import subprocess
+import sys
+from datetime import date
+from pathlib import Path
+
+import pytest
+
+from cli.examples import call, write
+from ravestate.modules import ontology
+from ravestate.modules.meta.ontology.places import open_memory
+
+Capture = pytest.CaptureFixture[str]
+
+HOLD = """
+    import sys
+    from pathlib import Path
+    from ravestate.modules import ontology
+    from ravestate.modules.meta.ontology.places import open_memory
+
+    memory = open_memory(ontology.Settings(path=Path(sys.argv[1])))
+    memory.opened().result()
+    print("open", flush=True)
+    sys.stdin.read()
+"""
+
+
+@pytest.fixture
+def file(folder: Path) -> Path:
+    """A memory of Ada, who lives in London, and of two Bobs, of whom Eve likes one."""
+    path = folder / "memory.lbug"
+    memory = open_memory(ontology.Settings(path=path))
+    ada = memory.create("Person", name="Ada", born=date(1815, 12, 10)).result()
+    memory.relate(ada, "lives_in", memory.create("City", name="London").result()).result()
+    bobs = [memory.create("Person", name="Bob", age=age).result() for age in (1, 2)]
+    memory.relate(memory.create("Person", name="Eve \x1b[31m\nred").result(), "likes", bobs[0]).result()
+    memory.close().result()
+    return path
+
+
+def test_everything_is_listed(file: Path, capsys: Capture) -> None:
+    code, out, errors = call(capsys, "memory", "--path", str(file), "list")
+    assert code == 0 and errors == f"5 known in {file.resolve()}\n"
+    lines = [line.rsplit(maxsplit=1) for line in out.splitlines()]
+    assert [line[0].split() for line in lines] == [
+        ["City", "London"], ["Person", "Ada"], ["Person", "Bob"], ["Person", "Bob"], ["Person", "Eve", "red"],
+    ]  # fmt: skip
+    assert all(line[1].startswith(line[0].split()[0] + ":") for line in lines)
+
+
+def test_a_type_is_listed_and_types_are_counted(file: Path, capsys: Capture) -> None:
+    assert call(capsys, "memory", "--path", str(file), "list", "Place")[1].split()[:2] == ["City", "London"]
+    _, out, _ = call(capsys, "memory", "--path", str(file), "list", "--types")
+    assert [line.split() for line in out.splitlines()] == [["City", "1"], ["Person", "4"]]
+    code, _, errors = call(capsys, "memory", "--path", str(file), "list", "Persn")
+    assert code == 2 and errors == "ravestate memory: there is no type 'Persn'; did you mean 'Person'?\n"
+
+
+def test_somebody_is_shown_by_name_or_id(file: Path, capsys: Capture) -> None:
+    code, out, _ = call(capsys, "memory", "--path", str(file), "show", "ada ")
+    first, *rest = out.splitlines()
+    assert code == 0 and rest == ["  name: Ada", "  born: 1815-12-10", "  lives_in -> City London"]
+    kind, name, id = first.split()
+    assert (kind, name) == ("Person", "Ada")
+    assert call(capsys, "memory", "--path", str(file), "show", id)[1] == out
+    assert "  <- lives_in Person Ada" in call(capsys, "memory", "--path", str(file), "show", "London")[1]
+
+
+def test_a_name_that_nobody_or_several_have(file: Path, capsys: Capture) -> None:
+    code, _, errors = call(capsys, "memory", "--path", str(file), "show", "Londn")
+    assert code == 2
+    assert errors == "ravestate memory: nobody and nothing is called 'Londn'; did you mean 'London'?\n"
+    code, _, errors = call(capsys, "memory", "--path", str(file), "forget", "Bob", "--yes")
+    assert code == 2 and "2 are called 'Bob': name one by its id\n  Person:" in errors
+
+
+def test_everything_is_exported_and_loaded(file: Path, folder: Path, capsys: Capture) -> None:
+    _, out, _ = call(capsys, "memory", "--path", str(file), "export")
+    document = json.loads(out)
+    assert len(document["nodes"]) == 5 and len(document["relations"]) == 2
+    code, out, _ = call(capsys, "memory", "--path", str(file), "export", "all.json")
+    assert (code, out) == (0, "wrote all.json: 5 known\n")
+    assert json.loads((folder / "all.json").read_text()) == document
+    assert stat.S_IMODE((folder / "all.json").stat().st_mode) == 0o600
+    assert call(capsys, "memory", "--path", "other.lbug", "load", "all.json")[:2] == (0, "loaded 5\n")
+    assert json.loads(call(capsys, "memory", "--path", "other.lbug", "export")[1]) == document
+    assert sorted(path.name for path in folder.iterdir()) == ["all.json", "memory.lbug", "other.lbug"]
+
+
+def test_what_cannot_be_written_or_read(file: Path, folder: Path, capsys: Capture) -> None:
+    before = sorted(folder.iterdir())
+    code, _, errors = call(capsys, "memory", "--path", str(file), "export", "no/where.json")
+    assert code == 2 and "cannot write no/where.json: No such file" in errors
+    code, _, errors = call(capsys, "memory", "--path", str(file), "load", "nowhere.json")
+    assert code == 2 and "cannot read nowhere.json" in errors
+    assert sorted(folder.iterdir()) == before
+    write(folder / "broken.json", "{")
+    assert call(capsys, "memory", "--path", str(file), "load", "broken.json")[0] == 2
+    write(folder / "other.json", "[]")
+    code, _, errors = call(capsys, "memory", "--path", str(file), "load", "other.json")
+    assert code == 1 and "this is no document of memory" in errors
+
+
+@pytest.mark.parametrize("answer", ["n\n", "", "\n", "yess\n"])
+def test_nobody_is_forgotten_without_a_yes(
+    file: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch, answer: str
+) -> None:
+    monkeypatch.setattr(sys, "stdin", io.StringIO(answer))
+    code, out, _ = call(capsys, "memory", "--path", str(file), "forget", "Ada")
+    assert code == 1 and "nothing was forgotten" in out
+    assert "Ada" in out and "London" in out and "Forget these, with all relations?" in out
+    assert call(capsys, "memory", "--path", str(file), "show", "Ada")[0] == 0
+
+
+def test_somebody_is_forgotten(file: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys, "stdin", io.StringIO("y\n"))
+    code, out, _ = call(capsys, "memory", "--path", str(file), "forget", "Ada")
+    assert code == 0 and out.endswith("forgot 2\n")
+    assert call(capsys, "memory", "--path", str(file), "forget", "Eve red", "-y")[0] == 2
+    [eve] = [
+        line for line in call(capsys, "memory", "--path", str(file), "list")[1].splitlines() if "Eve" in line
+    ]
+    assert call(capsys, "memory", "--path", str(file), "forget", eve.split()[-1], "-y")[:2] == (
+        0,
+        "forgot 1\n",
+    )
+    _, out, _ = call(capsys, "memory", "--path", str(file), "list", "--types")
+    assert out.split() == ["Person", "2"]
+
+
+def test_the_settings_of_an_agent_are_used(file: Path, folder: Path, capsys: Capture) -> None:
+    write(folder / "types.yaml", "Boat: {is: Thing}")
+    write(
+        folder / "agent.yaml",
+        f"""
+        modules: [ontology]
+        settings:
+          ontology: {{path: {file}, types: [types.yaml]}}
+        """,
+    )
+    assert call(capsys, "memory", "-f", "agent.yaml", "list", "Boat")[0] == 0
+    memory = open_memory(ontology.Settings(path=file, types=(folder / "types.yaml",)))
+    memory.create("Boat", name="Lady").result()
+    memory.close().result()
+    assert "Lady" in call(capsys, "memory", "-f", "agent.yaml", "list")[1]
+    code, out, errors = call(capsys, "memory", "--set", f"ontology.path={file}", "list")
+    assert code == 0 and "Lady" not in out
+    assert "also has Boat, which no file of types has" in errors
+
+
+def test_the_default_place_is_the_users(
+    folder: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("XDG_DATA_HOME", str(folder))
+    monkeypatch.setattr(sys, "platform", "linux")
+    code, _, errors = call(capsys, "memory", "list")
+    assert code == 1 and f"there is no memory yet: {folder.resolve()}/ravestate/default/memory.lbug" in errors
+    assert list(folder.iterdir()) == []
+    write(folder / "empty.json", '{"format": 1, "nodes": [], "relations": []}')
+    assert call(capsys, "memory", "--set", "ontology.agent=rosie", "load", "empty.json")[0] == 0
+    assert (folder / "ravestate" / "rosie" / "memory.lbug").is_file()
+
+
+def test_a_file_that_an_agent_has_open(file: Path, folder: Path, capsys: Capture) -> None:
+    agent = write(folder / "hold.py", HOLD)
+    with subprocess.Popen(
+        [sys.executable, agent, file], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+    ) as process:
+        assert process.stdout is not None and process.stdout.readline() == "open\n"
+        code, out, errors = call(capsys, "memory", "--path", str(file), "list")
+        assert (code, out) == (1, "")
+        assert f"is in use by process {process.pid}: only one process may have it open" in errors
+        assert process.stdin is not None
+        process.stdin.close()
+
+
+def test_wrong_use_and_what_is_missing(file: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch) -> None:
+    assert call(capsys, "memory")[0] == 2
+    assert call(capsys, "memory", "lst")[0] == 2
+    code, _, errors = call(capsys, "memory", "--set", "ontology.pth=x", "list")
+    assert code in (1, 2) and "no such setting; did you mean 'path'?" in errors
+    assert call(capsys, "memory", "-f", "nowhere.yaml", "list")[0] == 2
+    monkeypatch.setitem(sys.modules, "ladybug", None)
+    code, _, errors = call(capsys, "memory", "--path", str(file), "list")
+    assert code == 1
+    assert errors == "ravestate memory: ontology needs ladybug: pip install 'ravestate[ontology]'\n"
