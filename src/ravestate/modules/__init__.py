@@ -15,7 +15,7 @@ from ravestate.errors import nearest
 if TYPE_CHECKING:
     from ravestate.modules.meta import idle, nlp, ontology, verbaliser
     from ravestate.modules.modality import emotion, interloc, rawio
-    from ravestate.modules.platform import conio
+    from ravestate.modules.platform import conio, webio
     from ravestate.modules.skill import agenda, fillers, hibye, wildtalk
 
 __all__ = [
@@ -31,11 +31,13 @@ __all__ = [
     "ontology",
     "rawio",
     "verbaliser",
+    "webio",
     "wildtalk",
 ]
 
 BUILT_IN = {
     "conio": "platform",
+    "webio": "platform",
     "rawio": "modality",
     "interloc": "modality",
     "emotion": "modality",

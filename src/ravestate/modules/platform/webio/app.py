@@ -1,0 +1,130 @@
+"""The page as an ASGI application: its files, its WebSocket, and what guards them."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import AsyncGenerator, Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from starlette.applications import Starlette
+from starlette.datastructures import Headers, MutableHeaders
+from starlette.middleware import Middleware
+from starlette.responses import PlainTextResponse
+from starlette.routing import BaseRoute, Mount, WebSocketRoute
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+from starlette.websockets import WebSocket
+
+from ravestate.errors import PlatformError
+
+from .connection import Connection
+from .gate import Gate
+from .pages import Pages
+from .sessions import Sessions
+
+if TYPE_CHECKING:
+    from ravestate.runtime.agent import Agent
+
+    from . import Settings
+
+__all__ = ["PAGE", "make_app"]
+
+PAGE = Path(__file__).parent / "page"
+"""What ``npm run build`` in ``frontend/`` makes."""
+
+ENDING = "the agent has been switched off"
+
+CONSOLES = ("conio",)
+"""Platforms for one user, of which there would be one in each visitor's context."""
+
+
+def make_app(agent: Agent, routes: Iterable[BaseRoute] = ()) -> Starlette:
+    """See `webio.app`. The conversations are in ``app.state.sessions``, the checks in ``app.state.gate``.
+
+    Raises:
+        PlatformError: The agent lacks ``webio``, or has a platform that is for one user.
+    """
+    settings = _settings_of(agent)
+    gate = Gate(settings)
+    sessions = Sessions(agent, limit=settings.sessions, keep=settings.keep)
+
+    async def connect(socket: WebSocket) -> None:
+        await Connection(socket, sessions, gate, settings.title).run()
+
+    @contextlib.asynccontextmanager
+    async def lifespan(_: Starlette) -> AsyncGenerator[None]:
+        try:
+            yield
+        finally:
+            await sessions.close(ENDING)
+
+    app = Starlette(
+        routes=[*routes, WebSocketRoute("/ws", connect), Mount("/", Pages(PAGE))],
+        middleware=[Middleware(Guard, gate)],
+        lifespan=lifespan,
+    )
+    app.state.sessions = sessions
+    app.state.gate = gate
+    return app
+
+
+def _settings_of(agent: Agent) -> Settings:
+    names = [module.name for module in agent.policy.modules]
+    if "webio" not in names:
+        raise PlatformError(f"the agent has no webio: write Agent(webio, ...); it has {', '.join(names)}")
+    for name in CONSOLES:
+        if name in names:
+            raise PlatformError(f"webio has many users, {name} has one: leave {name} out")
+    return agent.settings["webio"]  # type: ignore[return-value]  # the module's own
+
+
+class Guard:
+    """Refuses what the gate refuses, and sends headers with everything that keep scripts and frames in bounds.
+
+    Args:
+        app: What is guarded.
+        gate: The checks.
+    """
+
+    def __init__(self, app: ASGIApp, gate: Gate) -> None:
+        self._app = app
+        self._gate = gate
+        self._headers = {
+            "content-security-policy": "; ".join(
+                (
+                    "default-src 'none'",
+                    "script-src 'self'",
+                    "style-src 'self'",
+                    "img-src 'self' data:",
+                    "font-src 'self'",
+                    "connect-src 'self'",
+                    "base-uri 'none'",
+                    "form-action 'none'",
+                    " ".join(("frame-ancestors 'self'", *gate.origins)),
+                )
+            ),
+            "permissions-policy": "camera=(), geolocation=(), microphone=()",
+            "referrer-policy": "no-referrer",
+            "x-content-type-options": "nosniff",
+        }
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Check a request, and answer it or pass it on."""
+        if scope["type"] == "lifespan":
+            await self._app(scope, receive, send)
+            return
+        refusal = self._gate.refusal(Headers(scope=scope))
+        if scope["type"] == "websocket":
+            if refusal is not None:
+                await WebSocket(scope, receive, send).send_denial_response(PlainTextResponse(refusal, 403))
+            else:
+                await self._app(scope, receive, send)
+            return
+
+        async def with_headers(message: Message) -> None:
+            if message["type"] == "http.response.start":
+                MutableHeaders(scope=message).update(self._headers)
+            await send(message)
+
+        answer = self._app if refusal is None else PlainTextResponse(refusal, 403)
+        await answer(scope, receive, with_headers)

@@ -1,0 +1,34 @@
+"""A token bucket: how often somebody may do something."""
+
+from __future__ import annotations
+
+__all__ = ["Bucket"]
+
+
+class Bucket:
+    """Lets through a burst, then so many a second.
+
+    Args:
+        burst: What may come at once.
+        rate: What may come each second after that.
+        now: The time (seconds).
+
+    Example:
+        >>> bucket = Bucket(burst=2, rate=0.5, now=0.0)
+        >>> [bucket.wait(now=0.0) for _ in range(3)]
+        [0.0, 0.0, 2.0]
+    """
+
+    __slots__ = ("_burst", "_level", "_rate", "_time")
+
+    def __init__(self, *, burst: float, rate: float, now: float) -> None:
+        self._burst = burst
+        self._rate = rate
+        self._level = burst
+        self._time = now
+
+    def wait(self, now: float) -> float:
+        """Take one; the seconds to wait until it may be used."""
+        self._level = min(self._burst, self._level + (now - self._time) * self._rate) - 1
+        self._time = now
+        return max(0.0, -self._level / self._rate)

@@ -1,0 +1,225 @@
+"""One WebSocket: what its client says goes to a conversation, what happens there goes to the client."""
+
+from __future__ import annotations
+
+import asyncio
+from collections import deque
+from typing import TYPE_CHECKING
+
+from starlette.websockets import WebSocket, WebSocketDisconnect
+
+from .bucket import Bucket
+from .protocol import (
+    CLIENT,
+    VERSION,
+    Bye,
+    Ended,
+    Error,
+    Frame,
+    Hello,
+    Message,
+    Piece,
+    Ping,
+    Pong,
+    ProtocolError,
+    Say,
+    Typing,
+    Welcome,
+    parse,
+    serialise,
+)
+
+if TYPE_CHECKING:
+    from .gate import Gate
+    from .session import Session
+    from .sessions import Sessions
+
+__all__ = ["LONGEST", "Connection"]
+
+LONGEST = 64 * 1024
+"""Bytes that a frame may have."""
+
+SILENT = 10.0
+"""Seconds within which a client says hello."""
+
+BURST, RATE = 20, 5.0
+"""Frames that are taken at once, and each second after that. Who sends more has to wait; nothing is lost."""
+
+REPLIES = 32
+"""Replies that may wait for a client. Who asks on and on, and does not read, is dropped."""
+
+CODES = {
+    "malformed": 4400,
+    "version": 4400,
+    "token": 4401,
+    "silent": 4408,
+    "behind": 4409,
+    "full": 1013,
+    "closing": 1001,
+    "too-long": 1009,
+}
+"""With which code a connection is closed. What is not listed leaves it open."""
+
+
+class Connection:
+    """Carries the protocol over one WebSocket.
+
+    Args:
+        socket: Not accepted yet.
+        sessions: The conversations.
+        gate: Knows the token.
+        agent: What the agent is called.
+    """
+
+    def __init__(self, socket: WebSocket, sessions: Sessions, gate: Gate, agent: str) -> None:
+        self._socket = socket
+        self._sessions = sessions
+        self._gate = gate
+        self._agent = agent
+        self._woken = asyncio.Event()
+        self._replies: deque[Frame] = deque()
+
+    async def run(self) -> None:
+        """Serve the client until either side closes."""
+        try:
+            await self._socket.accept()
+            try:
+                await self._serve()
+            except ProtocolError as error:
+                await self._send(Error(error.code, str(error)))
+                await self._socket.close(CODES[error.code], error.code)
+        except WebSocketDisconnect:
+            pass
+
+    def wake(self) -> None:
+        """Something has changed in the conversation."""
+        self._woken.set()
+
+    async def _serve(self) -> None:
+        hello = await self._hello()
+        session = self._sessions.get(hello.session) if hello.session else None
+        resumed = session is not None
+        if session is None:
+            session = await self._sessions.open(hello.name)
+        self._sessions.enter(session, self)
+        try:
+            last = hello.last if resumed and hello.last <= session.history.last else 0
+            first = session.history.first
+            await self._send(Welcome(VERSION, session.id, resumed, first, self._agent))
+            tasks = [
+                asyncio.create_task(self._read(session)),
+                asyncio.create_task(self._write(session, max(last, first - 1))),
+            ]
+            try:
+                await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
+            finally:
+                for task in tasks:
+                    task.cancel()
+            ends = await asyncio.gather(*tasks, return_exceptions=True)
+            for end in ends:
+                if isinstance(end, Exception):
+                    raise end
+        finally:
+            self._sessions.exit(session, self)
+
+    async def _hello(self) -> Hello:
+        try:
+            async with asyncio.timeout(SILENT):
+                frame = parse(await self._receive(), CLIENT)
+        except TimeoutError:
+            raise ProtocolError(
+                "silent", f'no hello within {SILENT:g} s: begin with {{"type": "hello", "v": {VERSION}}}'
+            ) from None
+        if not isinstance(frame, Hello):
+            raise ProtocolError("malformed", f'begin with {{"type": "hello", "v": {VERSION}}}')
+        bearer = self._socket.headers.get("authorization", "").removeprefix("Bearer ")
+        await self._gate.check_token(frame.token or bearer)
+        return frame
+
+    async def _receive(self) -> str | bytes:
+        message = await self._socket.receive()
+        if message["type"] == "websocket.disconnect":
+            raise WebSocketDisconnect(message.get("code", 1006))
+        text: str | bytes = message.get("text") or message.get("bytes") or ""
+        if len(text) > LONGEST:  # most servers refuse it themselves
+            raise ProtocolError("too-long", f"a frame has at most {LONGEST:,} bytes, not {len(text):,}")
+        return text
+
+    # ------------------------------------------------------------------------------------ from the client
+
+    async def _read(self, session: Session) -> None:
+        now = asyncio.get_running_loop().time
+        bucket = Bucket(burst=BURST, rate=RATE, now=now())
+        while True:
+            text = await self._receive()
+            wait = bucket.wait(now())
+            if wait:
+                await asyncio.sleep(wait)
+            try:
+                self._take(parse(text, CLIENT), session)
+            except ProtocolError as error:
+                self._reply(Error(error.code, str(error)))
+
+    def _take(self, frame: Frame, session: Session) -> None:
+        if isinstance(frame, Say):
+            if not frame.text.strip():
+                raise ProtocolError("empty", 'say: "text" has nothing in it')
+            session.hear(frame.id, frame.text)
+        elif isinstance(frame, Ping):
+            self._reply(Pong())
+        elif isinstance(frame, Bye):
+            self._sessions.leave(session, "you left")
+        else:
+            raise ProtocolError("malformed", "hello is said once, at the beginning")
+
+    def _reply(self, frame: Frame) -> None:
+        if len(self._replies) >= REPLIES:
+            raise WebSocketDisconnect(1008, "it does not read")
+        self._replies.append(frame)
+        self._woken.set()
+
+    # ------------------------------------------------------------------------------------ to the client
+
+    async def _write(self, session: Session, last: int) -> None:
+        """Tell the client what it has not seen: messages after number `last`, and what is being said."""
+        shown, typing = "", False
+        while True:
+            self._woken.clear()
+            while self._replies:
+                await self._send(self._replies.popleft())
+            for message in session.history.since(last):
+                if message.n != last + 1:
+                    raise ProtocolError("behind", f"message {last + 1} is kept no more: connect again")
+                await self._send(message)
+                last = message.n
+                shown = "" if message.speaker == "agent" else shown
+            if session.partial != shown and last == session.history.last:
+                same = _common(shown, session.partial)
+                shown = session.partial
+                await self._send(Piece(_units(shown[:same]), shown[same:]))
+            if session.typing != typing:
+                typing = session.typing
+                await self._send(Typing(typing))
+            if session.ended is not None and last == session.history.last:
+                await self._send(Ended(session.ended))
+                await self._socket.close(1000, "ended")
+                return
+            if not self._woken.is_set():
+                await self._woken.wait()
+
+    async def _send(self, frame: Frame | Message) -> None:
+        await self._socket.send_text(serialise(frame))
+
+
+def _common(one: str, other: str) -> int:
+    """How many characters two texts begin with alike."""
+    if other.startswith(one):  # as it grows
+        return len(one)
+    return next(
+        (n for n, (a, b) in enumerate(zip(one, other, strict=False)) if a != b), min(len(one), len(other))
+    )
+
+
+def _units(text: str) -> int:
+    """The length of a text in UTF-16 units, which is JavaScript's."""
+    return len(text) + sum(character > "\uffff" for character in text)

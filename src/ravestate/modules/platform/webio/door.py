@@ -1,0 +1,105 @@
+"""What a connection may cost before the application hears of it, and after its client has stopped reading.
+
+Both build on uvicorn's own protocols, which bound neither.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from typing import Any, cast
+
+from uvicorn.protocols.http.h11_impl import H11Protocol
+from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
+
+__all__ = ["Door", "Line"]
+
+PATIENCE = 10.0
+"""Seconds in which a client is to send its request, and then to read the answer."""
+
+STALLED = 20.0
+"""Seconds for which a client may leave unread what the server has for it."""
+
+FULL = b"HTTP/1.1 503 Service Unavailable\r\nconnection: close\r\ncontent-type: text/plain\r\ncontent-length: %d\r\n\r\n%s"
+
+
+class Door(H11Protocol):
+    """HTTP: bounds the number of connections, in all and from one address, and does not wait for the silent.
+
+    Args:
+        per_address: Connections from one address, WebSockets among them.
+        most: Connections in all.
+    """
+
+    def __init__(self, *args: Any, per_address: int, most: int, **kwargs: Any) -> None:
+        super().__init__(*args, **kwargs)
+        self._per_address = per_address
+        self._most = most
+        self._answering: object = None
+
+    def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]  # as above it
+        """Take a connection, or refuse it."""
+        super().connection_made(transport)
+        if len(self.connections) > self._most:
+            self._refuse("too many connections")
+        elif self._from_here() > self._per_address:
+            self._refuse("too many connections from your address")
+        else:
+            self.loop.call_later(PATIENCE, self._look)
+
+    def _from_here(self) -> int:
+        here = self.client[0] if self.client else None
+        addresses = (cast("Any", other).client for other in self.connections)
+        return sum(1 for address in addresses if address and address[0] == here)
+
+    def _refuse(self, why: str) -> None:
+        self.transport.write(FULL % (len(why), why.encode()))
+        self.transport.close()
+
+    def _look(self) -> None:
+        """Close if nothing has been asked, or if an answer has not been read since the last look."""
+        if self.transport.is_closing() or self.transport.get_protocol() is not self:
+            return
+        cycle = cast("Any", self.cycle)  # None until there is a request
+        if cycle is None or (not cycle.response_complete and cycle is self._answering):
+            self.transport.abort()
+            return
+        self._answering = cycle
+        self.loop.call_later(PATIENCE, self._look)
+
+
+class Line(WebSocketsSansIOProtocol):
+    """WebSockets: drops who does not read, instead of keeping what is meant for them."""
+
+    _stalled: asyncio.TimerHandle | None = None
+
+    def pause_writing(self) -> None:
+        """The client leaves much unread: it has some time to make up."""
+        super().pause_writing()
+        self._stalled = self.loop.call_later(STALLED, self.transport.abort)
+
+    def resume_writing(self) -> None:
+        """The client reads again."""
+        super().resume_writing()
+        self._forgive()
+
+    def connection_lost(self, exc: Exception | None) -> None:
+        """It is gone."""
+        self._forgive()
+        super().connection_lost(exc)
+
+    def handle_ping(self) -> None:
+        """Answer, unless the client asks on and on and does not read the answers."""
+        if self.writable.is_set():
+            super().handle_ping()
+        else:
+            self.transport.abort()
+
+    def keepalive_timeout(self) -> None:
+        """It answers no more: what is still meant for it will not be read."""
+        super().keepalive_timeout()
+        self.transport.abort()
+
+    def _forgive(self) -> None:
+        if self._stalled is not None:
+            self._stalled.cancel()
+            self._stalled = None

@@ -1,0 +1,59 @@
+"""What was said in a conversation, numbered, as far back as it is kept."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterator
+from typing import Literal
+
+from .protocol import Message
+
+__all__ = ["History"]
+
+MESSAGES = 500
+"""Messages that are kept."""
+
+CHARACTERS = 500_000
+"""Characters that are kept."""
+
+
+class History:
+    """The last messages of a conversation, bounded in number and in size.
+
+    Example:
+        >>> history = History(messages=2)
+        >>> for text in ("one", "two", "three"):
+        ...     _ = history.add("user", text, 0)
+        >>> [message.n for message in history.since(0)]
+        [2, 3]
+    """
+
+    def __init__(self, *, messages: int = MESSAGES, characters: int = CHARACTERS) -> None:
+        self._messages: deque[Message] = deque()
+        self._most = messages
+        self._characters = characters
+        self._size = 0
+        self.last = 0
+        """The number of the newest message."""
+
+    @property
+    def first(self) -> int:
+        """The number of the oldest message that is kept; the next one's where there is none."""
+        return self.last - len(self._messages) + 1
+
+    def add(self, speaker: Literal["user", "agent"], text: str, time: int, id: str | None = None) -> Message:
+        """Number and keep a message; of one that is larger than everything may be, the beginning."""
+        text = text[: self._characters]
+        self.last += 1
+        message = Message(self.last, speaker, text, time, id)
+        self._messages.append(message)
+        self._size += len(text)
+        while len(self._messages) > self._most or self._size > self._characters:
+            self._size -= len(self._messages.popleft().text)
+        return message
+
+    def since(self, number: int) -> Iterator[Message]:
+        """The kept messages with greater numbers, in order; others may be added meanwhile."""
+        while number < self.last:
+            number = max(number + 1, self.first)
+            yield self._messages[number - self.first]

@@ -1,0 +1,73 @@
+"""The files of the page, as they were built: held in memory, also compressed."""
+
+from __future__ import annotations
+
+import gzip
+import hashlib
+from dataclasses import dataclass
+from pathlib import Path
+
+from starlette.datastructures import Headers
+from starlette.responses import PlainTextResponse, Response
+from starlette.types import Receive, Scope, Send
+
+__all__ = ["Pages"]
+
+KINDS = {
+    ".css": "text/css; charset=utf-8",
+    ".html": "text/html; charset=utf-8",
+    ".js": "text/javascript; charset=utf-8",
+    ".svg": "image/svg+xml",
+    ".txt": "text/plain; charset=utf-8",
+    ".woff2": "font/woff2",
+}
+COMPRESSED = {".woff2"}
+"""What compressing would not make smaller."""
+
+
+@dataclass(frozen=True, slots=True)
+class _File:
+    data: bytes
+    packed: bytes | None
+    kind: str
+    tag: str
+
+
+class Pages:
+    """An ASGI application that serves a folder; a folder within it by its ``index.html``.
+
+    Args:
+        folder: What is in it now is served, also when it changes.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self._files: dict[str, _File] = {}
+        for file in sorted(folder.rglob("*")):
+            if file.suffix in KINDS:
+                data = file.read_bytes()
+                packed = None if file.suffix in COMPRESSED else gzip.compress(data, mtime=0)
+                tag = f'"{hashlib.sha256(data).hexdigest()[:16]}"'
+                self._files[f"/{file.relative_to(folder).as_posix()}"] = _File(
+                    data, packed, KINDS[file.suffix], tag
+                )
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Answer a request."""
+        await self._answer(scope)(scope, receive, send)
+
+    def _answer(self, scope: Scope) -> Response:
+        if scope["method"] not in ("GET", "HEAD"):
+            return PlainTextResponse("only GET", 405, {"allow": "GET, HEAD"})
+        path = scope["path"].removeprefix(scope.get("root_path", "")) or "/"
+        file = self._files.get(path + "index.html" if path.endswith("/") else path)
+        if file is None:
+            return PlainTextResponse("there is no such page", 404)
+        asked = Headers(scope=scope)
+        headers = {"cache-control": "no-cache", "etag": file.tag, "vary": "accept-encoding"}
+        if asked.get("if-none-match") == file.tag:
+            return Response(status_code=304, headers=headers)
+        data = file.data
+        if file.packed is not None and "gzip" in asked.get("accept-encoding", ""):
+            data = file.packed
+            headers["content-encoding"] = "gzip"
+        return Response(data, headers=headers, media_type=file.kind)

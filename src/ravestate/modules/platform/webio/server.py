@@ -1,0 +1,176 @@
+"""The web server: one socket, one application, bounds on who holds a connection."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import errno
+import functools
+import socket
+import sys
+from collections.abc import Generator
+from types import TracebackType
+from typing import TYPE_CHECKING, Any, cast
+
+import uvicorn
+
+from ravestate.errors import PlatformError
+
+from .app import ENDING, make_app
+from .connection import LONGEST
+from .door import Door, Line
+from .gate import is_local
+
+if TYPE_CHECKING:
+    from ravestate.runtime.agent import Agent
+
+    from . import Settings
+
+__all__ = ["Server"]
+
+SPARE = 128
+"""Files that are left to others, of those that the process may open."""
+
+LAST_WORDS = 2.0
+"""Seconds that connections have to close at the end."""
+
+
+class Server:
+    """Serves the page of an agent: ``async with Server(agent) as server``.
+
+    Args:
+        agent: With ``webio`` among its modules, whose settings say where to listen.
+
+    Raises:
+        PlatformError: The address can be reached by others, and there is no token; or see `make_app`.
+    """
+
+    def __init__(self, agent: Agent) -> None:
+        self._app = make_app(agent)
+        self._settings: Settings = agent.settings["webio"]  # type: ignore[assignment]  # the module's own
+        if self._settings.token is None and not is_local(self._settings.host):
+            raise PlatformError(
+                f"webio: others can reach host {self._settings.host!r}, so a token is needed: set RAVESTATE_WEBIO_TOKEN, "
+                "e.g. to what this prints: python -c 'import secrets; print(secrets.token_urlsafe())'"
+            )
+        self._socket: socket.socket | None = None
+        self._uvicorn: _Uvicorn | None = None
+        self._task: asyncio.Task[None] | None = None
+
+    async def __aenter__(self) -> Server:
+        """Listen.
+
+        Raises:
+            PlatformError: The port is in use, or the address is none of this machine's.
+        """
+        settings = self._settings
+        self._socket = _listen(settings.host, settings.port)
+        door = functools.partial(Door, per_address=settings.per_address, most=_most(2 * settings.sessions))
+        self._uvicorn = _Uvicorn(
+            uvicorn.Config(
+                self._app,
+                http=cast("Any", door),
+                ws=Line,
+                lifespan="on",
+                ws_max_size=LONGEST,
+                ws_per_message_deflate=False,  # frames are small, and each window would take memory
+                timeout_keep_alive=15,
+                timeout_graceful_shutdown=int(LAST_WORDS),
+                log_config=None,
+                log_level="warning",
+                access_log=False,
+                server_header=False,
+                date_header=False,
+            )
+        )
+        self._task = asyncio.create_task(self._uvicorn.serve(sockets=[self._socket]))
+        listening = asyncio.create_task(self._uvicorn.listening.wait())
+        await asyncio.wait((self._task, listening), return_when=asyncio.FIRST_COMPLETED)
+        listening.cancel()
+        if self._task.done():
+            self._task.result()
+        return self
+
+    async def __aexit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """Tell the visitors, end their conversations in order, and close."""
+        assert self._uvicorn is not None and self._task is not None  # it was entered
+        await self._app.state.sessions.close(ENDING)
+        self._uvicorn.told.set()
+        await self._task
+
+    @property
+    def port(self) -> int:
+        """Where it listens."""
+        assert self._socket is not None  # it was entered
+        return int(self._socket.getsockname()[1])
+
+    @property
+    def address(self) -> str:
+        """Where the page is."""
+        host = self._settings.host
+        return f"http://{f'[{host}]' if ':' in host else host}:{self.port}/"
+
+    def announce(self) -> None:
+        """Print where the page is; with the token, as it is the link that lets in."""
+        token = self._settings.token
+        link = self.address + (f"#token={token.get_secret_value()}" if token else "")
+        sys.stdout.write(f"The agent is at {link} (Ctrl-C ends it)\n")
+        sys.stdout.flush()
+
+    async def until_failed(self) -> None:
+        """Wait for what should not happen: that the server ends by itself."""
+        assert self._task is not None  # it was entered
+        await asyncio.shield(self._task)
+
+
+class _Uvicorn(uvicorn.Server):
+    """Without a tick, and without handlers of signals: whoever runs the agent has them."""
+
+    def __init__(self, config: uvicorn.Config) -> None:
+        super().__init__(config)
+        self.listening = asyncio.Event()
+        self.told = asyncio.Event()
+
+    async def main_loop(self) -> None:
+        """Wait until told to end."""
+        self.listening.set()
+        await self.told.wait()
+
+    @contextlib.contextmanager
+    def capture_signals(self) -> Generator[None]:
+        """Leave them alone."""
+        yield
+
+
+def _listen(host: str, port: int) -> socket.socket:
+    try:
+        family, kind, protocol, _, address = socket.getaddrinfo(
+            host.strip("[]"), port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE
+        )[0]
+    except OSError as error:
+        raise PlatformError(f"webio: host {host!r} is no address of this machine: {error.strerror}") from None
+    listener = socket.socket(family, kind, protocol)
+    try:
+        if sys.platform != "win32":  # there it would share the port
+            listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        listener.bind(address)
+    except OSError as error:
+        listener.close()
+        if error.errno == errno.EADDRINUSE:
+            raise PlatformError(
+                f"webio: port {port} is in use: choose another one, or any that is free: --set webio.port=0"
+            ) from None
+        raise PlatformError(f"webio: cannot listen on {host}, port {port}: {error.strerror}") from None
+    return listener
+
+
+def _most(wanted: int) -> int:
+    """How many connections there may be, as the process may open only so many files."""
+    try:
+        import resource
+    except ImportError:  # not on Windows
+        return wanted
+    soft, _ = resource.getrlimit(resource.RLIMIT_NOFILE)
+    return wanted if soft == resource.RLIM_INFINITY else max(16, min(wanted, soft - SPARE))

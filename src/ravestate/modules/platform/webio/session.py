@@ -1,0 +1,197 @@
+"""One conversation: a context, what was said in it, and the connections that look on."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import secrets
+import time
+from collections import OrderedDict
+from typing import TYPE_CHECKING, Protocol
+
+import ravestate as rs
+from ravestate.errors import RavestateError
+from ravestate.modules import interloc, rawio
+from ravestate.modules._text import printable, without_controls
+
+from . import page
+from .history import History
+
+if TYPE_CHECKING:
+    from ravestate.runtime.context import Context
+
+__all__ = ["Onlooker", "Session"]
+
+REMEMBERED = 512
+"""Ids of the client's messages that are known, so that what is sent twice is heard once."""
+
+GRACE = 0.3
+"""Seconds that an answer may take before it is shown that it is being made."""
+
+FAREWELL = 5.0
+"""Seconds that the agent has for a farewell."""
+
+log = logging.getLogger("ravestate.webio")
+
+
+class Onlooker(Protocol):
+    """Whoever wants to know when something in a conversation changes."""
+
+    def wake(self) -> None:
+        """Something has changed: look when you have time."""
+        ...
+
+
+class Session:
+    """A visitor's conversation. It outlives its connections; all of it happens on one event loop.
+
+    It holds no queue for anybody: an `Onlooker` is woken, and reads what it has not seen yet.
+
+    Args:
+        context: The visitor's own, which nobody has entered yet.
+        name: What the visitor is called, if it is known.
+    """
+
+    def __init__(self, context: Context, name: str | None = None) -> None:
+        self.id = secrets.token_urlsafe(24)
+        """The secret by which a client takes the conversation up again."""
+        self.visitor = f"webio-{secrets.token_hex(4)}"
+        """The key of the visitor in ``interloc.users``."""
+        self.name = name
+        self.context = context
+        self.history = History()
+        self.partial = ""
+        """What is being said, as far as it goes."""
+        self.typing = False
+        """Whether the agent is about to say something."""
+        self.spoken = False
+        """Whether the visitor has ever said anything."""
+        self.ended: str | None = None
+        """Why the conversation is over, once it is."""
+        self.onlookers: set[Onlooker] = set()
+        self._left: asyncio.Event = asyncio.Event()
+        self._reason = "the conversation has ended"
+        self._heard: OrderedDict[str, None] = OrderedDict()
+        self._awaited = False  # an answer, by the visitor
+        self._slow = False  # the agent is at work for longer than the grace
+        self._following: asyncio.Task[None] | None = None
+
+    # ------------------------------------------------------------------------------------ life
+
+    async def live(self) -> None:
+        """Be there until the visitor or the agent leaves, or this is cancelled; then end in order."""
+        try:
+            async with self.context as context:
+                context.put(page, self)
+                context.put(interloc.users, {**context.read(interloc.users), self.visitor: self.name})
+                await self._until_left()
+                self._free_from_users()
+                async with asyncio.timeout(FAREWELL):
+                    await context.quiet()
+        except TimeoutError:
+            pass  # the farewell took too long
+        except RavestateError as failure:  # of one conversation; the others go on
+            self._reason = "the agent has failed"
+            log.error("a conversation ended: %s", failure)
+        finally:
+            if self._following is not None:
+                self._following.cancel()
+            self.fall_silent()
+            self.typing = False
+            self.ended = self._reason
+            self._tell()
+
+    def leave(self, reason: str) -> None:
+        """End the conversation for good.
+
+        Args:
+            reason: Why, for the visitor.
+        """
+        if not self._left.is_set():
+            self._reason = reason
+            self._left.set()
+
+    async def _until_left(self) -> None:
+        left = asyncio.create_task(self._left.wait())
+        stopped = asyncio.create_task(self.context.until_stopped())
+        try:
+            await asyncio.wait((left, stopped), return_when=asyncio.FIRST_COMPLETED)
+            if stopped.done():
+                self._reason = "the agent has left"
+                stopped.result()
+        finally:
+            left.cancel()
+            stopped.cancel()
+
+    def _free_from_users(self) -> None:
+        users = self.context.read(interloc.users)
+        self.context.put(interloc.users, {key: user for key, user in users.items() if key != self.visitor})
+
+    # ------------------------------------------------------------------------------------ the visitor
+
+    def hear(self, id: str, text: str) -> None:
+        """The visitor says something. What came before under the same `id` is left aside."""
+        if id in self._heard or self._left.is_set():
+            return
+        self._heard[id] = None
+        if len(self._heard) > REMEMBERED:
+            self._heard.popitem(last=False)
+        self.spoken = True
+        self.history.add("user", text, _now(), id)
+        self.context.put(rawio.input, text)
+        self._expect(GRACE)
+        self._tell()
+
+    # ------------------------------------------------------------------------------------ the agent
+
+    def say(self, text: str) -> None:
+        """The agent has said something."""
+        text = printable(text)
+        self.partial = ""
+        self._awaited = self.context.read(rs.pressure)  # then it was said to fill a pause
+        if text.strip():
+            self.history.add("agent", text, _now())
+        self._tell()
+
+    def grow(self, piece: str) -> None:
+        """The agent is saying something; the next piece of it."""
+        self.partial += without_controls(piece)
+        self._tell()
+
+    def fall_silent(self) -> None:
+        """The agent says no more; what was said so far was said."""
+        if self.partial:
+            self.say(self.partial)
+
+    def ponder(self) -> None:
+        """The agent keeps something waiting."""
+        self._expect(0.0)
+
+    def _expect(self, grace: float) -> None:
+        self._awaited = True
+        if self._following is None:
+            self._following = asyncio.create_task(self._follow(grace))
+
+    async def _follow(self, grace: float) -> None:
+        """Show that the agent is at work while it is, if it takes longer than the grace (seconds)."""
+        try:
+            try:
+                async with asyncio.timeout(grace):
+                    await self.context.quiet()
+            except TimeoutError:
+                self._slow = True
+                self._tell()
+                await self.context.quiet()
+        finally:
+            self._following = None
+            self._slow = False
+            self._tell()
+
+    def _tell(self) -> None:
+        self.typing = self._slow and self._awaited and not self.partial and self.ended is None
+        for onlooker in self.onlookers:
+            onlooker.wake()
+
+
+def _now() -> int:
+    return time.time_ns() // 1_000_000

@@ -1,0 +1,127 @@
+"""The conversations that are going on, by their secrets: opened, taken up again, kept for a while, ended."""
+
+from __future__ import annotations
+
+import asyncio
+from typing import TYPE_CHECKING
+
+from .protocol import ProtocolError
+from .session import Onlooker, Session
+
+if TYPE_CHECKING:
+    from ravestate.runtime.agent import Agent
+
+__all__ = ["Sessions"]
+
+ONLOOKERS = 8
+"""Connections to one conversation at a time: a visitor's windows."""
+
+
+class Sessions:
+    """All conversations with one agent.
+
+    Args:
+        agent: Makes the context of each.
+        limit: How many there may be. Beyond it those end first that nobody looks on; then new ones are refused.
+        keep: Seconds for which a conversation that nobody looks on is kept.
+    """
+
+    def __init__(self, agent: Agent, *, limit: int, keep: float) -> None:
+        self._agent = agent
+        self._limit = limit
+        self._keep = keep
+        self._sessions: dict[str, Session] = {}
+        self._tasks: dict[Session, asyncio.Task[None]] = {}
+        self._timers: dict[
+            Session, asyncio.TimerHandle
+        ] = {}  # of those that nobody looks on, the longest first
+        self._closed = ""
+
+    def __len__(self) -> int:
+        return len(self._tasks)
+
+    def get(self, id: str) -> Session | None:
+        """The conversation of a secret, if it is still going on."""
+        return self._sessions.get(id)
+
+    async def open(self, name: str | None = None) -> Session:
+        """Begin a conversation.
+
+        Args:
+            name: What the visitor is called, if it is known.
+
+        Raises:
+            ProtocolError: There are too many already, or no more are begun.
+        """
+        if len(self._tasks) >= self._limit:
+            await self._make_room()
+        if self._closed:
+            raise ProtocolError("closing", self._closed)
+        if len(self._tasks) >= self._limit:
+            raise ProtocolError("full", f"{self._limit} visitors are here already: try again later")
+        session = Session(self._agent.context(), name)
+        self._sessions[session.id] = session
+        self._tasks[session] = asyncio.create_task(self._live(session))
+        self._abandon(session)  # until somebody looks on
+        return session
+
+    def enter(self, session: Session, onlooker: Onlooker) -> None:
+        """Somebody looks on.
+
+        Raises:
+            ProtocolError: Too many do already.
+        """
+        if len(session.onlookers) >= ONLOOKERS:
+            raise ProtocolError(
+                "full", f"{ONLOOKERS} windows show this conversation already: close one of them"
+            )
+        session.onlookers.add(onlooker)
+        timer = self._timers.pop(session, None)
+        if timer is not None:
+            timer.cancel()
+
+    def exit(self, session: Session, onlooker: Onlooker) -> None:
+        """Somebody looks on no more."""
+        session.onlookers.discard(onlooker)
+        if not session.onlookers and session in self._tasks:
+            self._abandon(session)
+
+    def leave(self, session: Session, reason: str) -> None:
+        """End a conversation for good."""
+        self._sessions.pop(session.id, None)
+        timer = self._timers.pop(session, None)
+        if timer is not None:
+            timer.cancel()
+        session.leave(reason)
+
+    async def close(self, reason: str) -> None:
+        """End all of them, and begin no more.
+
+        Args:
+            reason: Why, for the visitors.
+        """
+        self._closed = reason
+        for session in list(self._tasks):
+            self.leave(session, reason)
+        if self._tasks:
+            await asyncio.wait(list(self._tasks.values()))
+
+    def _abandon(self, session: Session) -> None:
+        self._timers[session] = asyncio.get_running_loop().call_later(
+            self._keep, self.leave, session, "nobody was there"
+        )
+
+    async def _make_room(self) -> None:
+        """End the conversation that is missed least: one in which nothing was said, or else the one left longest ago."""
+        abandoned = min(self._timers, key=lambda session: session.spoken, default=None)
+        if abandoned is not None:
+            task = self._tasks[abandoned]
+            self.leave(abandoned, "others were waiting")
+            await asyncio.wait((task,))
+
+    async def _live(self, session: Session) -> None:
+        try:
+            await session.live()
+        finally:
+            self.leave(session, "it has ended")
+            self._tasks.pop(session, None)
