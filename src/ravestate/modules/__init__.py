@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from ravestate.modules.meta import idle, nlp, ontology, verbaliser
     from ravestate.modules.modality import emotion, interloc, rawio
     from ravestate.modules.platform import conio, webio
-    from ravestate.modules.skill import agenda, fillers, hibye, wildtalk
+    from ravestate.modules.skill import agenda, fillers, genqa, hibye, wildtalk
 
 __all__ = [
     "BUILT_IN",
@@ -24,6 +24,7 @@ __all__ = [
     "conio",
     "emotion",
     "fillers",
+    "genqa",
     "hibye",
     "idle",
     "interloc",
@@ -48,6 +49,7 @@ BUILT_IN = {
     "hibye": "skill",
     "agenda": "skill",
     "fillers": "skill",
+    "genqa": "skill",
     "wildtalk": "skill",
 }
 """Every built-in module, and the folder in which it stands."""

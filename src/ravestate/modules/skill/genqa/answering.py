@@ -1,0 +1,221 @@
+"""From a question to an answer with its source and a confidence: retrieve, read, weigh."""
+
+from __future__ import annotations
+
+import math
+import re
+import threading
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from ravestate.modules._sentences import Reranker
+
+from .confidence import confidence
+from .index import Found, Index
+from .question import Question, as_question
+from .shipped import bring_up
+from .stems import Stems
+from .variants import variants_of
+
+__all__ = ["Answer", "Answerer", "Candidate"]
+
+RETRIEVED = 20
+"""So many passages are looked at word by word..."""
+READ = (2, 2, 4)
+"""... and so many of these are read: the first few, and the others only if none of them is it."""
+GOOD, HOPELESS = 6.0, -4.0
+"""With the first score a passage is it; where the first few have no more than the second, the others are not it either."""
+ENOUGH = 0.4
+"""A passage that mentions less of what is asked for (0 to 1) is not even read."""
+LEVEL = 0.8
+"""Scores that differ by less are about as good."""
+COMMON = 20_000
+"""A word that stands in more passages finds nothing, and takes long; it is searched if there is no other."""
+WORDS = 24
+"""A question has no more words to search for."""
+
+
+@dataclass(frozen=True, slots=True)
+class Candidate:
+    """A passage that was read."""
+
+    text: str
+    title: str
+    row: int
+    score: float
+    """How well it answers, in the reader's own measure: above 0 mostly well, up to 11."""
+    covered: float
+    """How much of what is asked for it mentions: 0 to 1, rare words weighing more."""
+
+
+@dataclass(frozen=True, slots=True)
+class Answer:
+    """What the documents say to a question; without a text they say nothing."""
+
+    question: str
+    text: str = ""
+    """A passage, word for word."""
+    source: str = ""
+    title: str = ""
+    confidence: float = 0.0
+    """The probability that it is right: 0 to 1."""
+    candidates: tuple[Candidate, ...] = ()
+    """All that was read, best first."""
+    reason: str = ""
+    """Why there is no text."""
+
+
+class Answerer:
+    """Answers from an index. It opens the file when it is first asked, and again if another one takes its place.
+
+    Safe from any thread.
+
+    Example:
+        ::
+
+            answer = Answerer(Path("index.sqlite")).answer("What is the capital of Peru?")
+            answer.text, answer.source      # ('The capital of Peru is Lima.', 'The World Factbook, 2025')
+    """
+
+    def __init__(self, path: Path, *, collection: bool = True, reranker: Path | str | None = None) -> None:
+        """Nothing is opened or loaded yet.
+
+        Args:
+            path: The index; it is made if there is none.
+            collection: Whether it is to hold the collection that comes with Ravestate.
+            reranker: The folder of another reader, see `Reranker`.
+        """
+        self._path = path
+        self._collection = collection
+        self._reranker = Reranker(reranker)
+        self._opening = threading.Lock()
+        self._index: Index | None = None
+        self._stems: Stems | None = None
+
+    def load(self) -> None:
+        """Open the index, take in the collection, load the reader; `answer` would do it.
+
+        Raises:
+            PlatformError: The index cannot be opened, or the reader is not installed.
+        """
+        if self._opened().size():
+            self._reranker.load()
+
+    def close(self) -> None:
+        """Let go of the index."""
+        with self._opening:
+            if self._index is not None:
+                self._index.close()
+                self._index = None
+
+    def answer(self, heard: str) -> Answer:
+        """Answer what somebody said, as far as the documents can.
+
+        Raises:
+            PlatformError: See `load`.
+        """
+        question = as_question(heard)
+        if question.declined:
+            return Answer(question.text, reason=question.declined)
+        index = self._opened()
+        if not index.size():
+            return Answer(question.text, reason="there are no documents")
+        retrieved = self._retrieve(index, question)
+        if not retrieved:
+            return Answer(question.text, reason="no document has anything of it")
+        read = self._read(question, retrieved)
+        best, *others = read
+        sure = confidence(best.score, [other.score for other in others], best.covered)
+        return Answer(question.text, best.text, index.source(best.row), best.title, sure, tuple(read))
+
+    # ---------------------------------------------------------------------------------- internals
+
+    def _opened(self) -> Index:
+        with self._opening:
+            if self._index is not None and not self._index.in_place():
+                self._index.close()
+                self._index = None
+            if self._index is None:
+                index = Index(self._path)
+                try:
+                    bring_up(index, wanted=self._collection)
+                except BaseException:
+                    index.close()
+                    raise
+                self._index = index
+            if self._stems is None:
+                self._stems = Stems()
+            return self._index
+
+    def _retrieve(self, index: Index, question: Question) -> list[tuple[float, Found]]:
+        """Passages and how much of the question each covers, the best for reading first."""
+        assert self._stems is not None  # opening makes them
+        asked = [variants_of(word) for word in question.words[:WORDS]]
+        searched = list(dict.fromkeys(word for group in (*asked, question.kinds[:WORDS]) for word in group))
+        stem_of = {word: stems for word, stems in zip(searched, self._stems(*searched), strict=True) if stems}
+        known = index.frequencies(sorted({stem for stems in stem_of.values() for stem in stems}))
+
+        def standing(word: str) -> int:
+            """In how many passages a word stands, at most."""
+            return min(known.get(stem, 0) for stem in stem_of[word])
+
+        rare = [word for word in stem_of if standing(word) <= COMMON]
+        found = index.search(rare or list(stem_of), RETRIEVED)
+
+        # What each word that is asked for weighs, and the forms in which it may stand in a passage.
+        size = index.size()
+        wanted = [
+            (
+                math.log1p(size / (max(map(standing, forms)) + 0.5)),
+                [frozenset(stem_of[form]) for form in forms],
+            )
+            for group in asked
+            if (forms := [form for form in group if form in stem_of])
+        ]
+        total = sum(weight for weight, _ in wanted) or 1.0
+        covered = [
+            sum(weight for weight, forms in wanted if any(form <= have for form in forms)) / total
+            for have in map(set, self._stems(*(f"{each.title} {each.text} {each.hints}" for each in found)))
+        ]
+        # The sort is stable: BM25 decides between equals.
+        order = sorted(
+            (place for place in range(len(found)) if covered[place] >= ENOUGH),
+            key=lambda place: -covered[place],
+        )
+        return [(covered[place], found[place]) for place in order]
+
+    def _read(self, question: Question, retrieved: Sequence[tuple[float, Found]]) -> list[Candidate]:
+        read: list[Candidate] = []
+        start = 0
+        for count in READ:
+            batch = retrieved[start : start + count]
+            start += count
+            if not batch:
+                break
+            scores = self._reranker.score(question.text, [_readable(found) for _, found in batch])
+            read += [
+                Candidate(found.text, found.title, found.row, float(score), covered)
+                for (covered, found), score in zip(batch, scores, strict=True)
+            ]
+            best = max(candidate.score for candidate in read)
+            if best >= GOOD or (best <= HOPELESS and start > READ[0]):
+                break
+        read.sort(key=lambda candidate: -candidate.score)
+        # Of those that are about as good, take what says least besides: the life expectancy, not that of women.
+        level = [c for c in read if c.score > read[0].score - LEVEL and c.covered >= read[0].covered]
+        asked = {form for word in question.words for form in variants_of(word.lower())}
+        best = min(level, key=lambda candidate: _besides(candidate.text, asked))
+        return [best, *(c for c in read if c is not best)]
+
+
+def _readable(found: Found) -> str:
+    """A passage as the reader sees it: under its title, if it does not name that itself."""
+    if found.title.lower() in found.text.lower():
+        return found.text
+    return f"{found.title}: {found.text}"
+
+
+def _besides(text: str, asked: set[str]) -> int:
+    """How many words of `text`, outside of brackets, are not asked for."""
+    return len(set(re.findall(r"[a-z]{2,}", re.sub(r"\([^)]*\)", "", text.lower()))) - asked)

@@ -1,0 +1,293 @@
+"""The index: one SQLite file that holds passages, where they are from, and which words stand in which."""
+
+from __future__ import annotations
+
+import sqlite3
+import threading
+from collections.abc import Generator, Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+from ravestate.errors import PlatformError
+
+from .document import Document
+from .stems import TOKENIZER
+
+__all__ = ["Found", "Index", "IndexedFile"]
+
+FORMAT = 1
+"""Of the file; one with a greater number is refused, one with a smaller number would be brought up to it."""
+APPLICATION = 0x52764741
+"""Marks a file as ours."""
+
+_SCHEMA = f"""
+CREATE TABLE files (
+    path TEXT PRIMARY KEY, size INTEGER NOT NULL, modified INTEGER NOT NULL, digest TEXT NOT NULL,
+    passages INTEGER NOT NULL
+) WITHOUT ROWID;
+CREATE TABLE documents (
+    first INTEGER PRIMARY KEY, last INTEGER NOT NULL, path TEXT NOT NULL, title TEXT NOT NULL, source TEXT NOT NULL
+);
+CREATE INDEX documents_of_file ON documents (path);
+CREATE VIRTUAL TABLE passages USING fts5(title, text, hints, tokenize='{TOKENIZER}');
+CREATE VIRTUAL TABLE words USING fts5vocab(passages, 'row');
+PRAGMA application_id = {APPLICATION};
+PRAGMA user_version = {FORMAT};
+"""
+# What a match in the title, the text and the hints is worth.
+_RANK = "bm25(passages, 1.0, 1.0, 0.7)"
+
+
+@dataclass(frozen=True, slots=True)
+class IndexedFile:
+    """A file as it was when it was read."""
+
+    path: str
+    size: int
+    """Bytes."""
+    modified: int
+    """Nanoseconds, as the file system has it."""
+    digest: str
+    """Of what it holds."""
+    passages: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Found:
+    """A passage that shares words with a question."""
+
+    row: int
+    title: str
+    text: str
+    hints: str
+
+
+class Index:
+    """Passages on disk. Any number of threads and processes may read while one writes.
+
+    Each file is taken in, replaced or forgotten as a whole, in one transaction: whatever happens in between (Ctrl-C,
+    ``kill -9``, a full disk), what was there before is still there.
+
+    Example:
+        ::
+
+            with Index(Path("my.sqlite")) as index:
+                index.put(IndexedFile("notes.txt", 11, 0, "…"), [Document("Notes", "notes.txt", [Passage("It rains.")])])
+                index.search(["rain"], 5)
+    """
+
+    def __init__(self, path: Path, *, timeout: float = 30.0) -> None:
+        """Open the file, or make it.
+
+        Args:
+            path: Its folder is made as well.
+            timeout: Seconds to wait for another process that writes.
+
+        Raises:
+            PlatformError: It cannot be opened, is of a newer version, or is no index.
+        """
+        self.path = path
+        self._lock = threading.RLock()
+        with self._told():
+            path.parent.mkdir(parents=True, exist_ok=True)
+            self._base = sqlite3.connect(path, timeout=timeout, check_same_thread=False, isolation_level=None)
+        try:
+            with self._told():
+                self._prepare()
+                seen = path.stat()
+                self._inode = (seen.st_dev, seen.st_ino)
+        except BaseException:
+            self._base.close()
+            raise
+
+    def __enter__(self) -> Index:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Let go of the file."""
+        with self._lock:
+            self._base.close()
+
+    def in_place(self) -> bool:
+        """Whether the file that was opened is still the one under this path."""
+        try:
+            seen = self.path.stat()
+        except OSError:
+            return False
+        return (seen.st_dev, seen.st_ino) == self._inode
+
+    # ------------------------------------------------------------------------------- what is in it
+
+    def files(self) -> Iterator[IndexedFile]:
+        """All files that have been read, by path."""
+        with self._lock, self._told():
+            rows = self._base.execute(
+                "SELECT path, size, modified, digest, passages FROM files ORDER BY path"
+            ).fetchall()
+        return (IndexedFile(*row) for row in rows)
+
+    def file(self, path: str) -> IndexedFile | None:
+        """The file under this path, as it was read; None if it was not."""
+        with self._lock, self._told():
+            row = self._base.execute(
+                "SELECT path, size, modified, digest, passages FROM files WHERE path = ?", (path,)
+            ).fetchone()
+        return None if row is None else IndexedFile(*row)
+
+    def size(self) -> int:
+        """How many passages there are."""
+        with self._lock, self._told():
+            return self._base.execute("SELECT coalesce(sum(passages), 0) FROM files").fetchone()[0]
+
+    def source(self, row: int) -> str:
+        """Where a passage is from."""
+        with self._lock, self._told():
+            found = self._base.execute(
+                "SELECT source FROM documents WHERE first <= ? ORDER BY first DESC LIMIT 1", (row,)
+            ).fetchone()
+        return "" if found is None else found[0]
+
+    # ---------------------------------------------------------------------------------- searching
+
+    def frequencies(self, stems: Sequence[str]) -> dict[str, int]:
+        """In how many passages each stem stands; what stands in none is left out."""
+        marks = ", ".join("?" * len(stems))
+        with self._lock, self._told():
+            return dict(
+                self._base.execute(f"SELECT term, doc FROM words WHERE term IN ({marks})", tuple(stems))
+            )
+
+    def search(self, words: Sequence[str], limit: int) -> list[Found]:
+        """The passages that share most with `words` by BM25, the rarer the word the more, best first.
+
+        Args:
+            words: Any text; what could be taken for an operator of the query language is not.
+            limit: So many passages at most.
+        """
+        terms = [
+            f'"{clean}"' for word in words if (clean := word.replace('"', " ").replace("\0", " ").strip())
+        ]
+        if not terms:
+            return []
+        with self._lock, self._told():
+            rows = self._base.execute(
+                f"SELECT rowid, title, text, hints FROM passages WHERE passages MATCH ? ORDER BY {_RANK} LIMIT ?",
+                (" OR ".join(terms), limit),
+            ).fetchall()
+        return [Found(*row) for row in rows]
+
+    # ------------------------------------------------------------------------------------ writing
+
+    def put(self, file: IndexedFile, documents: Iterable[Document]) -> int:
+        """Take in a file, in place of what was known of it; return the number of its passages.
+
+        Raises:
+            PlatformError: The disk is full, or another process has been writing for too long. Nothing has changed then,
+                and neither has it if reading `documents` raises.
+        """
+        with self._changing():
+            self._forget(file.path)
+            row = first = self._base.execute("SELECT coalesce(max(rowid), 0) + 1 FROM passages").fetchone()[0]
+            for document in documents:
+                start = row
+                for passage in document.passages:
+                    self._base.execute(
+                        "INSERT INTO passages (rowid, title, text, hints) VALUES (?, ?, ?, ?)",
+                        (row, document.title, passage.text, passage.hints),
+                    )
+                    row += 1
+                if row > start:
+                    self._base.execute(
+                        "INSERT INTO documents (first, last, path, title, source) VALUES (?, ?, ?, ?, ?)",
+                        (start, row - 1, file.path, document.title, document.source),
+                    )
+            self._base.execute(
+                "INSERT INTO files (path, size, modified, digest, passages) VALUES (?, ?, ?, ?, ?)",
+                (file.path, file.size, file.modified, file.digest, row - first),
+            )
+        return row - first
+
+    def touch(self, file: IndexedFile) -> None:
+        """Note a file's new size and date; what it holds is the same."""
+        with self._changing():
+            self._base.execute(
+                "UPDATE files SET size = ?, modified = ? WHERE path = ?",
+                (file.size, file.modified, file.path),
+            )
+
+    def forget(self, path: str) -> bool:
+        """Remove a file and all of its passages; whether it was there."""
+        with self._changing():
+            return self._forget(path)
+
+    # ---------------------------------------------------------------------------------- internals
+
+    def _forget(self, path: str) -> bool:
+        ranges = self._base.execute("SELECT first, last FROM documents WHERE path = ?", (path,)).fetchall()
+        self._base.executemany("DELETE FROM passages WHERE rowid BETWEEN ? AND ?", ranges)
+        self._base.execute("DELETE FROM documents WHERE path = ?", (path,))
+        return self._base.execute("DELETE FROM files WHERE path = ?", (path,)).rowcount > 0
+
+    def _prepare(self) -> None:
+        version = self._base.execute("PRAGMA user_version").fetchone()[0]
+        ours = self._base.execute("PRAGMA application_id").fetchone()[0]
+        empty = not self._base.execute("SELECT count(*) FROM sqlite_master").fetchone()[0]
+        if not empty and ours != APPLICATION:
+            raise PlatformError(f"genqa: {self.path} is an SQLite file, but no index of genqa: {_OTHER}")
+        if version > FORMAT:
+            raise PlatformError(
+                f"genqa: the index {self.path} was written by a newer Ravestate (format {version}, this one knows "
+                f"{FORMAT}): update Ravestate, or {_OTHER}"
+            )
+        self._base.execute("PRAGMA journal_mode = WAL")  # readers and a writer do not wait for each other
+        self._base.execute("PRAGMA synchronous = NORMAL")
+        if empty:
+            with self._changing():
+                if not self._base.execute("SELECT count(*) FROM sqlite_master").fetchone()[
+                    0
+                ]:  # nobody was faster
+                    for statement in _SCHEMA.split(";\n"):
+                        self._base.execute(statement)
+
+    @contextmanager
+    def _changing(self) -> Generator[None]:
+        """All or nothing."""
+        with self._lock, self._told():
+            self._base.execute("BEGIN IMMEDIATE")
+            try:
+                yield
+                self._base.execute("COMMIT")
+            except BaseException:
+                if self._base.in_transaction:  # SQLite may have rolled back by itself
+                    self._base.execute("ROLLBACK")
+                raise
+
+    @contextmanager
+    def _told(self) -> Generator[None]:
+        """Say what went wrong in words."""
+        try:
+            yield
+        except sqlite3.Error as error:
+            code = getattr(error, "sqlite_errorname", "") or ""
+            if code.startswith("SQLITE_FULL"):
+                why = "the disk is full: make room, then index again; what was complete is kept"
+            elif code.startswith(("SQLITE_BUSY", "SQLITE_LOCKED")):
+                why = "another process is writing to it: wait until `ravestate genqa index` has ended there"
+            elif code.startswith("SQLITE_READONLY"):
+                why = f"it may not be written: {_OTHER}"
+            elif code.startswith("SQLITE_CANTOPEN"):
+                why = f"it cannot be opened: {_OTHER}"
+            elif code.startswith(("SQLITE_NOTADB", "SQLITE_CORRUPT")):
+                why = f"it is no index, or damaged: remove it and index anew, or {_OTHER}"
+            else:
+                why = str(error)
+            raise PlatformError(f"genqa: the index {self.path}: {why}") from error
+        except OSError as error:
+            raise PlatformError(f"genqa: the index {self.path}: {error.strerror or error}") from error
+
+
+_OTHER = "name another file: --set genqa.index=/path/to/index.sqlite"

@@ -1,0 +1,70 @@
+"""Running text, cut into passages: sentences, and what cannot stand without the one before it."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+from ravestate.modules._text import printable
+
+from .document import Passage
+
+__all__ = ["LONGEST", "passages_of"]
+
+LONGEST = 400
+"""Characters of a passage: what is longer is cut, at the best place there is."""
+SHORTEST = 15
+"""What is shorter is no answer: page numbers, captions, crumbs."""
+
+_PARAGRAPH = re.compile(r"\n\s*\n")
+_END = re.compile(r"(?<=[.!?…])[\"”’)\]]*\s+(?=[\"“‘(\[]?[^\W_a-z])|(?<=[。！？])")
+_ABBREVIATION = re.compile(
+    r"(?:\b(?:Mr|Mrs|Ms|Dr|Prof|St|vs|No|Fig|Vol|pp?|ca|approx|e\.g|i\.e|cf|etc|al|Jan|Feb|Mar|Apr|Jun|Jul|Aug|Sep|"
+    r"Sept|Oct|Nov|Dec|Inc|Ltd|Co|U\.S|U\.K)|\b[A-Z]|\s\d{1,2})\.\s*\Z"
+)
+# A sentence that begins so is about what the sentence before it is about.
+_LEANS = re.compile(r"(?:It|Its|He|She|His|Her|They|Their|This|These|That|Those|There|Here|Such)\b")
+_HYPHEN = re.compile(r"(?<=[a-z])-\n(?=[a-z])")
+
+
+def passages_of(text: str) -> Iterator[Passage]:
+    """Yield the passages of `text`, in order.
+
+    Paragraphs are parted by empty lines; a single line break within one is a space. A sentence that begins with *it*,
+    *she*, *this*... stays with the one before, as long as both are short.
+
+    Example:
+        >>> [p.text for p in passages_of("Delft is a town in Holland. It has 100,000 inhabitants.\\n\\nVermeer lived there.")]
+        ['Delft is a town in Holland. It has 100,000 inhabitants.', 'Vermeer lived there.']
+    """
+    for paragraph in _PARAGRAPH.split(_HYPHEN.sub("", printable(text))):
+        held = ""
+        for sentence in _sentences(" ".join(paragraph.split())):
+            if held and _LEANS.match(sentence) and len(held) + len(sentence) < LONGEST:
+                held = f"{held} {sentence}"
+                continue
+            if held:
+                yield Passage(held)
+            held = sentence
+        if held:
+            yield Passage(held)
+
+
+def _sentences(paragraph: str) -> Iterator[str]:
+    start = 0
+    for end in _END.finditer(paragraph):
+        if not _ABBREVIATION.search(paragraph[start : end.start()]):
+            yield from _fitting(paragraph[start : end.end()].strip())
+            start = end.end()
+    yield from _fitting(paragraph[start:].strip())
+
+
+def _fitting(sentence: str) -> Iterator[str]:
+    """`sentence` in parts that are short enough; nothing if there is too little in it."""
+    while len(sentence) > LONGEST:
+        cut = max(sentence.rfind(mark, LONGEST // 3, LONGEST) for mark in ("; ", ": ", ", "))
+        cut = cut + 1 if cut > 0 else max(sentence.rfind(" ", LONGEST // 3, LONGEST), 0) or LONGEST
+        yield sentence[:cut].strip()
+        sentence = sentence[cut:].strip()
+    if len(sentence) >= SHORTEST and any(character.isalpha() for character in sentence):
+        yield sentence

@@ -1,0 +1,112 @@
+"""What is asked: the question within an utterance, whether documents can know the answer, and its words."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+from ravestate.modules._text import printable
+
+__all__ = ["Question", "as_question"]
+
+LONGEST = 2000
+"""Characters of an utterance: what is longer is no question to the world."""
+
+_FRONT = re.compile(
+    r"^(?:(?:so|and|but|well|ok|okay|oh|hey|hi|hello|hm+|um|uh|please|now|then|actually|by the way|tell me|excuse me|"
+    r"quick question|just curious|(?:i'?m|i am) curious|i was wondering|i wonder|i(?:'d| would) like to know|i want to know|"
+    r"(?:can|could|would|will) you (?:please )?(?:tell|explain to|remind) (?:me|us)|do you (?:happen to )?know|did you know|"
+    r"have you (?:any|got any|an) idea|any idea|let me know|what do you know about|what can you tell me about|"
+    r"tell me about|if|whether)\b[\s,:;!.-]*)+",
+    re.IGNORECASE,
+)
+_SENTENCE = re.compile(r"(?<=[.!?])\s+")
+_ASKS = re.compile(
+    r"(?:who|whom|whose|what|which|when|where|why|how|is|are|was|were|do|does|did|has|have|can|in which|in what|on which)"
+    r"(?:'s|'re|s)?\b",
+    re.IGNORECASE,
+)
+# Somebody's "you" that is everybody: "how do you make ice cream".
+_ANYBODY = re.compile(
+    r"\b(?:how|where|when|why|what) (?:do|can|could|would|should) you (?=make|cook|bake|build|say|find|get to\b|see|call)"
+)
+_PERSONAL = re.compile(r"\b(?:you|your|yours|yourself|u|ur|i|i'm|im|me|my|mine|myself|we both|between us)\b")
+_NOW = re.compile(
+    r"\b(?:today|tonight|tomorrow|yesterday|right now|at the moment|just now|this (?:morning|afternoon|evening|week|weekend|"
+    r"month)|(?:last|next) (?:night|week|weekend|month)|latest|news|breaking|happening|live score)\b|"
+    r"^(?:will|shall|is it going to|are we going to|is there going to)\b|"
+    r"^is it (?:still )?(?:\w+ing|cold|warm|hot|sunny|late|early|nice|dark|windy|cloudy|monday|friday|sunday|weekend)\b|"
+    r"^what(?:'s|s| is)? (?:the )?(?:time|date|day)(?: is it| it is)?\W*$|^(?:what|which) (?:time|day|date|month|year) is (?:it|this)|"
+    r"^(?:what|how)(?:'s|s| is) the weather(?: like)?(?: here| outside)?\W*$|\bwho (?:won|is winning|will win)\b"
+)
+_OPINION = re.compile(
+    r"\b(?:best|worst|nicest|better|worse|favou?rite|most beautiful|prettiest|coolest|ugliest|should)\b|"
+    r"\bmeaning of life\b"
+)
+# Words that are in questions and say nothing of what is asked for...
+_EMPTY_WORDS = """
+    you i a an the this that these those some any and or but if of in on at by to for from with as into about than then
+    is are was were be been being am do does did doing done has have had having can could will would shall should may might must
+    s re ve ll d t m it its he she they them his her their there here we us our
+    not no so too very really also just only ever exactly actually currently please again still yet now
+    say mean kind kinds type types sort thing things something anything someone somebody one ones give get got go goes going come comes
+    came make makes made like look looks use used
+"""
+# ... and those that say what kind of answer is wanted: they help to find it, but it need not have them.
+_KIND_WORDS = """
+    who whom whose what which when where why how many much old long far name names named call called tell know
+    before become became gain gained live lives believe there time year day place way happen happens cause causes average
+    total current national main major
+"""
+_EMPTY = frozenset(_EMPTY_WORDS.split())
+_KINDS = frozenset(_KIND_WORDS.split())
+
+
+@dataclass(frozen=True, slots=True)
+class Question:
+    """What somebody asks of the world."""
+
+    text: str
+    """The question alone."""
+    words: tuple[str, ...] = ()
+    """Those that say what it is about, in order, each once."""
+    kinds: tuple[str, ...] = ()
+    """Those that only say what kind of answer is wanted."""
+    declined: str = ""
+    """Why documents cannot know the answer; empty if they may."""
+
+
+def as_question(heard: str) -> Question:
+    """Find the question in an utterance.
+
+    Example:
+        >>> as_question("Hello! Can you tell me what the capital of Peru is?").words
+        ('capital', 'Peru')
+        >>> as_question("What is your name?").declined
+        'it is about the two who talk'
+    """
+    if len(heard) > LONGEST:
+        return Question(heard[:LONGEST], declined="it is too long for a question")
+    text = " ".join(printable(heard).replace("’", "'").split())
+    sentences = [_FRONT.sub("", sentence) or sentence for sentence in _SENTENCE.split(text)]
+    asking = (
+        [s for s in sentences if _ASKS.match(s)] or [s for s in sentences if s.endswith("?")] or sentences
+    )
+    asked = asking[0]
+    folded = asked.lower()
+    said = dict.fromkeys(
+        word for word in re.findall(r"[^\W_]+", asked) if word.lower() not in _EMPTY or word == "US"
+    )
+    words = tuple(word for word in said if word.lower() not in _KINDS)
+    kinds = tuple(word for word in said if word.lower() in _KINDS)
+    if not words:  # "Who are people?": then these are all there is
+        words, kinds = kinds, ()
+    if _PERSONAL.search(_ANYBODY.sub("how ", folded)):
+        return Question(asked, words, kinds, "it is about the two who talk")
+    if _NOW.search(folded):
+        return Question(asked, words, kinds, "it is about the moment, which documents do not know")
+    if _OPINION.search(folded):
+        return Question(asked, words, kinds, "it asks for an opinion")
+    if not words:
+        return Question(asked, words, kinds, "it has no word to look for")
+    return Question(asked, words, kinds)

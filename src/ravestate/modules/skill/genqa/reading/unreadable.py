@@ -1,0 +1,9 @@
+"""What is raised for a file that cannot be read."""
+
+from __future__ import annotations
+
+__all__ = ["Unreadable"]
+
+
+class Unreadable(Exception):
+    """A file cannot be read; the message says why. Others can."""

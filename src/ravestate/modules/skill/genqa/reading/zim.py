@@ -1,0 +1,43 @@
+"""ZIM, the files of Kiwix (Wikipedia, Wiktionary and others for reading offline)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+from ravestate.errors import PlatformError
+
+from ..document import Document
+from .html import documents_in
+from .unreadable import Unreadable
+
+__all__ = ["read"]
+
+
+def read(path: Path, source: str) -> Iterator[Document]:
+    """The documents of each article; redirections and pictures are passed over."""
+    try:
+        reader: Any = import_module("libzim.reader")
+    except ImportError as error:
+        raise PlatformError(
+            "genqa needs libzim to read ZIM: pip install libzim (it is under the GPL, so it comes by itself)"
+        ) from error
+    try:
+        archive = reader.Archive(path)
+        count: int = archive.all_entry_count
+    except RuntimeError as error:
+        raise Unreadable(f"it is no ZIM file, or damaged ({error})") from error
+    for number in range(count):
+        try:
+            entry = archive._get_entry_by_id(number)  # the only way that libzim has to go through all of them
+            if entry.is_redirect:
+                continue
+            item = entry.get_item()
+            if not item.mimetype.startswith("text/html"):
+                continue
+            title, content = entry.title, bytes(item.content)
+        except (RuntimeError, KeyError) as error:
+            raise Unreadable(f"its entry {number} is damaged ({error})") from error
+        yield from documents_in(content, title, f"{source}, {title}")

@@ -1,0 +1,60 @@
+"""The collection that comes with Ravestate, and how it gets into an index."""
+
+from __future__ import annotations
+
+import gzip
+import hashlib
+import json
+from collections.abc import Iterator
+from importlib.resources import files
+from typing import Any
+
+from .document import Document, Passage
+from .index import Index, IndexedFile
+
+__all__ = ["SHIPPED", "bring_up", "documents"]
+
+SHIPPED = "ravestate:collection"
+"""Under this name the collection stands among the files of an index."""
+
+_OWN = "Ravestate's own collection"
+_FACTBOOK = "world-factbook.jsonl.gz"
+_GENERAL = "general.yaml"
+
+
+def bring_up(index: Index, *, wanted: bool = True) -> bool:
+    """See that `index` holds the collection of this version, or that it does not if it is not `wanted`.
+
+    Takes about a second where there is something to do. Returns whether there was.
+
+    Raises:
+        PlatformError: See `Index.put`.
+    """
+    known = index.file(SHIPPED)
+    if not wanted:
+        return known is not None and index.forget(SHIPPED)
+    folder = files("ravestate.modules.skill.genqa") / "collection"
+    content = [(folder / name).read_bytes() for name in (_FACTBOOK, _GENERAL)]
+    digest = hashlib.blake2b(b"".join(content), digest_size=16).hexdigest()
+    if known is not None and known.digest == digest:
+        return False
+    size = sum(map(len, content))
+    index.put(IndexedFile(SHIPPED, size, 0, digest), documents(*content))
+    return True
+
+
+def documents(factbook: bytes, general: bytes) -> Iterator[Document]:
+    """The documents of the collection's two files."""
+    import yaml
+
+    for line in gzip.decompress(factbook).splitlines():
+        entry: dict[str, Any] = json.loads(line)
+        yield Document(
+            entry["title"],
+            entry["source"],
+            [Passage(text, f"{entry['also']} {asked}") for text, asked in entry["sentences"]],
+        )
+    loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+    said: dict[str, list[str]] = yaml.load(general, loader)  # a safe loader, and our own file
+    for title, sentences in said.items():
+        yield Document(title, _OWN, [Passage(sentence) for sentence in sentences])
