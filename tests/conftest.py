@@ -1,4 +1,4 @@
-"""What every test shares: the Hypothesis profiles.
+"""What every test shares: a data folder of its own run, never the user's; and the Hypothesis profiles.
 
 - `ci` (the default of `make test` and of continuous integration): the same examples each time, so that a
   failure is the change's own.
@@ -9,8 +9,12 @@ None has a deadline: how long something takes is a benchmark's question. Choose 
 """
 
 import os
+import tempfile
 
 from hypothesis import HealthCheck, settings
+
+_folder = tempfile.TemporaryDirectory(prefix="ravestate-tests-")
+os.environ["XDG_DATA_HOME"] = _folder.name  # for the commands that tests start as well
 
 _shared = {
     "deadline": None,

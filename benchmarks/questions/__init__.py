@@ -10,4 +10,5 @@ QUESTIONS = {
     "importing": "how long does the import take, and what comes with it?",
     "threads": "what does a plain function cost, which runs in a thread?",
     "compiling": "how long does it take to compile a policy?",
+    "text_agent": "how fast is the complete text agent, and how large?",
 }

@@ -110,8 +110,8 @@ def test_a_module_that_is_named_twice_is_taken_once(folder: Path, capsys: Captur
 @pytest.mark.parametrize(
     ("name", "text"),
     [
-        ("hibie", "there is no module 'hibie'; did you mean 'hibye'? (built in: conio, rawio,"),
-        ("zzz", "there is no module 'zzz' (built in: conio, rawio,"),
+        ("hibie", "there is no module 'hibie'; did you mean 'hibye'? (built in: conio, "),
+        ("zzz", "there is no module 'zzz' (built in: conio, "),
         ("no.such.path", "module 'no.such.path': No module named 'no'"),
         ("ravestate.modules:rawi", "ravestate.modules has no 'rawi'; did you mean 'rawio'?"),
         ("ravestate.errors", "ravestate.errors: Python module ravestate.errors holds no rs.Module"),

@@ -8,7 +8,19 @@ from ravestate.cli import agent
 
 __all__ = ["COMPLETE", "add_arguments", "run"]
 
-COMPLETE = ("conio", "idle", "verbaliser", "interloc", "hibye", "fillers", "wildtalk")
+COMPLETE = (
+    "conio",
+    "idle",
+    "verbaliser",
+    "interloc",
+    "nlp",
+    "ontology",
+    "emotion",
+    "hibye",
+    "fillers",
+    "agenda",
+    "wildtalk",
+)
 """The modules that take part in any chat."""
 
 

@@ -1,0 +1,121 @@
+"""How long does the complete text agent take to decide who answers, to show its prompt, and what does it hold?
+
+Decided: from the input to the moment when an answer is written, or when the language model is asked to word one; its
+own time is not ours. All modules of ``ravestate chat`` are loaded, and everything that they load on first use.
+Prompt: from the start of the process to the console's prompt on a terminal. Held: the resident memory of the same
+agent, without the language model, which runs in a process of its own.
+"""
+
+from __future__ import annotations
+
+import os
+import pty
+import resource
+import select
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Iterable
+from pathlib import Path
+
+from benchmarks.bench import Bench
+from benchmarks.figures import Figure, measured
+from benchmarks.peers.wire import serve
+
+DECIDE, PROMPT, HOLD = 0.015, 1.5, 500e6
+"""Seconds from input to decision, seconds to the first prompt, and bytes."""
+
+UTTERANCES = (
+    "hello", "how are you", "what is your name", "i live in a small house by the sea", "do you like games?",
+    "where do you live", "what is the capital of peru", "that is very nice of you", "will it rain today",
+    "tell me something", "my sister plays the piano", "how old are you?", "why is the sky blue", "no, not really",
+    "i work as a baker in bremen", "what can you do", "who wrote this?", "i am a bit tired", "yes, of course",
+    "what are you up to today", "how many people live in france?", "thank you!", "do you have any friends",
+    "i would like to go to the cinema tomorrow evening",
+)  # fmt: skip
+
+
+def decide(rounds: int) -> dict[str, list[float]]:
+    """Seconds from input to decision, of each utterance in each round; and the bytes held at the end."""
+    import asyncio
+
+    import ravestate as rs
+    from ravestate import modules
+    from ravestate.cli.chat import COMPLETE
+    from ravestate.engine.trace import Born, Record, Started
+    from ravestate.modules import rawio
+
+    async def measure() -> list[float]:
+        decided: asyncio.Future[float]
+
+        def watch(record: Record) -> None:
+            answered = isinstance(record, Born) and record.signal == "rawio:output:changed"
+            asked = isinstance(record, Started) and record.rule == "wildtalk:chat"
+            if (answered or asked) and not decided.done():
+                decided.set_result(time.perf_counter())
+
+        times: list[float] = []
+        parts = [getattr(modules, name) for name in COMPLETE if name != "conio"]
+        with tempfile.TemporaryDirectory() as folder:
+            os.environ["XDG_DATA_HOME"] = folder
+            settings = {"idle": {"bored_after": 3600.0}, "emotion": {"emoji": False}}
+            async with rs.Context(*parts, settings=settings, seed=1) as context:
+                context.observe(watch)
+                for number in range(rounds + 1):  # the first loads everything
+                    for text in UTTERANCES:
+                        decided = asyncio.get_running_loop().create_future()
+                        begin = time.perf_counter()
+                        context.put(rawio.input, text)
+                        took = await decided - begin
+                        if number:
+                            times.append(took)
+                        context.put(rawio.input, "")  # interrupts the model
+                        await context.quiet()
+        return times
+
+    times = asyncio.run(measure())
+    return {"decided": times, "held": [resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024.0]}
+
+
+def ask(bench: Bench) -> Iterable[Figure]:
+    """Decisions, the prompt, and memory, against what was promised."""
+    found = bench.ours(__name__).ask("decide", rounds=bench.several(8, 2))
+    decided = found["decided"]
+    yield measured(
+        "text_agent", "who answers is decided", decided, target="< 15 ms", reach=lambda s: s < DECIDE
+    )
+    slow = [statistics.quantiles(decided, n=20)[-1]]
+    yield measured("text_agent", "... in 19 of 20 cases", slow)
+    prompts = [_prompt() for _ in bench.rounds(9, 3)]
+    yield measured(
+        "text_agent", "from start to prompt", prompts, target="< 1.5 s", reach=lambda s: s < PROMPT
+    )
+    yield measured("text_agent", "held", found["held"], unit="B", target="< 500 MB", reach=lambda b: b < HOLD)
+
+
+def _prompt() -> float:
+    """Seconds until ``ravestate chat`` shows its prompt on a terminal."""
+    ours, theirs = pty.openpty()
+    with tempfile.TemporaryDirectory() as folder:
+        command = [str(Path(sys.executable).with_name("ravestate")), "chat"]
+        environment = {**os.environ, "XDG_DATA_HOME": folder, "TERM": "xterm", "COLUMNS": "80", "LINES": "24"}
+        begin = time.perf_counter()
+        child = subprocess.Popen(command, stdin=theirs, stdout=theirs, stderr=theirs, env=environment)
+        os.close(theirs)
+        seen = b""
+        try:
+            while b">" not in seen:
+                if not select.select([ours], [], [], 30)[0]:
+                    raise TimeoutError(f"no prompt within 30 s, but: {seen!r}")
+                seen += os.read(ours, 4096)
+            return time.perf_counter() - begin
+        finally:
+            child.terminate()
+            child.wait()
+            os.close(ours)
+
+
+if __name__ == "__main__":
+    serve(decide)
