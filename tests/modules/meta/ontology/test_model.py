@@ -158,5 +158,5 @@ class MemoryAgainstModel(RuleBasedStateMachine):
         self.folder.cleanup()
 
 
-MemoryAgainstModel.TestCase.settings = settings(max_examples=10, stateful_step_count=20, deadline=None)
+MemoryAgainstModel.TestCase.settings = settings(max_examples=8, stateful_step_count=15, deadline=None)
 test_memory_holds_what_its_model_holds = MemoryAgainstModel.TestCase

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import logging
 from collections.abc import Coroutine, Generator, Mapping, Sequence
 from contextlib import contextmanager
@@ -183,7 +184,8 @@ class BoltStore:
         """Hang up."""
         try:
             if self._driver is not None:
-                self._wait(self._driver.close())
+                with contextlib.suppress(PlatformError):  # whoever does not answer has hung up
+                    self._wait(self._driver.close())
         finally:
             self._loop.run_until_complete(self._loop.shutdown_asyncgens())
             self._loop.close()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Callable, Mapping
 from typing import Any, TypeVar
 
@@ -40,6 +41,7 @@ class Memory:
             read_types: Says what there may be in it; called in the thread.
         """
         self._keeper = keeper
+        self._lock = threading.Lock()  # nothing is asked of the keeper after it was released
         self._closed: Reply[None] | None = None
         self._types: Types | None = None
         self._failure: BaseException | None = None
@@ -180,9 +182,10 @@ class Memory:
 
     def close(self) -> Reply[None]:
         """Let go, after all operations before; called again it does nothing. Later operations are refused."""
-        if self._closed is None:
-            self._closed = Reply(self._keeper.release(), "Memory.close")
-        return self._closed
+        with self._lock:
+            if self._closed is None:
+                self._closed = Reply(self._keeper.release(), "Memory.close")
+            return self._closed
 
     def _open(self, store: Store, read_types: Callable[[], Types]) -> None:
         """In the thread: look what there may be, and make room for it."""
@@ -195,12 +198,12 @@ class Memory:
             raise
 
     def _do(self, name: str, operation: Callable[[Graph], T]) -> Reply[T]:
-        if self._closed is not None:
-            raise RuleError(f"memory ({self.place}) is closed: {name} comes too late")
-
         def job(store: Store) -> T:
             if self._failure is not None:
                 raise self._failure
             return operation(Graph(store, self.types))
 
-        return Reply(self._keeper.submit(job), f"Memory.{name}")
+        with self._lock:
+            if self._closed is not None:
+                raise RuleError(f"memory ({self.place}) is closed: {name} comes too late")
+            return Reply(self._keeper.submit(job), f"Memory.{name}")

@@ -81,6 +81,9 @@ class Node:
             raise KeyError(f"{self.id} has no {name}; it has {', '.join(self.properties) or 'nothing'}")
         return value
 
+    def __repr__(self) -> str:
+        return f"Node({self.type!r}, {dict(self.properties)!r}, {self.id!r})"
+
     def __hash__(self) -> int:
         return hash(self.id)
 

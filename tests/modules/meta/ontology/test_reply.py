@@ -1,0 +1,90 @@
+"""A reply is waited for on a loop or in a thread, and no error is lost."""
+
+from __future__ import annotations
+
+import asyncio
+from concurrent.futures import Future
+
+import pytest
+
+from ravestate.errors import PlatformError
+from ravestate.modules.meta.ontology.reply import Reply
+from ravestate.testing.virtual_loop import VirtualLoop
+
+
+def done(value: object) -> Future[object]:
+    future: Future[object] = Future()
+    if isinstance(value, Exception):
+        future.set_exception(value)
+    else:
+        future.set_result(value)
+    return future
+
+
+async def wait(reply: Reply[object]) -> object:
+    return await reply
+
+
+def test_it_gives_its_result_to_all_who_ask() -> None:
+    reply = Reply(done(3), "Memory.find")
+    assert reply.result() == reply.result(1) == asyncio.run(wait(reply)) == 3
+    assert repr(reply) == "<reply of Memory.find: there>"
+    assert repr(Reply(Future(), "Memory.find")) == "<reply of Memory.find: to come>"
+
+
+def test_it_raises_the_error() -> None:
+    reply = Reply(done(PlatformError("no")), "Memory.find")
+    with pytest.raises(PlatformError, match="no"):
+        reply.result()
+    with pytest.raises(PlatformError, match="no"):
+        asyncio.run(wait(reply))
+
+
+def test_waiting_may_end_before_the_operation() -> None:
+    future: Future[int] = Future()
+    reply = Reply(future, "Memory.save")
+    with pytest.raises(TimeoutError):
+        reply.result(0)
+
+    async def impatient() -> None:
+        with pytest.raises(TimeoutError):
+            await asyncio.wait_for(wait(reply), 0.001)  # type: ignore[arg-type]
+
+    asyncio.run(impatient())
+    assert not future.cancelled()
+    future.set_result(3)
+    assert reply.result() == 3
+
+
+def test_virtual_time_waits_for_it_and_says_for_what() -> None:
+    loop = VirtualLoop()
+    future: Future[int] = Future()
+    task = loop.create_task(wait(Reply(future, "Memory.find")))  # type: ignore[arg-type]
+
+    def finish() -> None:
+        assert loop.kept_by() == ["Memory.find"]
+        future.set_result(3)
+
+    loop.call_soon(lambda: loop.call_soon(finish))
+    loop.run_to(1.0)
+    assert task.result() == 3
+    loop.close()
+
+
+@pytest.mark.parametrize("late", [False, True])
+def test_an_error_that_nobody_asks_for_is_told(caplog: pytest.LogCaptureFixture, late: bool) -> None:
+    future: Future[object] = Future() if late else done(PlatformError("the disk is full"))
+    reply = Reply(future, "Memory.save")
+    del reply
+    if late:
+        future.set_exception(PlatformError("the disk is full"))
+    assert "Memory.save failed, and nobody has waited for it: the disk is full" in caplog.text
+
+
+def test_an_error_that_was_asked_for_is_not_told_again(caplog: pytest.LogCaptureFixture) -> None:
+    reply = Reply(done(PlatformError("no")), "Memory.save")
+    with pytest.raises(PlatformError):
+        reply.result()
+    del reply
+    Reply(done(3), "Memory.save")
+    assert caplog.text == ""
