@@ -42,6 +42,26 @@ CASES = {
         "When/SCONJ:WRB/advmod>4 did/AUX:VBD/aux>4 the/DET:DT/det>4 war/NOUN:NN/compound>4 end/NOUN:NN/ROOT>4",
         "When/advmod>4 did/aux>4 the/det>3 war/nsubj>4 end/ROOT>4",
     ),
+    "verb of adjective": (
+        "why/SCONJ:WRB/advmod>3 is/AUX:VBZ/aux>3 it/PRON:PRP/nsubj>3 blue/ADJ:JJ/ROOT>3",
+        "why/advmod>1 is/ROOT>1 it/nsubj>1 blue/acomp>1",
+    ),
+    "fronted": (
+        "in/ADP:IN/prep>5 which/DET:WDT/det>2 town/NOUN:NN/nsubjpass>5 are/AUX/auxpass>5 you/PRON/nsubj>5 born/VERB/ROOT>5",
+        "in/prep>5 which/det>2 town/pobj>0 are/auxpass>5 you/nsubj>5 born/ROOT>5",
+    ),
+    "name in one phrase": (
+        "is/AUX:VBZ/ROOT>0 your/PRON/poss>3 name/NOUN:NN/compound>3 tom/NOUN:NN/nsubj>0",
+        "is/ROOT>0 your/poss>2 name/nsubj>0 tom/attr>0",
+    ),
+    "name in apposition": (
+        "is/AUX:VBZ/ROOT>0 rome/PROPN/attr>0 the/DET/det>3 capital/NOUN/appos>1",
+        "is/ROOT>0 rome/nsubj>0 the/det>3 capital/attr>0",
+    ),
+    "place for infinitive": (
+        "been/AUX:VBN/ROOT>0 to/PART:TO/aux>2 rome/VERB:VB/xcomp>0",
+        "been/ROOT>0 to/prep>0 rome/pobj>1",
+    ),
     "verb of noun": (
         "what/PRON:WP/attr>1 is/AUX:VBZ/aux>2 love/NOUN:NN/ROOT>2",
         "what/attr>1 is/ROOT>1 love/nsubj>1",

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import re
 from enum import Enum
-from itertools import product
 
+from .pattern import phrases
 from .word_set import word_set
 
 __all__ = ["CUES", "FOLLOWERS", "STATERS", "STRICT", "UNKNOWNS", "Cue"]
@@ -153,23 +152,11 @@ _PHRASES: dict[Cue, str] = {
     """,
 }
 
-_ALTERNATIVES = re.compile(r"\(([^()]*)\)")
-
-
-def _spelt_out(pattern: str) -> list[tuple[str, ...]]:
-    """``(it|that) is (|very) good``, spelt out, as words."""
-    fixed = _ALTERNATIVES.split(pattern)  # what is in parentheses stands at odd places
-    choices = [part.split("|") if place % 2 else [part] for place, part in enumerate(fixed)]
-    return [tuple("".join(chosen).split()) for chosen in product(*choices)]
-
-
 CUES: dict[tuple[str, ...], Cue] = {}
 """What each phrase says."""
 for _cue, _patterns in _PHRASES.items():
-    for _pattern in _patterns.split(";"):
-        for _phrase in _spelt_out(_pattern):
-            if _phrase:
-                CUES.setdefault(_phrase, _cue)
+    for _phrase in phrases(_patterns):
+        CUES.setdefault(_phrase, _cue)
 
 _LIKE_STATEMENTS = word_set(
     "i we it they he she there you that do wrong false true always both neither none please mostly usually",

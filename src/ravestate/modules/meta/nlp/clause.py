@@ -64,18 +64,25 @@ class _Unknown:
 class Clause:
     """One clause of a tree. Made by `all_in`."""
 
-    def __init__(self, tree: Tree, verb: Word, others: dict[int, Clause]) -> None:
+    def __init__(self, tree: Tree, verb: Word, others: dict[int, Clause], owners: dict[int, Clause]) -> None:
         self.tree = tree
         self.verb = verb
         self._others = others
+        """All clauses of the tree, by their verbs."""
+        self._owners = owners
+        """The clause to which each verb belongs: its own, or the one whose chain it goes on."""
 
     @classmethod
     def all_in(cls, tree: Tree) -> list[Clause]:
         """Every clause that makes triples, in order of their verbs."""
         clauses: dict[int, Clause] = {}
+        owners: dict[int, Clause] = {}
         for word in tree.words:
             if _heads_clause(tree, word):
-                clauses[word.index] = cls(tree, word, clauses)
+                clauses[word.index] = cls(tree, word, clauses, owners)
+        for clause in clauses.values():
+            for verb in clause._verbs:
+                owners.setdefault(verb.index, clause)
         within = {verb.index for clause in clauses.values() for verb in clause.chain[1:]}
         return [
             clause
@@ -255,9 +262,9 @@ class Clause:
         if self.verb.dep == "ROOT":
             return None
         for word in (self._head, *self.tree.ancestors(self._head)):
-            for clause in self._others.values():
-                if word in clause._verbs and clause is not self:
-                    return clause
+            owner = self._owners.get(word.index)
+            if owner is not None and owner is not self:
+                return owner
         return None
 
     @cached_property
@@ -392,8 +399,6 @@ class Clause:
             )
             if lets:
                 return ["we"]
-            if name := self._named():  # which is the object then
-                return [str(part).removesuffix(f" {name[0][0]}") for part, _ in self._written(own)]
             return [part for part, _ in self._written(own)]
         if self.verb.dep == "ROOT" or (
             self.verb.dep in ("ccomp", "parataxis", "dep") and self._head_clause is None
@@ -459,13 +464,15 @@ class Clause:
         return self._at_places() or self._shared() or self._named()
 
     def _named(self) -> list[tuple[Part, bool]]:
-        """*Is your name Tom*: the parser may take both for one noun phrase."""
+        """*Is your father a doctor*: what it asks may hang elsewhere in the tree."""
         subjects = self._own_subjects
         if not (self._is_copula and len(subjects) == 1 and subjects[0].index > self.chain[-1].index):
             return []
-        names = self.tree.children(subjects[0], "appos") or [
+        names = [
             word for word in self.tree.children(self.chain[-1], "npadvmod") if self.tree.children(word, "det")
         ]
+        if not names:  # is your mother at home
+            return self._in_phrases(subjects[0], of=False)
         return self._written(names[:1])
 
     @cached_property

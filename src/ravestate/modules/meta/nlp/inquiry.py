@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from .asking import AUXILIARIES, QUESTION_WORDS, kind_at
+from .pattern import phrases
 from .question_word import QuestionWord
 from .tree import Tree, Word
 from .word_set import word_set
@@ -34,63 +35,24 @@ _KNOWING = word_set(
 )
 """Words after which a question word begins an indirect question."""
 
-_WANT_TO_KNOW = (
-    "i wonder",
-    "i was wondering",
-    "i am wondering",
-    "i 'm wondering",
-    "i m wondering",
-    "wondering",
-    "i want to know",
-    "i would like to know",
-    "i 'd like to know",
-    "i d like to know",
-    "i would love to know",
-    "i 'd love to know",
-    "i need to know",
-    "i like to know",
-    "i wanna know",
-    "may i ask",
-    "can i ask",
-    "could i ask",
-    "might i ask",
-    "let me ask",
-    "let me know",
-    "i am curious",
-    "i 'm curious",
-    "i would be interested to know",
-    "i am interested to know",
-    "tell me",
-    "tell us",
-    "please tell me",
-    "do tell me",
-    "can you tell me",
-    "could you tell me",
-    "would you tell me",
-    "will you tell me",
-    "can you please tell me",
-    "could you please tell me",
-    "can you say",
-    "can you explain",
-    "could you explain",
-    "explain",
-    "explain to me",
-    "say",
-    "any idea",
-    "do you know",
-    "do you happen to know",
-    "do you remember",
-    "do you have any idea",
-    "have you any idea",
-    "did you know",
-    "would you mind telling me",
-    "guess",
-    "remind me",
-    "show me",
-)
+_TELL = phrases("""
+    (|please|do) tell (me|us); (can|could|would|will) you (|please) tell (me|us); would you mind telling (me|us);
+    i (want|need|would like|'d like|d like|would love|'d love|d love|like) to know; i wanna know; (may|can|could|might) i know
+""")
+"""How one asks to be told something."""
+
+_OPENINGS = [
+    *_TELL,
+    *phrases("""
+        i wonder; i (was|am|'m|m) wondering; wondering; i (am|'m|m) curious; i (would be|am|'m|m) interested to know;
+        (may|can|could|might) i ask (|you); let me (ask|ask you|know); (can|could|would) you (say|explain|explain to me|show me);
+        explain (|to me); show me; remind me; say; guess; any idea; (do you have|have you) any idea;
+        (do|did) you know; do you happen to know; do you remember
+    """),
+]
 """How indirect questions begin."""
-_TELL = tuple(tuple(opening.split()) for opening in _WANT_TO_KNOW if "tell" in opening)
-_OPENINGS = tuple(sorted((tuple(opening.split()) for opening in _WANT_TO_KNOW), key=len, reverse=True))
+_OPENINGS.sort(key=len, reverse=True)
+
 _PERFORMED = word_set("joke story tale poem riddle secret lie fairytale anecdote goodnight")
 """What is told for its own sake: asking for it is no question."""
 
@@ -200,6 +162,8 @@ def _asks(words: Sequence[Word], asked: bool, *, alone: bool) -> bool:
             return True
         if rest[index].low in ("i", "you", "he", "she", "it", "we", "they"):  # what I like is football
             break
+    if word == "how" and rest[0].low in ("many", "much") and rest[1:] and rest[1].low not in _PRONOUNS:
+        return True
     if word in ("when", "where") and not (asked and alone):
         return verb is None and len(rest) < 3
     if word in ("who", "whom", "whose", "which"):
@@ -219,10 +183,12 @@ def _is_exclamation(word: str, rest: Sequence[Word]) -> bool:
     """*What a nice day*, *how nice*, *how nice of you*."""
     if word == "what":
         return rest[0].low in ("a", "an") and not any(_inverted_at(rest, i) for i in range(len(rest)))
+    if rest[1:] and rest[1].low == "of":
+        return True
     return (
         rest[0].pos in ("ADJ", "ADV")
         and rest[0].low not in ("many", "much", "long", "far", "often", "old", "come")
-        and not any(w.low in AUXILIARIES for w in rest)
+        and not any(word.low in AUXILIARIES for word in rest)
     )
 
 
@@ -315,6 +281,8 @@ def _indirect(part: Sequence[Word]) -> QuestionWord | None:
             if low[index] in ("if", "whether"):
                 return QuestionWord.YES_NO
             if (kind := kind_at(part, index)) is not None:
+                if low == ("guess", "what"):
+                    return None
                 if index == len(opening) or part[index - 1].pos in (
                     "ADP",
                     "ADV",

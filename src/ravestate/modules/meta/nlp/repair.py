@@ -37,6 +37,9 @@ def repaired(words: list[Word]) -> list[Word]:
             _adjective_for_noun,
             _noun_after_do,
             _verb_of_noun,
+            _fronted,
+            _name_question,
+            _place_for_infinitive,
         ):
             repair(tree, tree.words[word.index])
     return tree.words
@@ -199,10 +202,67 @@ def _noun_after_do(tree: _Draft, word: Word) -> None:
 
 
 def _verb_of_noun(tree: _Draft, word: Word) -> None:
-    """*What is love*, with *is* for an auxiliary of *love*."""
-    noun = tree.words[word.head]
-    if word.dep == "aux" and word.low in _BE and noun.pos in ("NOUN", "PROPN") and noun.index > word.index:
-        own = [child for child in tree.children(noun) if child.index > word.index and child.pos != "PUNCT"]
-        tree.promote(word, noun, "nsubj")
+    """*What is love*, *why is the sky blue*, with *is* for an auxiliary of the last word."""
+    last = tree.words[word.head]
+    if (
+        word.dep == "aux"
+        and word.low in _BE
+        and last.pos in ("NOUN", "PROPN", "ADJ")
+        and last.index > word.index
+    ):
+        own = [
+            child
+            for child in tree.children(last)
+            if child.index > word.index and child.pos != "PUNCT" and child.dep != "nsubj"
+        ]
+        tree.promote(word, last, "acomp" if last.pos == "ADJ" else "nsubj")
         for child in own:
-            tree.change(child, head=noun.index)
+            tree.change(child, head=last.index)
+
+
+def _fronted(tree: _Draft, word: Word) -> None:
+    """*In which country were you born*, with *which country* for a second subject."""
+    if word.dep != "prep" or any(tree.children(word)):
+        return
+    for noun in tree.children(tree.words[word.head], "nsubj", "nsubjpass", "dobj"):
+        asked = (
+            noun
+            if noun.tag in ("WP", "WDT")
+            else next((w for w in tree.children(noun) if w.tag in ("WP", "WDT")), None)
+        )
+        if asked is not None and asked.index == word.index + 1:
+            tree.change(noun, dep="pobj", head=word.index)
+
+
+def _name_question(tree: _Draft, word: Word) -> None:
+    """*Is your name tom*, *is berlin the capital*, with one noun phrase for two."""
+    be = tree.words[word.head]
+    if word.dep not in ("nsubj", "attr") or be.low not in _BE or be.index > word.index:
+        return
+    if any(w.dep in ("nsubj", "attr", "acomp") and w.index != word.index for w in tree.children(be)):
+        return
+    for name in tree.children(word, "compound"):
+        if name.low == "name" and name.index == word.index - 1:
+            for child in list(tree.children(word, "poss")):
+                tree.change(child, head=name.index)
+            tree.change(name, dep="nsubj", head=be.index)
+            tree.change(word, dep="attr")
+            return
+    for other in tree.children(word, "appos"):
+        tree.change(other, dep="attr", head=be.index)
+        tree.change(word, dep="nsubj")
+        return
+
+
+def _place_for_infinitive(tree: _Draft, word: Word) -> None:
+    """*Have you ever been to rome*, with *to rome* for what one does."""
+    if (
+        word.dep == "xcomp"
+        and tree.words[word.head].low == "been"
+        and not any(tree.children(word, "dobj", "prep", "advmod"))
+    ):
+        for to in tree.children(word, "aux"):
+            if to.low == "to" and to.index == word.index - 1:
+                tree.change(to, dep="prep", head=word.head, pos="ADP")
+                tree.change(word, dep="pobj", head=to.index, pos="PROPN")
+                return
