@@ -73,6 +73,26 @@ def test_what_was_acknowledged_survives_being_killed(
     assert memory.create("Person", name="after").result()["name"] == "after"
 
 
+@pytest.mark.parametrize("times", [1, 4, 9])
+def test_being_killed_while_forgetting_brings_nobody_back_and_takes_nobody_else(
+    tmp_path: Path, open_here: Open, times: int
+) -> None:
+    path = tmp_path / "memory.lbug"
+    with subprocess.Popen(
+        [sys.executable, HERE / "writer.py", path, "forget"], stdout=subprocess.PIPE, text=True
+    ) as process:
+        assert process.stdout is not None
+        for _ in range(times):
+            process.stdout.readline()
+        process.kill()
+        last = times - 1 + len(process.stdout.readlines())
+    memory = open_here(path=path)
+    [here] = memory.find("City").result()
+    names = [node["name"] for node in memory.related(here, "lives_in", back=True).result()]
+    assert f"person {last}" in names or f"person {last + 1}" in names
+    assert set(names) <= {f"person {last}", f"person {last + 1}"}
+
+
 def test_a_second_process_is_told_who_has_the_file(writer: tuple[Path, subprocess.Popen[str]]) -> None:
     path, process = writer
     assert process.stdout is not None and process.stdout.readline() == "0\n"

@@ -1,4 +1,7 @@
-"""Writes people to memory for ever, and says of each when it is acknowledged: ``python writer.py FILE [BATCH]``."""
+"""Writes people to memory for ever, and says of each when it is acknowledged: ``python writer.py FILE [forget]``.
+
+With ``forget`` the one before is forgotten each time, before that is said.
+"""
 
 import sys
 from pathlib import Path
@@ -7,16 +10,19 @@ from ravestate.modules import ontology
 from ravestate.modules.meta.ontology.places import open_memory
 
 
-def main(path: Path) -> None:
+def main(path: Path, *, forget: bool) -> None:
     memory = open_memory(ontology.Settings(path=path))
     place = memory.ensure("City", name="here").result()
-    number = 0
+    number, before = 0, None
     while True:
         person = memory.create("Person", name=f"person {number}", nickname="x" * 2000).result()
         memory.relate(person, "lives_in", place).result()
+        if forget and before is not None:
+            memory.forget(before).result()
+        before = person
         print(number, flush=True)
         number += 1
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]))
+    main(Path(sys.argv[1]), forget="forget" in sys.argv[2:])

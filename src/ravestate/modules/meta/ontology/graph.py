@@ -39,9 +39,8 @@ class Graph:
 
     def ensure(self, type: str, properties: Mapping[str, Value]) -> Node:
         """The oldest node that matches, or a new one."""
-        with self._store.transaction():
-            found = self.find(type, properties)
-            return found[0] if found else self.save(Node(type, properties))
+        found = self.find(type, properties)
+        return found[0] if found else self.save(Node(type, properties))
 
     def find(self, type: str, properties: Mapping[str, Value]) -> list[Node]:
         """All nodes of a type and its subtypes that match, oldest first."""
