@@ -62,6 +62,10 @@ CASES = {
         "been/AUX:VBN/ROOT>0 to/PART:TO/aux>2 rome/VERB:VB/xcomp>0",
         "been/ROOT>0 to/prep>0 rome/pobj>1",
     ),
+    "noun after relative": (
+        "woman/NOUN:NN/ROOT>0 I/PRON:PRP/nsubj>2 love/VERB:VBP/relcl>0 lives/NOUN:NNS/dobj>2 here/ADV/advmod>3",
+        "woman/nsubj>3 I/nsubj>2 love/relcl>0 lives/ROOT>3 here/advmod>3",
+    ),
     "verb of noun": (
         "what/PRON:WP/attr>1 is/AUX:VBZ/aux>2 love/NOUN:NN/ROOT>2",
         "what/attr>1 is/ROOT>1 love/nsubj>1",

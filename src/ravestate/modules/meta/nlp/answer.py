@@ -45,9 +45,11 @@ _STRETCHED = re.compile(r"(.)\1{2,}")
 _PUNCTUATION = frozenset(".,;:!?…\n")
 _TURNS = frozenset(["but", "although", "though", "however"])
 _IDLE = word_set(
-    "really honestly just actually simply truly quite personally still totally absolutely definitely"
+    "really honestly just actually simply truly quite personally still totally absolutely definitely certainly sure surely"
 )
 """Adverbs that change nothing between *I* and its verb: *I really don't know*."""
+_PLAIN = word_set("yes yeah yep no nope probably maybe perhaps i")
+"""Words that begin another answer beyond doubt."""
 _LONGEST_CUE = max(len(cue) for cue in CUES)
 _CONTRACTIONS = {
     "can't": "can not",
@@ -89,7 +91,8 @@ def yesno_of(text: str) -> YesNo:
     for turn in range(end, len(words)):
         if words[turn] in _TURNS:
             other, _ = _answer(words[turn + 1 :])
-            return _turned(answer, other)
+            thanked = not answer and turn == end  # thanks, but no
+            return other if thanked else _turned(answer, other)
     return answer
 
 
@@ -185,7 +188,12 @@ class _Reader:
             return True
         if cue is Cue.UNSURE and words[index] in UNKNOWNS:
             return True
-        if cue in (Cue.HEDGE, Cue.MAYBE) and words[index] in STATERS:
+        if (
+            cue in (Cue.HEDGE, Cue.MAYBE) and words[index] in STATERS
+        ):  # I guess I do, but not: I guess he is at home
+            following, _ = self.cue_at(index)
+            return following is not None and following.takes_side
+        if cue is Cue.SURE and words[index] in ("the", "a", "an"):
             return False
         if phrase not in STRICT:
             if cue in (Cue.FILLER, Cue.NOT) or words[index] in FOLLOWERS:
@@ -195,7 +203,9 @@ class _Reader:
             following, length = self.cue_at(index)
             if following is None:
                 return words[index][0] in _PUNCTUATION
-            if following.takes_side or following in (Cue.HEDGE, Cue.MAYBE):
+            if cue in (Cue.HEDGE, Cue.MAYBE) and following.takes_side:
+                return True
+            if words[index] in _PLAIN:  # I do yes, but not: I am fine
                 return True
             if following is not Cue.FILLER:
                 return False
@@ -223,7 +233,10 @@ def _weigh(cues: list[Cue]) -> YesNo:
     if not sides:
         return _of_adverbs(cues)
     said = sides[0][0]
-    if said == "unsure" or (hedged and len({side for side, _ in sides}) > 1):  # maybe yes, maybe no
+    torn = len({side for side, _ in sides}) > 1
+    if said == "unsure" or (
+        torn and (hedged or sides[0][1] == 1)
+    ):  # maybe yes, maybe no; sometimes yes, sometimes no
         return UNSURE
     strength = max(strong for side, strong in sides if side == said)
     if hedged or any(side == "unsure" for side, _ in sides):

@@ -36,6 +36,7 @@ _PHRASES: dict[Cue, str] = {
         (good|great|nice|fine|lovely|wonderful|awesome|cool|fantastic|perfect|excellent|brilliant|fun|amazing|ok|okay);
         (that|this|it|what|) (is|sounds like|would be|) (|a|such a) (|very|really) (good|great|nice|wonderful|lovely) (idea|plan);
         great; perfect; awesome; wonderful; excellent; cool; super; fantastic; let us do (it|that|this); let us go; okay then; ok then; that is a yes; quite so; y;
+        i would like that (very much|a lot); you can say that again;
         yes; yeah; yep; yup; yea; yah; ya; yay; aye; uh huh; uh-huh; mhm; mm-hmm; mmhmm; affirmative;
         👍; ok; okay; okey; okey-dokey; okey dokey; k; alright; all right; fine; fine by me; fine with me;
         right; correct; exactly; true; agreed; deal; indeed; great idea; good idea; go ahead; go for it;
@@ -58,13 +59,14 @@ _PHRASES: dict[Cue, str] = {
         i think so; i believe so; i hope so; i guess so; i suppose so; i would think so; i would say so; i
         assume so; i expect so; i imagine so; i reckon so; i should think so; it seems so; seems so; so it
         seems; looks like it; it looks like it; kind of; sort of; a little; a little bit; a bit; somewhat;
-        more or less; mostly; sometimes; from time to time; now and then; occasionally; usually; partly; in
+        more or less; mostly; sometimes; most of the time; from time to time; now and then; occasionally; usually; partly; in
         a way; to some extent; to a degree; rather yes; more yes than no; if you like; if you want; if you
         want to; if you insist; if you say so; if i must; if you must; if necessary; if possible; why not;
         as far as i know; fair enough; good enough; might as well; i might as well; i could do that; could
         do; i would not say no
     """,
     Cue.NO: """
+        (|i am) not (|really|so|very|at all) interested (|in that|at all); (|i am) not in the mood (|for that);
         that is a no; n;
         (i do not want to|i will not) (say|tell|tell you|answer) (|that|this); i do not want to (talk
         about|discuss) (it|that|this); no; nope; nah; nay; naw; nooo; never; never ever; no way; no
@@ -102,6 +104,7 @@ _PHRASES: dict[Cue, str] = {
         it does not look like it; not my thing; not my cup of tea; not that often; not really
     """,
     Cue.UNSURE: """
+        can not decide; how should i know; how would i know; i am still thinking (|about it);
         (i am not|i am still not|not)
         (really|so|too|very|quite|entirely|completely|absolutely|totally|exactly|that) (sure|certain); i do
         not know; do not know; no idea; i have no idea; i do not have any idea; i have no clue; no clue; i
@@ -141,6 +144,7 @@ _PHRASES: dict[Cue, str] = {
     """,
     Cue.NOT: """not""",
     Cue.FILLER: """
+        then;
         well; oh; ooh; ah; aah; hm; hmm; hmmm; mm; mmm; um; umm; uhm; uh; er; erm; eh; so; honestly;
         actually; frankly; to be honest; to be frank; to tell you the truth; to tell the truth; if i am
         honest; look; listen; hey; hi; hello; dude; bro; my friend; my dear; sir; god; my god; oh my god;
@@ -161,7 +165,7 @@ for _cue, _patterns in _PHRASES.items():
 _LIKE_STATEMENTS = word_set(
     "i we it they he she there you that do wrong false true always both neither none please mostly usually",
     "sometimes negative very too also who next pass rarely hardly barely right fine depends look kind sort",
-    "somewhat never clearly obviously seriously apparently occasionally k could might may quite at",
+    "somewhat never clearly obviously surely exactly seriously apparently occasionally k could might may quite at",
 )
 
 STRICT = frozenset(phrase for phrase in CUES if phrase[0] in _LIKE_STATEMENTS)

@@ -220,7 +220,7 @@ class Clause:
     @cached_property
     def _agents(self) -> list[Word]:
         """Who does it, in a passive with *by*."""
-        if self._passive is None:
+        if self._passive is None or self._feels:
             return []
         for by in self.tree.children(self.chain[0], "agent"):
             if pobj := self.tree.children(by, "pobj"):
@@ -573,8 +573,15 @@ class Clause:
                     words = gerund_phrase(self.tree, word)
                 else:
                     words = noun_phrase(self.tree, word)
-                found.append((self.tree.phrase(words), self._contrasted(word)))
+                found.append((self._whose(self.tree.phrase(words)), self._contrasted(word)))
         return found
+
+    def _whose(self, phrase: str) -> str:
+        """In a relative clause *whose father* is *the boy's*."""
+        first, _, rest = phrase.partition(" ")
+        if self.verb.dep == "relcl" and first.lower() == "whose":
+            return f"{self._antecedents[0]}'s {rest}"
+        return phrase
 
     def _is_predicative(self, word: Word, verb: Word) -> bool:
         """Whether an adjective stands for itself, and not for a noun: *she is nice*, but *I speak a little German*."""

@@ -31,7 +31,7 @@ def noun_phrase(tree: Tree, head: Word) -> list[Word]:
         elif child.dep == "prep" and child.low == "of" and child.index > head.index:
             for object in tree.children(child, "pobj", "pcomp"):
                 kept += [child, *_with_conjuncts(tree, object)]
-        elif child.dep == "appos" and child.pos == "PROPN" and not _comma_between(tree, head, child):
+        elif child.dep == "appos" and _is_name(child, head) and not _comma_between(tree, head, child):
             kept += noun_phrase(tree, child)
     return _with_hyphens(tree, kept)
 
@@ -44,7 +44,7 @@ def adjective_phrase(tree: Tree, head: Word, verb: Word) -> list[Word]:
         if child.index < head.index:
             kept += noun_phrase(tree, child)
     after = tree.after(head)
-    if after is not None and after.dep == "prep" and after.head in (head.index, verb.index):
+    if after is not None and after.dep in ("prep", "agent") and after.head in (head.index, verb.index):
         for object in tree.children(after, "pobj", "pcomp"):
             kept += [after, *_with_conjuncts(tree, object)]
     return _with_hyphens(tree, kept)
@@ -83,6 +83,11 @@ def _with_conjuncts(tree: Tree, head: Word) -> list[Word]:
         elif child.dep == "conj":
             kept += _with_conjuncts(tree, child)
     return kept
+
+
+def _is_name(word: Word, head: Word) -> bool:
+    """Whether an apposition is a name, perhaps in lower case: *my friend tom*."""
+    return word.pos == "PROPN" or (word.pos == "NOUN" and word.tag == "NN" and word.index == head.index + 1)
 
 
 def _comma_between(tree: Tree, first: Word, second: Word) -> bool:

@@ -40,6 +40,7 @@ def repaired(words: list[Word]) -> list[Word]:
             _fronted,
             _name_question,
             _place_for_infinitive,
+            _noun_after_relative,
         ):
             repair(tree, tree.words[word.index])
     return tree.words
@@ -266,3 +267,16 @@ def _place_for_infinitive(tree: _Draft, word: Word) -> None:
                 tree.change(to, dep="prep", head=word.head, pos="ADP")
                 tree.change(word, dep="pobj", head=to.index, pos="PROPN")
                 return
+
+
+def _noun_after_relative(tree: _Draft, word: Word) -> None:
+    """*The woman that I love lives in Rome*, with *lives* for what I love."""
+    relative = tree.words[word.head]
+    noun = tree.words[relative.head]
+    if word.tag != "NNS" or word.dep != "dobj" or relative.dep != "relcl" or noun.dep != "ROOT":
+        return
+    if word.index == relative.index + 1 and not any(tree.children(word, "det", "amod", "poss", "nummod")):
+        tree.change(
+            word, dep="ROOT", head=word.index, pos="VERB", tag="VBZ", lemma=word.low.removesuffix("s")
+        )
+        tree.change(noun, dep="nsubj", head=word.index)
