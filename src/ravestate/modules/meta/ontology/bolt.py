@@ -210,4 +210,4 @@ def _decoded(value: Any) -> Any:
 
 
 def _first_line(error: BaseException) -> str:
-    return next(iter(str(error).splitlines()), "") or type(error).__name__
+    return next(iter(str(error).splitlines()), "").rstrip(": ") or type(error).__name__
