@@ -7,15 +7,28 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from .asking import AUXILIARIES, QUESTION_WORDS, kind_at
+from .conjuncts import conjuncts, denies_conjunct, is_contrasted
 from .noun_phrase import adjective_phrase, gerund_phrase, noun_phrase
 from .question_word import QuestionWord
 from .tree import Tree, Word
 from .triple import Triple
+from .verbs import (
+    NEGATIONS,
+    PLACES,
+    SUBJECTS,
+    VERBAL,
+    following_verb,
+    heads_clause,
+    is_denied,
+    is_infinitive,
+    lemma_of,
+    makes_future,
+    particles,
+)
 from .word_set import word_set
 
 __all__ = ["Clause"]
 
-_SUBJECTS = ("nsubj", "nsubjpass", "csubj", "csubjpass")
 _DIRECT = (
     "dobj",
     "attr",
@@ -23,31 +36,15 @@ _DIRECT = (
     "oprd",
     "pobj",
 )  # a pobj of a verb is what the tagger took for a preposition's
-_HEADS = ("ROOT", "conj", "ccomp", "xcomp", "advcl", "relcl", "parataxis", "pcomp", "csubj", "dep", "acl")
-_VERBAL = ("VERB", "AUX")
-
-_PLACES = word_set(
-    "here there home abroad outside inside upstairs downstairs away everywhere nowhere somewhere"
-)
 _FEELINGS = word_set(
     "interested tired bored married divorced scared excited worried surprised pleased disappointed confused retired ",
     "annoyed satisfied",
 )
 _PURSUITS = word_set("hobby job passion dream goal plan interest pastime task habit")
 """*My hobby is reading* says what the hobby is, not what it does."""
-_MOTION = word_set("come go travel fly drive run move stay")
-"""Verbs after which an infinitive tells the purpose, so that it is an action of its own."""
-_GERUND_TAKERS = word_set(
-    "like love hate enjoy prefer dislike start stop begin continue keep practise practice try"
-)
-_NEGATIONS = frozenset(["not", "n't", "nt", "never"])
-_BE = frozenset(["be", "am", "is", "are", "was", "were", "m", "s", "re", "'s", "'m", "'re"])
 _SENSES = word_set("be feel look seem sound taste smell")
 _STATES = word_set("better worse well fine good bad great ok okay awful hard")
 """Words that the tagger takes for adverbs, but that tell how somebody is."""
-_MISTAKEN = word_set("like love play work live study dance swim paint cook")
-"""Verbs that the tagger often takes for something else."""
-_SHORT = {"wan": "want", "gon": "go", "got": "get", "ca": "can", "wo": "will"}
 
 Part = str | QuestionWord
 
@@ -78,7 +75,7 @@ class Clause:
         clauses: dict[int, Clause] = {}
         owners: dict[int, Clause] = {}
         for word in tree.words:
-            if _heads_clause(tree, word):
+            if heads_clause(tree, word):
                 clauses[word.index] = cls(tree, word, clauses, owners)
         for clause in clauses.values():
             for verb in clause._verbs:
@@ -104,9 +101,9 @@ class Clause:
     def chain(self) -> list[Word]:
         """The verb, and the verbs that go on from it: *want to become*."""
         chain = [self.verb]
-        while (following := self._following(chain[-1])) is not None:
+        while (following := following_verb(self.tree, chain[-1])) is not None:
             chain.append(following)
-        if len(chain) > 1 and self._is_future(chain[0]):
+        if len(chain) > 1 and makes_future(self.tree, chain[0]):
             del chain[0]
         return chain
 
@@ -117,16 +114,18 @@ class Clause:
         if self._names_pursuit:
             return "be"
         if self._passive is not None and self._feels:
-            return _lemma(self._passive)
+            return lemma_of(self._passive)
         if self._passive is not None and not self._agents:
-            lemma = f"{_lemma(self._passive)} {first.low}" if first == self.verb else _lemma(first)
+            lemma = f"{lemma_of(self._passive)} {first.low}" if first == self.verb else lemma_of(first)
         else:
-            lemma = _lemma(first)
-        words = [lemma, *self._particles(first)]
+            lemma = lemma_of(first)
+        words = [lemma, *particles(self.tree, first)]
         for verb in others:
-            if self._infinitive(verb) or (verb == self.verb and self._infinitive(self._head)):
-                words += ["not", "to"] if verb != first and self._denied(verb) else ["to"]
-            words += [verb.low, *self._particles(verb)]
+            if verb in self.chain[1:] and is_denied(self.tree, verb):
+                words.append("not")
+            if is_infinitive(self.tree, verb) or (verb == self.verb and is_infinitive(self.tree, self._head)):
+                words.append("to")
+            words += [verb.low, *particles(self.tree, verb)]
         return " ".join(words)
 
     @cached_property
@@ -134,7 +133,7 @@ class Clause:
         """Whether it is denied."""
         later = self.chain[1:]  # "decide not to go" denies the going alone
         own = [word for word in self._own if word.dep != "ROOT" and self.tree.head(word) not in later]
-        if any(word.low in _NEGATIONS and not self._contrasts(word) for word in own):
+        if any(word.low in NEGATIONS and not denies_conjunct(self.tree, word, self._others) for word in own):
             return True
         if any(
             word.low == "longer" and (before := self.tree.before(word)) and before.low == "no" for word in own
@@ -162,52 +161,6 @@ class Clause:
             return head._prefix + head.chain[: head.chain.index(self._head)]
         return []
 
-    def _following(self, verb: Word) -> Word | None:
-        tree = self.tree
-        if _lemma(verb) == "be":
-            return None
-        for child in tree.children(verb, "xcomp"):
-            if child.pos not in _VERBAL or child.index < verb.index or tree.children(child, *_SUBJECTS):
-                continue
-            infinitive = self._infinitive(child)
-            if infinitive and _lemma(verb) in _MOTION and not self._is_future(verb):
-                continue
-            if child.tag not in ("VBG", "VB") and not infinitive:
-                continue
-            if any(
-                w.low in QUESTION_WORDS and w.index > verb.index for w in tree.children(child)
-            ):  # learn how to cook
-                continue
-            between = [
-                w for w in tree.words[verb.index + 1 : child.index] if w.head in (verb.index, child.index)
-            ]
-            if not any(w.dep in ("dobj", "dative", "prep") or w.low in _PLACES for w in between):
-                return child
-        if _lemma(verb) in _GERUND_TAKERS:
-            for child in tree.children(verb, "dobj", "pobj"):
-                if child.low.endswith("ing") and child.index == verb.index + 1 and child.tag in ("NN", "VBG"):
-                    return child
-        return None
-
-    def _is_future(self, verb: Word) -> bool:
-        """*am going to*, which is dropped like any auxiliary."""
-        return verb.low in ("going", "gon") and any(
-            _lemma(aux) == "be" or verb.low == "gon" for aux in self.tree.children(verb, "aux") or [verb]
-        )
-
-    def _denied(self, verb: Word) -> bool:
-        return any(child.low in _NEGATIONS for child in self.tree.children(verb, "neg"))
-
-    def _infinitive(self, verb: Word) -> bool:
-        return any(child.low in ("to", "na") for child in self.tree.children(verb, "aux"))
-
-    def _particles(self, verb: Word) -> list[str]:
-        return [
-            child.low
-            for child in self.tree.children(verb, "prt", "advmod")
-            if child.dep == "prt" or (child.low == "back" and child.index == verb.index + 1)
-        ]
-
     @cached_property
     def _passive(self) -> Word | None:
         for child in self.tree.children(self.chain[0], "auxpass"):
@@ -233,7 +186,7 @@ class Clause:
         subjects = self._own_subjects
         return (
             self.verb.tag == "VBG"
-            and any(_lemma(aux) == "be" for aux in self.tree.children(self.verb, "aux"))
+            and any(lemma_of(aux) == "be" for aux in self.tree.children(self.verb, "aux"))
             and bool(subjects)
             and subjects[0].lemma.lower() in _PURSUITS
         )
@@ -283,7 +236,7 @@ class Clause:
         tree, verb = self.tree, self.verb
         if verb.low not in AUXILIARIES or verb.dep == "relcl" or verb.index == 0:
             return False
-        rest = [word for word in tree.words[verb.index + 1 :] if word.low not in _NEGATIONS]
+        rest = [word for word in tree.words[verb.index + 1 :] if word.low not in NEGATIONS]
         if not rest or rest[0].pos != "PRON" or (len(rest) > 1 and rest[1].pos != "PUNCT"):
             return False
         if any(child.low in QUESTION_WORDS for child in tree.children(verb)):
@@ -320,7 +273,7 @@ class Clause:
             subjects = [part for part, _ in self._written(self._agents)]
         if unknown is None:
             return subjects, objects or [("", False)]
-        asked = unknown.top.dep in _SUBJECTS and not any(
+        asked = unknown.top.dep in SUBJECTS and not any(
             word for word in self._own_subjects if word != unknown.top
         )
         if self._agents and unknown.top.dep == "agent":  # who was it written by
@@ -360,7 +313,7 @@ class Clause:
         verb = self.chain[-1]
         others = [
             word
-            for word in self.tree.children(verb, *_SUBJECTS, "attr", "dobj")
+            for word in self.tree.children(verb, *SUBJECTS, "attr", "dobj")
             if word != unknown.top and word.pos not in ("ADJ", "ADV")
         ]
         rest = self._adjectives(verb, unknown) or self._in_phrases(verb) or self._at_places()
@@ -378,13 +331,13 @@ class Clause:
     @cached_property
     def _own_subjects(self) -> list[Word]:
         tree = self.tree
-        found = [word for verb in self._verbs for word in tree.children(verb, *_SUBJECTS)]
+        found = [word for verb in self._verbs for word in tree.children(verb, *SUBJECTS)]
         if not found:  # now and then the parser gives the subject to an auxiliary
             for aux in tree.children(self.verb, "aux", "auxpass"):
-                found += tree.children(aux, *_SUBJECTS)
-        if not found and _lemma(self.chain[-1]) == "be":  # or to the adjective: why is the sky blue
+                found += tree.children(aux, *SUBJECTS)
+        if not found and lemma_of(self.chain[-1]) == "be":  # or to the adjective: why is the sky blue
             for word in tree.children(self.chain[-1], "acomp", "attr"):
-                found += tree.children(word, *_SUBJECTS)
+                found += tree.children(word, *SUBJECTS)
         return found
 
     @cached_property
@@ -415,7 +368,7 @@ class Clause:
                 return [part for part, _ in self._written(him)]
         if head._agents:
             return [part for part, _ in self._written(head._agents)]
-        if head._unknown is not None and head._unknown.top.dep in _SUBJECTS:
+        if head._unknown is not None and head._unknown.top.dep in SUBJECTS:
             return head._parts()[0]
         return head.subjects
 
@@ -443,7 +396,7 @@ class Clause:
             direct = [word for word in direct if unknown is None or word != unknown.top]
             if not direct:  # it makes me happy
                 small = [word for word in tree.children(verb, "ccomp") if word.index not in self._others]
-                direct = [subject for word in small for subject in tree.children(word, *_SUBJECTS)]
+                direct = [subject for word in small for subject in tree.children(word, *SUBJECTS)]
             if direct and relative and direct[0].low in ("that", "which", "who", "whom"):
                 return [(part, False) for part in self._antecedents]
             if direct:
@@ -452,7 +405,7 @@ class Clause:
             return [(part, False) for part in self._antecedents]
         for verb in reversed(self.chain):
             if better := [
-                w for w in tree.children(verb, "advmod") if w.low in _STATES and _lemma(verb) in _SENSES
+                w for w in tree.children(verb, "advmod") if w.low in _STATES and lemma_of(verb) in _SENSES
             ]:
                 return self._written(better, verb)
         for verb in reversed(self.chain):
@@ -486,7 +439,7 @@ class Clause:
         return [
             word
             for word in self.tree.children(verb, "conj")
-            if word.index > object.index and word.index not in self._others and word.pos not in _VERBAL
+            if word.index > object.index and word.index not in self._others and word.pos not in VERBAL
         ]
 
     def _in_phrases(self, head: Word, *, of: bool = True) -> list[tuple[Part, bool]]:
@@ -514,7 +467,7 @@ class Clause:
     def _at_places(self) -> list[tuple[Part, bool]]:
         for verb in reversed(self.chain):
             for word in self.tree.children(verb, "advmod", "npadvmod", "dep"):
-                if word.low in _PLACES:
+                if word.low in PLACES:
                     return [(word.text, False)]
         return []
 
@@ -554,7 +507,7 @@ class Clause:
 
     @cached_property
     def _is_copula(self) -> bool:
-        return self._passive is None and _lemma(self.chain[-1]) == "be"
+        return self._passive is None and lemma_of(self.chain[-1]) == "be"
 
     @cached_property
     def _expletive(self) -> bool:
@@ -566,14 +519,16 @@ class Clause:
         """The phrases around `heads` and their conjuncts as written, each with whether *not* stands before it alone."""
         found: list[tuple[Part, bool]] = []
         for head in heads:
-            for word in self._conjuncts(head):
+            for word in conjuncts(self.tree, head, self._others):
                 if verb is not None and self._is_predicative(word, verb):
                     words = adjective_phrase(self.tree, word, verb)
-                elif word.pos in _VERBAL and word.dep not in ("ROOT",):
+                elif word.pos in VERBAL and word.dep not in ("ROOT",):
                     words = gerund_phrase(self.tree, word)
                 else:
                     words = noun_phrase(self.tree, word)
-                found.append((self._whose(self.tree.phrase(words)), self._contrasted(word)))
+                found.append(
+                    (self._whose(self.tree.phrase(words)), is_contrasted(self.tree, word, self._others))
+                )
         return found
 
     def _whose(self, phrase: str) -> str:
@@ -588,53 +543,9 @@ class Clause:
         return (
             word.pos in ("ADJ", "VERB", "ADV")
             and word.tag != "VBG"
-            and (_lemma(verb) == "be" or word.dep != "dobj")
+            and (lemma_of(verb) == "be" or word.dep != "dobj")
             and not self.tree.children(word, "det", "amod", "poss")
         )
-
-    def _conjuncts(self, head: Word) -> list[Word]:
-        found = [head]
-        for word in found:  # grows while it is walked
-            found += [child for child in self.tree.children(word, "conj") if child.index not in self._others]
-        return found
-
-    def _contrasted(self, word: Word) -> bool:
-        return word.dep == "conj" and any(self._contrasts(child) for child in self._negations_at(word))
-
-    def _negations_at(self, word: Word) -> list[Word]:
-        first = self.tree.subtree(word)[0]
-        before = self.tree.before(first)
-        return [w for w in (first, before) if w is not None and w.low == "not"]
-
-    def _contrasts(self, negation: Word) -> bool:
-        """Whether *not* denies one conjunct alone: *tea, but not coffee*."""
-        after = self.tree.after(negation)
-        if after is None:
-            return False
-        for word in (after, *self.tree.ancestors(after)):
-            if word.dep == "conj" and word.index not in self._others:
-                return self.tree.subtree(word)[0].index in (after.index, negation.index)
-        return False
-
-
-def _heads_clause(tree: Tree, word: Word) -> bool:
-    if word.dep not in _HEADS:
-        return False
-    children = tree.children(word)
-    has_subject = any(child.dep in _SUBJECTS for child in children)
-    if word.pos in _VERBAL:
-        if word.dep in ("acl", "pcomp", "csubj"):
-            return has_subject
-        if word.dep == "conj" and not has_subject and tree.head(word).pos not in (*_VERBAL, "ADP", "SCONJ"):
-            return False
-        return bool(children) or word.dep in ("ROOT", "conj", "relcl", "xcomp")
-    return has_subject and (any(child.dep == "aux" for child in children) or word.low in _MISTAKEN)
-
-
-def _lemma(verb: Word) -> str:
-    if verb.low in _BE:
-        return "be"
-    return _SHORT.get(verb.low, verb.lemma.lower())
 
 
 def _is_no_one(tree: Tree, no: Word) -> bool:
