@@ -16,11 +16,12 @@ if TYPE_CHECKING:
     from ravestate.modules.meta import idle, nlp, ontology, verbaliser
     from ravestate.modules.modality import emotion, interloc, rawio
     from ravestate.modules.platform import conio, webio
-    from ravestate.modules.skill import agenda, fillers, genqa, hibye, wildtalk
+    from ravestate.modules.skill import agenda, agentqa, fillers, genqa, hibye, wildtalk
 
 __all__ = [
     "BUILT_IN",
     "agenda",
+    "agentqa",
     "conio",
     "emotion",
     "fillers",
@@ -48,6 +49,7 @@ BUILT_IN = {
     "verbaliser": "meta",
     "hibye": "skill",
     "agenda": "skill",
+    "agentqa": "skill",
     "fillers": "skill",
     "genqa": "skill",
     "wildtalk": "skill",

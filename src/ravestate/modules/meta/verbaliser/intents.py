@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -15,7 +15,7 @@ class Intent:
 
     Example:
         >>> Intent("greet", {"name": "Ada"})
-        Intent(name='greet', parameters={'name': 'Ada'}, package=None, file=None)
+        Intent(name='greet', parameters={'name': 'Ada'}, package=None, file=None, phrases=None)
     """
 
     name: str
@@ -26,3 +26,5 @@ class Intent:
     """The package whose file ``phrases.yaml`` has the phrases, mostly ``__package__`` of the rule that means it."""
     file: Path | None = None
     """A file that has the phrases, for a rule that stands in no package."""
+    phrases: Mapping[str, Sequence[str]] | None = None
+    """Its phrases by language, for a rule that has them from elsewhere; files are then not asked."""

@@ -22,8 +22,11 @@ async def verbalise(ctx: rs.RuleContext) -> None:
     """Choose a phrase for the intent, never the same twice running, and say it."""
     meant = as_intent(ctx.payload(intent.changed))
     settings = ctx.settings
-    own = settings.phrases if meant.file is None else (meant.file, *settings.phrases)
-    book = phrase_book(meant.package, own, settings.language)
+    if meant.phrases is not None:
+        book = PhraseBook({meant.name: meant.phrases}, language=settings.language)
+    else:
+        own = settings.phrases if meant.file is None else (meant.file, *settings.phrases)
+        book = phrase_book(meant.package, own, settings.language)
     phrase = book.choose(meant.name, meant.parameters, ctx.random, ctx[last].get(meant.name))
     ctx[rawio.output] = phrase.text
     ctx[last].add(meant.name, phrase.template)

@@ -1,0 +1,71 @@
+"""Answers questions about the agent itself: who it is, where it comes from, what it likes, how it is."""
+
+from __future__ import annotations
+
+from datetime import date
+from pathlib import Path
+from typing import Annotated
+
+from pydantic import Field, field_validator
+
+import ravestate as rs
+from ravestate.errors import RavestateError
+from ravestate.modules import idle, nlp, ontology, rawio, verbaliser
+
+from .life import Life, Topic
+from .life_file import read_life
+from .router import Match, Router
+
+__all__ = [
+    "Life",
+    "Match",
+    "Router",
+    "Settings",
+    "Topic",
+    "asked",
+    "life",
+    "module",
+    "mood",
+    "read_life",
+    "rules",
+    "today",
+]
+
+
+class Settings(rs.Settings):
+    """Who the agent is, and how often it offers to talk about itself."""
+
+    life: Path | None = None
+    """A file of one's own with facts and topics; it changes what it mentions, the rest is as it comes."""
+    prompt_every: Annotated[float, Field(gt=0)] = 120.0
+    """Seconds from one "ask me something" to the next, however silent it is."""
+
+    @field_validator("life")
+    @classmethod
+    def _can_be_read(cls, path: Path | None) -> Path | None:
+        """A mistake in the file is told before anything runs."""
+        try:
+            read_life(path)
+        except RavestateError as error:
+            raise ValueError(str(error)) from None
+        return path
+
+
+module = rs.Module("agentqa", requires=[rawio, idle, nlp, ontology, verbaliser], settings=Settings)
+
+asked = module.signal("asked", payload=Match)
+"""The user asks something about the agent; with the topic."""
+
+life: rs.Slot[Life | None] = module.slot("life", None, type=Life, input=True)
+"""Who the agent is: read from the files at startup. Where memory has the agent's node, that one counts."""
+
+mood: rs.Slot[str] = module.slot("mood", "fine", type=str, input=True)
+"""How the agent is, as an adjective: what it says when it is asked how it is. Whoever knows better may write it."""
+
+today: rs.Slot[date | None] = module.slot("today", None, input=True)
+"""The day on which the context began, by the machine's clock; the agent's age is counted from it."""
+
+prompted: rs.Slot[float | None] = module.slot("prompted", None)
+"""When the agent last offered to be asked, in seconds since the context began."""
+
+from . import rules  # noqa: E402  # they use what is declared above

@@ -1,0 +1,217 @@
+"""What of an utterance asks something about the agent: a matter of pronouns, word order and polite phrases.
+
+What is asked is brought into one form: lower case, without marks, short forms written out, without what only wraps it
+(*hi, could you tell me*). A sentence that is a statement, or asks about the user, is left out here, whatever its topic.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection, Iterable
+from dataclasses import dataclass
+
+__all__ = ["Asked", "about_agent", "plain"]
+
+LONGEST = 2000
+"""So many characters of an utterance are looked at."""
+WORDS = 20
+"""A question about the agent has at most so many words."""
+SENTENCES = 4
+"""At most so many sentences of an utterance are considered."""
+
+
+@dataclass(frozen=True, slots=True)
+class Asked:
+    """A question that may be about the agent."""
+
+    text: str
+    """In the plain form."""
+    addressed: bool
+    """Whether it has *you* or *your*; *how is it going* has not, and asks how the agent is all the same."""
+
+
+def about_agent(
+    utterance: str, names: Collection[str] = (), *, question: bool = False
+) -> tuple[list[Asked], str]:
+    """Return the questions that may be about the agent, and why the last sentence that holds none does not.
+
+    Args:
+        utterance: What the user said.
+        names: What the agent is called; it stands for *you*.
+        question: Whether it is known already to ask something.
+
+    Example:
+        >>> about_agent("Hi! Could you tell me what's ur name?")
+        ([Asked(text='what is your name', addressed=True)], 'nothing is said')
+        >>> about_agent("what is my name")
+        ([], 'it is about the user')
+    """
+    found: list[Asked] = []
+    why = "nothing is said"
+    sentences = [s for s in _SENTENCE.findall(utterance[:LONGEST]) if any(c.isalpha() for c in s)]
+    for sentence in sentences[: 2 * SENTENCES]:
+        words, told = _unwrapped(_words(sentence, names))
+        reason = _unfit(words, told or sentence.endswith("?") or (question and len(sentences) == 1))
+        if reason:
+            why = reason
+        else:
+            found.append(Asked(" ".join(words), not _YOU.isdisjoint(words)))
+    return found[:SENTENCES], why
+
+
+def plain(question: str) -> str:
+    """Return an example question in the plain form."""
+    return " ".join(_unwrapped(_words(question, ()))[0])
+
+
+def _unfit(words: list[str], asks: bool) -> str:
+    """Why a sentence is no question about the agent; empty if it may be one."""
+    if not words:
+        return "nothing is said"
+    if len(words) > WORDS:
+        return f"it is longer than {WORDS} words"
+    if not asks and words[0] not in _FIRST and not (words[0] in ("your", "and") and len(words) <= 3):
+        return "it is no question"
+    if not _USER.isdisjoint(_ABOUT_BOTH.sub(" ", " ".join(words)).split()):
+        return "it is about the user"
+    return ""
+
+
+def _words(sentence: str, names: Iterable[str]) -> list[str]:
+    text = sentence.lower().replace("’", "'")
+    for name in names:
+        text = re.sub(rf"(?<!\w){re.escape(name.lower())}('s)?(?!\w)", r" \\you\1 ", text)
+    # A name at the beginning or the end calls the agent; elsewhere it stands for "you".
+    text = re.sub(r"^\W*\\you\b(?!')|\\you\W*$", " ", text)
+    text = text.replace("\\you's", "your").replace("\\you", "you")
+    words: list[str] = []
+    for word in _WORD.findall(text):
+        words += _WRITTEN_OUT.get(word, word).split()
+    return words
+
+
+def _unwrapped(words: list[str]) -> tuple[list[str], bool]:
+    """The words without what wraps them, and whether that asked to be told something."""
+    told = False
+    begin = 0
+    while True:
+        for wrapper in _WRAPPERS:
+            size = len(wrapper)
+            if tuple(words[begin : begin + size]) == wrapper and len(words) > begin + size:
+                if wrapper == _KNOW and not _asks_for_knowledge(words[begin + size :]):
+                    continue
+                told = told or wrapper in _TELL
+                begin += size
+                break
+        else:
+            break
+    end = len(words)
+    while end > begin + 1 and words[end - 1] in _AT_THE_END:
+        end -= 1
+    words = words[begin:end]
+    if words[:1] == ["any"]:
+        words = ["do", "you", "have", *words]
+    elif words[:1] == ["got"]:
+        words = ["have", "you", *words]
+    return words, told
+
+
+def _asks_for_knowledge(words: list[str]) -> bool:
+    """*Do you know who you are*; not *do you know Paris*, *do you know how to swim*."""
+    return words[0] in _QUESTION_WORDS and words[:2] != ["how", "to"]
+
+
+def _set(words: str) -> frozenset[str]:
+    return frozenset(words.split())
+
+
+def _phrases(text: str) -> list[tuple[str, ...]]:
+    return [tuple(phrase.split()) for phrase in text.replace("\n", " ").split(";")]
+
+
+_SENTENCE = re.compile(r"[^.!?…\n]+[?]?")
+_WORD = re.compile(r"[^\W_]+(?:['-][^\W_]+)*")
+_YOU = _set("you your yours yourself")
+_USER = _set("i me my mine myself am we us our ours ourselves")
+_ABOUT_BOTH = re.compile(
+    r"\b(?:(?:should|shall|can|may|do|must|could|might) i (?:call|address|reach|find) (?=you)|"
+    r"am i (?:\w+ )?(?:talking|speaking|chatting) (?:to|with)|(?:for|help|tell|about) me$|help me$)"
+)
+"""Where the user is mentioned in a question about the agent."""
+_QUESTION_WORDS = _set("who whom whose what which where when why how")
+_FIRST = _QUESTION_WORDS | _set(
+    "do does did are is was were have has had can could will would may should since in from by of to with at on until "
+    "introduce describe"
+)
+"""With these a question or a request begins."""
+_AT_THE_END = _set("please exactly actually anyway though by-the-way then")
+_KNOW = ("do", "you", "know")
+_TELL = _phrases(
+    "tell me; tell us; can you tell me; could you tell me; would you tell me; will you tell me; can you please tell me; "
+    "could you please tell me; please tell me; would you mind telling me; i would like to know; i would love to know; "
+    "i want to know; i wonder; i was wondering; i am wondering; i am curious; i am curious to know; may i ask; may i ask you; "
+    "may i know; can i ask; can i ask you; could i ask; could i ask you; can i know; let me know; let me ask you; "
+    "i am interested to know; can you say; could you say; i would be interested to know; please say"
+)
+_WRAPPERS = sorted(
+    [
+        *_TELL,
+        _KNOW,
+        *_phrases(
+            "hi; hello; hey; hi there; hello there; hey there; hallo; good morning; good evening; good afternoon; so; and; but; "
+            "well; oh; ok; okay; yes; no; please; now; then; by the way; actually; just; say; um; uh; hm; hmm; my friend; "
+            "dear robot; great; cool; nice; fine; thanks; thank you; sorry; excuse me; one question; tell me please; also"
+        ),
+    ],
+    key=len,
+    reverse=True,
+)
+_WRITTEN_OUT: dict[str, str] = {
+    short: written
+    for shorts, written in {
+        "u ya yu yuo yoi": "you",
+        "ur yuor yor yoru ure": "your",
+        "r ar aer": "are",
+        "waht wat wht whta hwat wath": "what",
+        "hw hwo hou": "how",
+        "wher whre wehre": "where",
+        "woh hoo": "who",
+        "whne wen": "when",
+        "hav ahve hve": "have",
+        "teh": "the",
+        "doyou": "do you",
+        "areyou": "are you",
+        "whats what's wats": "what is",
+        "whos who's": "who is",
+        "hows how's": "how is",
+        "wheres where's": "where is",
+        "whens when's": "when is",
+        "which's": "which is",
+        "it's": "it is",
+        "what're": "what are",
+        "how're": "how are",
+        "who're": "who are",
+        "where're": "where are",
+        "you're youre": "you are",
+        "you've": "you have",
+        "you'd": "you would",
+        "i'd": "i would",
+        "i'm im": "i am",
+        "don't dont": "do not",
+        "didn't didnt": "did not",
+        "aren't arent": "are not",
+        "haven't havent": "have not",
+        "can't cant": "can not",
+        "wanna": "want to",
+        "gonna": "going to",
+        "fav favorite favorit favourit fave": "favourite",
+        "color colors": "colour",
+        "learnt": "learned",
+        "organization": "organisation",
+        "mum mom mommy mummy": "mother",
+        "bot": "robot",
+        "pls plz": "please",
+    }.items()
+    for short in shorts.split()
+}
+"""Short forms and common slips of those who type, in full."""

@@ -1,0 +1,245 @@
+"""A life in YAML files, which users may edit. ``life.yaml``, which comes with the module, shows what may stand in one."""
+
+from __future__ import annotations
+
+import string
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from datetime import date
+from functools import lru_cache
+from importlib.resources import files
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ravestate.errors import DeclarationError, PlatformError, nearest
+
+from .life import Fact, Life, Topic
+
+if TYPE_CHECKING:
+    import yaml
+
+__all__ = ["read_life"]
+
+KNOWN = ("name", "born", "age", "mood")
+"""Parameters that any phrase may have; `age` is counted, and `mood` is a slot."""
+NAMED = ("it", "that")
+"""Parameters of phrases about what a question names."""
+
+_PARTS = ("facts", "topics", "others")
+_PARTS_OF_TOPIC = ("questions", "phrases", "otherwise", "named")
+
+
+def read_life(own: Path | None = None) -> Life:
+    """Read the agent's life: the file that comes with the module, and what the user's `own` changes of it.
+
+    A fact of the own file replaces the one that comes with the module, and ``~`` takes it away. A topic adds its
+    questions to those that are there, and replaces its phrases; ``~`` takes it away; others are new.
+
+    Raises:
+        DeclarationError: The file says what no life can; with its line.
+        PlatformError: The file cannot be read.
+    """
+    built_in = files("ravestate.modules.skill.agentqa") / "life.yaml"
+    life = _parsed("life.yaml", built_in.read_text(encoding="utf-8"), None)
+    if own is None:
+        return life
+    own = own.expanduser()
+    try:
+        text = own.read_text(encoding="utf-8")
+    except FileNotFoundError as error:
+        near = (
+            nearest(own.name, [other.name for other in own.parent.iterdir()]) if own.parent.is_dir() else ""
+        )
+        raise PlatformError(f"the file {str(own)!r} does not exist{near}") from error
+    except OSError as error:
+        raise PlatformError(f"the file {str(own)!r} cannot be read: {error.strerror or error}") from error
+    except UnicodeDecodeError as error:
+        raise DeclarationError(
+            f"{own}: this is no text in UTF-8 ({error.reason} at byte {error.start})"
+        ) from None
+    return _parsed(str(own), text, life)
+
+
+# -------------------------------------------------------------------------------------- one file
+
+
+@lru_cache(maxsize=32)
+def _parsed(name: str, text: str, base: Life | None) -> Life:
+    root = _composed(name, text)
+    facts = dict(base.facts) if base else {}
+    topics = dict(base.topics) if base else {}
+    others = base.others if base else ()
+    if root is None:
+        return Life(facts, topics, others)
+    parts = dict(_entries(name, root, _PARTS, "the file has facts, topics and others, and"))
+    if (node := parts.get("facts")) is not None:
+        for key, value in _entries(name, node, None, "facts have names: hobbies: [chess], and"):
+            fact = _fact(name, key, value)
+            facts.pop(key, None)
+            if fact is not None:
+                facts[key] = fact
+        if "name" not in facts:
+            raise _fault(name, node, "the agent needs a name: write\nfacts:\n  name: Robin")
+    if (node := parts.get("others")) is not None:
+        others += _texts(name, node, "questions")
+    if (node := parts.get("topics")) is not None:
+        known = _Known(name, (*facts, *(base.facts if base else ()), *KNOWN))
+        for key, value in _entries(name, node, None, "topics have names: shoes: {questions: ...}, and"):
+            if _is_null(value):
+                topics.pop(key, None)
+            else:
+                topics[key] = _topic(key, value, topics.get(key), known)
+    return Life(facts, topics, others)
+
+
+@dataclass(frozen=True, slots=True)
+class _Known:
+    """The facts that the phrases of a file may name."""
+
+    file: str
+    facts: tuple[str, ...]
+
+    def check(self, node: yaml.Node, more: tuple[str, ...] = ()) -> tuple[str, ...]:
+        """Return the phrases of a node, whose parameters are facts."""
+        found = _texts(self.file, node, "phrases")
+        known = (*self.facts, *more)
+        items: list[yaml.Node] = node.value if _kind(node) == "sequence" else [node]
+        for item in items:
+            try:
+                parts = list(string.Formatter().parse(item.value))
+            except ValueError as error:
+                raise _fault(
+                    self.file, item, f"the braces in {item.value!r} name no fact ({error}): write {{hobbies}}"
+                ) from None
+            for _, parameter, form, conversion in parts:
+                if parameter is not None and (parameter not in known or form or conversion):
+                    raise _fault(
+                        self.file,
+                        item,
+                        f"{{{parameter}}} in {item.value!r} is no fact{nearest(parameter, known)}; it would stand under "
+                        f"facts:\n  {parameter or 'hobbies'}: ...",
+                    )
+        return found
+
+
+def _topic(key: str, node: yaml.Node, before: Topic | None, known: _Known) -> Topic:
+    parts = dict(
+        _entries(known.file, node, _PARTS_OF_TOPIC, f"the topic {key} has questions and phrases, and")
+    )
+    topic = before or Topic(key, (), ())
+    if "questions" in parts:
+        topic = replace(
+            topic, questions=(*topic.questions, *_texts(known.file, parts["questions"], "questions"))
+        )
+    if "phrases" in parts:
+        topic = replace(topic, phrases=known.check(parts["phrases"]), otherwise=(), named=())
+    if "otherwise" in parts:
+        topic = replace(topic, otherwise=known.check(parts["otherwise"]))
+    if "named" in parts:
+        named: list[tuple[str, tuple[str, ...]]] = []
+        for fact, phrases in _entries(
+            known.file, parts["named"], known.facts, "it has a fact and phrases, and"
+        ):
+            named.append((fact, known.check(phrases, NAMED)))
+        topic = replace(topic, named=tuple(named))
+    for part in ("questions", "phrases"):
+        if not getattr(topic, part):
+            raise _fault(known.file, node, f"the topic {key} has no {part}: write\n{key}:\n  {part}: [...]")
+    return topic
+
+
+def _fact(name: str, key: str, node: yaml.Node) -> Fact | None:
+    if key in ("age", "mood"):
+        instead = "born: 2024-03-01" if key == "age" else "another name"
+        raise _fault(name, node, f"{key} is not told here, but follows from elsewhere: write {instead}")
+    if _is_null(node):
+        return None
+    if key in ("name", "born") and _kind(node) != "scalar":
+        raise _fault(name, node, f"{key} is one text, not a {_kind(node)}")
+    if _kind(node) == "mapping":
+        return tuple(
+            (other, _text(name, value)) for other, value in _entries(name, node, None, "it has pairs, and")
+        )
+    if _kind(node) == "sequence":
+        return _texts(name, node, "texts", empty=True)
+    text = _text(name, node)
+    if key == "born":
+        try:
+            date.fromisoformat(text)
+        except ValueError:
+            raise _fault(name, node, f"born: {text!r} is no date: write for example 2024-03-01") from None
+    return text
+
+
+# ------------------------------------------------------------------------------------------ YAML
+
+
+def _composed(name: str, text: str) -> yaml.Node | None:
+    """The nodes of a YAML text, which know their lines. No value is made of them, so nothing can run."""
+    import yaml
+
+    try:
+        return yaml.compose(text, Loader=yaml.BaseLoader)
+    except yaml.MarkedYAMLError as error:
+        mark = error.problem_mark or error.context_mark
+        line = "" if mark is None else f":{mark.line + 1}"
+        reason = ", ".join(filter(None, (error.context, error.problem)))
+        raise DeclarationError(
+            f"{name}{line}: this is no YAML ({reason}). A text with : or # or braces in front wants quotes"
+        ) from None
+    except yaml.YAMLError:  # a character that YAML does not allow
+        raise DeclarationError(f"{name}: this is no YAML (a control character)") from None
+    except RecursionError:
+        raise DeclarationError(f"{name}: this is no file of a life, but nested without end") from None
+
+
+def _fault(name: str, node: yaml.Node, problem: str) -> DeclarationError:
+    return DeclarationError(f"{name}:{node.start_mark.line + 1}: {problem}")
+
+
+def _kind(node: yaml.Node) -> str:
+    return str(getattr(node, "id", ""))
+
+
+def _is_null(node: yaml.Node) -> bool:
+    return _kind(node) == "scalar" and not getattr(node, "style", None) and node.value in ("", "~", "null")
+
+
+def _entries(
+    name: str, node: yaml.Node, allowed: tuple[str, ...] | None, meaning: str
+) -> Iterator[tuple[str, yaml.Node]]:
+    if _kind(node) != "mapping":
+        raise _fault(name, node, f"{meaning} this is a {_kind(node)}")
+    seen: set[str] = set()
+    for key, value in node.value:
+        word = _text(name, key)
+        if allowed is not None and word not in allowed:
+            raise _fault(
+                name, key, f"{word!r} means nothing here{nearest(word, allowed)}: {', '.join(allowed[:12])}"
+            )
+        if allowed is None and not word.replace(" ", "_").replace("-", "_").isidentifier():
+            raise _fault(name, key, f"{word!r} is no name: letters, digits and _")
+        if word in seen:
+            raise _fault(name, key, f"{word!r} is here a second time")
+        seen.add(word)
+        yield word, value
+
+
+def _texts(name: str, node: yaml.Node, what: str, *, empty: bool = False) -> tuple[str, ...]:
+    items: list[yaml.Node] = node.value if _kind(node) == "sequence" else [node]
+    if not items and not empty:
+        raise _fault(name, node, f"there are no {what}: write some, or leave it out")
+    return tuple(_text(name, item) for item in items)
+
+
+def _text(name: str, node: yaml.Node) -> str:
+    if _kind(node) != "scalar":
+        raise _fault(
+            name,
+            node,
+            f"a text is wanted, and this is a {_kind(node)}; a text with : or braces in front wants quotes",
+        )
+    text = str(node.value).strip()
+    if not text or _is_null(node):
+        raise _fault(name, node, "a text is wanted, and this is empty")
+    return text

@@ -1,0 +1,212 @@
+"""Which topic a question about the agent belongs to: by the example questions that it resembles."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+from ravestate.modules._sentences import Encoder
+
+from .asking import Asked, about_agent, plain
+from .life import Life
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+__all__ = ["Match", "Miss", "Router", "router_of"]
+
+SPELLING = 0.5
+"""How much it counts that two questions are spelt alike, against 1 for meaning alike. It forgives slips of the pen."""
+RIDGE = 0.1
+"""How little a single example may say against many."""
+UNADDRESSED = 0.9
+"""A question without *you* must be so like (cosine) an example without it: *how is it going*."""
+OTHERS = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Match:
+    """A question that belongs to a topic."""
+
+    topic: str
+    question: str
+    """What was understood, in the plain form."""
+    score: float
+    """Near 1 for what is just like an example, near 0 for what is like none."""
+    example: str
+    """The example that is nearest."""
+    margin: float
+    """By how much the score is greater than the next best."""
+
+
+@dataclass(frozen=True, slots=True)
+class Miss:
+    """Why nothing that was said belongs to a topic."""
+
+    reason: str
+
+
+class Router:
+    """Tells topics apart, and from what belongs to none.
+
+    A classifier over the example questions of a life: ridge regression with a kernel, the cosine of what two questions
+    mean (an `Encoder` says) plus that of how they are spelt (their groups of three and four letters). Learnt in less than
+    a second when it is first asked; from any thread.
+
+    Example:
+        ::
+
+            match Router(read_life()).route("Hey, how old r u?"):
+                case Match(topic, score=score): ...     # "age", 0.95
+                case Miss(reason): ...
+    """
+
+    def __init__(self, life: Life, encoder: Encoder | None = None) -> None:
+        """`life`: its topics, and what belongs to none; `encoder`: by default the bundled one."""
+        self.life = life
+        self._encoder = encoder or Encoder()
+        self._lock = threading.Lock()
+        self._learnt: _Learnt | None = None
+
+    def load(self) -> None:
+        """Load the model, and learn the examples, unless that is done.
+
+        Raises:
+            PlatformError: The sentence model is missing or broken. The message says what to do.
+        """
+        with self._lock:
+            if self._learnt is None:
+                self._learnt = _Learnt(self.life, self._encoder)
+
+    def route(self, utterance: str, names: Collection[str] = (), *, question: bool = False) -> Match | Miss:
+        """Return what is asked about the agent, the first of several sentences that fit.
+
+        Args:
+            utterance: What the user said.
+            names: What else the agent is called.
+            question: Whether it is known already to ask something.
+
+        Raises:
+            PlatformError: See `load`.
+        """
+        candidates, why = about_agent(utterance, (self.life.name, *names), question=question)
+        if not candidates:
+            return Miss(why)
+        self.load()
+        assert self._learnt is not None  # it is loaded
+        return self._learnt.best(candidates)
+
+
+@lru_cache(maxsize=8)
+def router_of(life: Life) -> Router:
+    """The router of a life that all contexts share, loaded or not."""
+    return Router(life)
+
+
+class _Learnt:
+    """What is known of the examples."""
+
+    def __init__(self, life: Life, encoder: Encoder) -> None:
+        import numpy as np
+
+        self._encoder = encoder
+        pairs = [(plain(q), topic.name) for topic in life.topics.values() for q in topic.questions]
+        pairs += [(plain(q), OTHERS) for q in life.others]
+        self._examples = [text for text, _ in pairs]
+        self._classes = [*life.topics, OTHERS]
+        self._of = np.array([self._classes.index(name) for _, name in pairs])
+        self._unaddressed = np.array([not asked_of(text) for text in self._examples])
+        meanings = encoder.encode(self._examples)
+        self._mean = meanings.mean(axis=0)
+        self._meanings = meanings - self._mean
+        self._raw = meanings
+        self._spelling = _Spelling(self._examples)
+        self._spelt = self._spelling.of(self._examples)
+        kernel = self._kernel(meanings, self._spelt)
+        kernel[np.diag_indices_from(kernel)] += RIDGE
+        self._weights = np.linalg.solve(kernel, np.eye(len(self._classes))[self._of])
+
+    def best(self, candidates: Sequence[Asked]) -> Match | Miss:
+        """The first candidate that belongs to a topic, or why none does."""
+        import numpy as np
+
+        meanings = self._encoder.encode([asked.text for asked in candidates])
+        kernel = self._kernel(meanings, self._spelling.of([asked.text for asked in candidates]))
+        scores = kernel @ self._weights
+        reasons: list[str] = []
+        for asked, row, like, cosines in zip(candidates, scores, kernel, meanings @ self._raw.T, strict=True):
+            order = np.argsort(-row, kind="stable")
+            winner, second = int(order[0]), int(order[1])
+            topic = winner if self._classes[winner] != OTHERS else second
+            near = self._nearest(like, topic)
+            if winner != topic:
+                other = self._nearest(like, winner)
+                reasons.append(
+                    f"{asked.text!r} is nearest to {self._classes[topic]} ({row[topic]:.2f}, {near!r}), but nearer to what "
+                    f"is not about me ({row[winner]:.2f}, {other!r})"
+                )
+            elif not asked.addressed and not (
+                cosines[self._unaddressed & (self._of == topic)].max(initial=0.0) >= UNADDRESSED
+            ):
+                reasons.append(
+                    f"{asked.text!r} is like {self._classes[topic]} ({row[topic]:.2f}), but asks no you"
+                )
+            else:
+                margin = float(row[winner] - row[second])
+                return Match(self._classes[topic], asked.text, float(row[topic]), near, margin)
+        return Miss("; ".join(reasons))
+
+    def _kernel(self, meanings: NDArray[np.float32], spelt: NDArray[np.float64]) -> NDArray[np.float64]:
+        """How alike questions (rows) and examples (columns) are."""
+        return (meanings - self._mean) @ self._meanings.T + SPELLING * (spelt @ self._spelt.T) + 0.2
+
+    def _nearest(self, like: NDArray[np.float64], topic: int) -> str:
+        import numpy as np
+
+        return self._examples[int(np.where(self._of == topic, like, -np.inf).argmax())]
+
+
+def asked_of(text: str) -> bool:
+    """Whether an example speaks to somebody."""
+    return not {"you", "your", "yourself"}.isdisjoint(text.split())
+
+
+class _Spelling:
+    """Texts as vectors of their letter groups; rare groups count more."""
+
+    def __init__(self, texts: Sequence[str]) -> None:
+        import numpy as np
+
+        self._columns: dict[str, int] = {}
+        for text in texts:
+            for group in _groups(text):
+                self._columns.setdefault(group, len(self._columns))
+        self._weights = np.ones(len(self._columns))
+        counts = self._counted(texts)
+        self._weights = 1 + np.log(len(texts) / (1 + (counts > 0).sum(axis=0)))
+
+    def of(self, texts: Sequence[str]) -> NDArray[np.float64]:
+        """A row of length 1 for each text, or of zeros if nothing of it is known."""
+        import numpy as np
+
+        rows = self._counted(texts) * self._weights
+        return rows / np.maximum(np.linalg.norm(rows, axis=1, keepdims=True), 1e-12)
+
+    def _counted(self, texts: Sequence[str]) -> NDArray[np.float64]:
+        import numpy as np
+
+        rows = np.zeros((len(texts), len(self._columns)))
+        for row, text in enumerate(texts):
+            for group in _groups(text):
+                if (column := self._columns.get(group)) is not None:
+                    rows[row, column] += 1
+        return rows
+
+
+def _groups(text: str) -> list[str]:
+    text = f" {text} "
+    return [text[i : i + size] for size in (3, 4) for i in range(len(text) - size + 1)]

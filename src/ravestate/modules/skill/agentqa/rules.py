@@ -1,0 +1,112 @@
+"""When the agent speaks of itself."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+from collections.abc import Mapping
+from datetime import datetime, timedelta
+
+import ravestate as rs
+from ravestate.errors import PlatformError, RavestateError
+from ravestate.modules import idle, nlp, ontology, rawio, verbaliser
+from ravestate.modules.meta.verbaliser.intents import Intent
+
+from . import Settings, asked, life, module, mood, prompted, today
+from .itself import recall, settle
+from .life import Fact, Life
+from .life_file import read_life
+from .router import Miss, router_of
+from .telling import telling
+
+DAY = 86_400.0
+"""Seconds."""
+
+
+@module.rule(when=rs.startup.detached(), writes=(life, today), detached=True)
+async def be_born(ctx: rs.RuleContext) -> None:
+    """Read who the agent is, and what day it is."""
+    settings: Settings = ctx.settings
+    ctx[today] = datetime.now().astimezone().date()  # where the user is
+    ctx[life] = read_life(settings.life)
+
+
+@module.rule(when=life.changed.detached(), background=True)
+def load(ctx: rs.RuleContext) -> None:
+    """Learn the topics while the agent is up already, so that the first question need not wait for it."""
+    told = ctx.payload(life.changed)
+    if told is not None:
+        with contextlib.suppress(PlatformError):  # which is told when it is needed
+            router_of(told).load()
+
+
+@module.rule(when=life.changed.detached(), reads=ontology.memory, background=True)
+async def remember(ctx: rs.RuleContext) -> rs.Resign | None:
+    """Bring what memory has of the agent in line with the file."""
+    told, memory = ctx.payload(life.changed), ctx[ontology.memory]
+    if told is None or memory is None:
+        return rs.Resign("there is no memory, or no life")
+    try:
+        await settle(told, memory)
+    except RavestateError as error:
+        ctx.log.warning("what memory has of the agent may be old: %s", error)
+    return None
+
+
+@module.rule(
+    when=rawio.input.changed & nlp.yesno.changed,  # which nlp writes last
+    reads=(life, nlp.question),
+    emits=asked,
+)
+async def understand(ctx: rs.RuleContext) -> rs.Resign | None:
+    """Notice that the user asks something about the agent, and what."""
+    told = ctx[life]
+    if told is None:
+        return rs.Resign("nobody has said who I am")
+    heard, question = ctx.payload(rawio.input.changed), ctx[nlp.question] is not None
+    found = await asyncio.to_thread(router_of(told).route, heard, question=question)
+    if isinstance(found, Miss):
+        return rs.Resign(found.reason)
+    ctx.log.debug("%s", found)
+    ctx.emit(asked, found)
+    return None
+
+
+@module.rule(when=asked, reads=(life, mood, today, ontology.memory), writes=verbaliser.intent)
+async def answer(ctx: rs.RuleContext) -> rs.Resign | None:
+    """Say what is known about the topic."""
+    match, told = ctx.payload(asked), ctx[life]
+    assert told is not None  # else nothing would have been understood
+    began = ctx[today]
+    assert began is not None  # written with the life
+    day = began + timedelta(days=ctx.now // DAY)
+    facts = await known(ctx, told, ctx[ontology.memory])
+    phrases = telling(told.topics[match.topic], match.question, facts, mood=ctx[mood], today=day)
+    if phrases is None:
+        return rs.Resign(f"I don't know what to say about {match.topic}: its phrases lack a fact")
+    # They are filled in: braces that are left are a fact's own.
+    texts = [phrase.replace("{", "{{").replace("}", "}}") for phrase in phrases]
+    ctx[verbaliser.intent] = Intent(f"agentqa:{match.topic}", phrases={"en": texts})
+    return None
+
+
+@module.rule(when=idle.bored, reads=prompted, writes=(verbaliser.intent, prompted), weight=0.9)
+async def offer(ctx: rs.RuleContext) -> rs.Resign | None:
+    """It is silent: invite the user to ask, now and then."""
+    last, every = ctx[prompted], ctx.settings.prompt_every
+    if last is not None and ctx.now - last < every:
+        return rs.Resign(f"that was {ctx.now - last:.0f} s ago; agentqa.prompt_every is {every:g} s")
+    ctx[prompted] = ctx.now
+    ctx[verbaliser.intent] = Intent("ask_me", package=__package__)
+    return None
+
+
+async def known(ctx: rs.RuleContext, told: Life, memory: ontology.Memory | None) -> Mapping[str, Fact]:
+    """What is true of the agent: by memory, and where there is none by the file."""
+    if memory is None:
+        return told.facts
+    try:
+        return await recall(told, memory)
+    except RavestateError as error:
+        ctx.log.warning("memory does not answer, so the file counts: %s", error)
+        return told.facts

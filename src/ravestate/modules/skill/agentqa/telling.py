@@ -1,0 +1,97 @@
+"""What the agent says of a topic: the phrases that its facts allow, and the facts in words."""
+
+from __future__ import annotations
+
+import re
+import string
+from collections.abc import Mapping, Sequence
+from datetime import date
+
+from .itself import texts
+from .life import Fact, Topic
+
+__all__ = ["age", "listed", "telling"]
+
+
+def telling(
+    topic: Topic, question: str, facts: Mapping[str, Fact], *, mood: str, today: date
+) -> tuple[str, ...] | None:
+    """Return what may be said, of which any will do; None if nothing that the phrases need is known.
+
+    Args:
+        topic: What was asked about.
+        question: As it was understood; if it names the value of a fact, that is what the answer is about.
+        facts: What is true of the agent.
+        mood: How it is.
+        today: The day from which its age is counted.
+    """
+    values = _in_words(facts, mood, today)
+    for fact, phrases in topic.named:
+        for it, that in _pairs(facts.get(fact, ())):
+            if _names(question, it):
+                return _filled(phrases, {**values, "it": it, "that": that})
+    return _filled(topic.phrases, values) or _filled(topic.otherwise, values) or None
+
+
+def listed(items: Sequence[str]) -> str:
+    """Join texts as one says them.
+
+    Example:
+        >>> listed(["words", "clouds", "chess"])
+        'words, clouds and chess'
+    """
+    *first, last = items
+    return f"{', '.join(first)} and {last}" if first else last
+
+
+def age(born: date, today: date) -> str:
+    """How old somebody is: years; in the first two months, only days; months in between.
+
+    Example:
+        >>> age(date(2024, 3, 1), date(2026, 2, 28)), age(date(2024, 3, 1), date(2024, 5, 1))
+        ('1 year', '2 months')
+    """
+    months = (today.year - born.year) * 12 + today.month - born.month - (today.day < born.day)
+    if months < 2:
+        count, unit = max(0, (today - born).days), "day"
+    elif months < 12:
+        count, unit = months, "month"
+    else:
+        count, unit = months // 12, "year"
+    return f"{count} {unit}{'' if count == 1 else 's'}"
+
+
+def _in_words(facts: Mapping[str, Fact], mood: str, today: date) -> dict[str, str]:
+    values = {name: listed(texts(fact)) for name, fact in facts.items() if fact}
+    values["mood"] = mood
+    if "born" in values:
+        born = date.fromisoformat(values["born"])
+        values["born"] = f"{born.day} {born:%B} {born.year}"
+        values["age"] = age(born, today)
+    return values
+
+
+def _pairs(fact: Fact) -> list[tuple[str, str]]:
+    if isinstance(fact, str):
+        return [(fact, fact)]
+    return [(part, part) if isinstance(part, str) else part for part in fact]
+
+
+def _names(question: str, it: str) -> bool:
+    return re.search(rf"\b{re.escape(it.lower())}\b", question) is not None
+
+
+def _filled(phrases: Sequence[str], values: Mapping[str, str]) -> tuple[str, ...]:
+    """The phrases whose parameters are known, filled in."""
+    known = [phrase for phrase in phrases if _parameters(phrase) <= values.keys()]
+    return tuple(
+        _BEGINNING.sub(lambda found: found[0].upper(), phrase.format_map(values)) for phrase in known
+    )
+
+
+def _parameters(phrase: str) -> set[str]:
+    return {name for _, name, _, _ in string.Formatter().parse(phrase) if name}
+
+
+_BEGINNING = re.compile(r"^\W*\w|[.!?…:] +\w")
+"""The first letter of a sentence, which may be that of a fact."""
