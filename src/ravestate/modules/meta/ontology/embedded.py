@@ -21,7 +21,7 @@ from .types import Kind, Types
 
 __all__ = ["EmbeddedStore"]
 
-BUFFER = 64 * 2**20
+BUFFER = 256 * 2**20
 """Bytes of memory that pages of the file may take at most."""
 
 LARGEST = 2**36

@@ -187,6 +187,9 @@ class Memory:
                 self._closed = Reply(self._keeper.release(), "Memory.close")
             return self._closed
 
+    def __repr__(self) -> str:
+        return f"<memory {self.place}>"
+
     def _open(self, store: Store, read_types: Callable[[], Types]) -> None:
         """In the thread: look what there may be, and make room for it."""
         try:
