@@ -1,0 +1,6 @@
+import { mount } from "svelte";
+import "../lib/theme.css";
+import Chat from "./Chat.svelte";
+
+const target = document.getElementById("page");
+if (target !== null) mount(Chat, { target });

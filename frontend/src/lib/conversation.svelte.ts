@@ -1,0 +1,156 @@
+import { Connection, type Options, type Status } from "./connection";
+import { type Message, type Say, type ServerFrame, VERSION } from "./protocol";
+import { type Kept, keep, recall, tokenOfLink } from "./store";
+
+export interface Line {
+  key: string;
+  from: "user" | "agent";
+  text: string;
+  /** Milliseconds since 1970; undefined while nobody is known to have heard it. */
+  time?: number;
+  /** The first of a conversation that follows on one that is lost. */
+  anew?: boolean;
+}
+
+/** A conversation as a window shows it: what was said, what is being said, and how the connection is. */
+export class Conversation {
+  lines: Line[] = $state([]);
+  partial = $state("");
+  typing = $state(false);
+  agent = $state("Ravestate");
+  status: Status = $state("connecting");
+  /** Why it has ended, once it has. */
+  ending = $state("");
+  /** What the server did not take, and why. */
+  trouble = $state("");
+
+  #kept: Kept = recall();
+  #outbox: Say[];
+  #last = 0;
+  #anew = false;
+  #epoch = 0;
+  #connection: Connection;
+
+  constructor(options: Pick<Options, "open" | "backoff"> = {}) {
+    const token = tokenOfLink();
+    if (token !== undefined) this.#keep({ token });
+    this.#outbox = (this.#kept.outbox ?? []).map(({ id, text }) => ({ type: "say", id, text }));
+    for (const { id, text } of this.#outbox) this.lines.push({ key: id, from: "user", text });
+    this.#connection = new Connection({
+      ...options,
+      hello: () => ({
+        type: "hello",
+        v: VERSION,
+        last: this.#last,
+        ...(this.#kept.session === undefined ? {} : { session: this.#kept.session }),
+        ...(this.#kept.token === undefined ? {} : { token: this.#kept.token }),
+      }),
+      onframe: (frame) => this.#take(frame),
+      onstatus: (status) => {
+        this.status = status;
+        if (status !== "open") this.typing = false;
+      },
+    });
+  }
+
+  start(): void {
+    this.#connection.start();
+  }
+
+  stop(): void {
+    this.#connection.stop();
+  }
+
+  nudge(): void {
+    this.#connection.nudge();
+  }
+
+  /** Say something; it arrives once, also if the connection is lost meanwhile. */
+  say(text: string): void {
+    const say: Say = { type: "say", id: crypto.getRandomValues(new Uint32Array(3)).join("-"), text };
+    this.trouble = "";
+    this.lines.push({ key: say.id, from: "user", text });
+    this.#outbox.push(say);
+    this.#keep({ outbox: this.#outbox });
+    this.#connection.send(say);
+  }
+
+  /** Try another token. */
+  present(token: string): void {
+    this.#keep({ token });
+    this.start();
+  }
+
+  /** Leave for good; the agent may still bid farewell. */
+  leave(): void {
+    this.#connection.send({ type: "bye" });
+  }
+
+  /** Begin a new conversation after one has ended. */
+  again(): void {
+    this.lines = [];
+    this.partial = this.ending = this.trouble = "";
+    this.#forget();
+    this.start();
+  }
+
+  #take(frame: ServerFrame): void {
+    if (frame.type === "welcome") {
+      this.agent = frame.agent;
+      if (!frame.resumed) {
+        this.#anew = this.lines.some((line) => line.time !== undefined);
+        this.#last = 0;
+        this.#epoch += 1;
+      }
+      this.#keep({ session: frame.session });
+      this.partial = "";
+      for (const say of this.#outbox) this.#connection.send(say); // what was heard already is not heard again
+    } else if (frame.type === "message") this.#hear(frame);
+    else if (frame.type === "piece") this.partial = this.partial.slice(0, frame.at) + frame.text;
+    else if (frame.type === "typing") this.typing = frame.on;
+    else if (frame.type === "error") this.trouble = frame.text;
+    else if (frame.type === "ended") {
+      this.ending = frame.text;
+      this.#forget();
+    }
+  }
+
+  #hear(message: Message): void {
+    if (message.n <= this.#last) return;
+    this.#last = message.n;
+    const line: Line = {
+      key: message.id ?? `${this.#epoch}/${message.n}`,
+      from: message.from,
+      text: message.text,
+      time: message.time,
+    };
+    if (this.#anew) {
+      line.anew = true;
+      this.#anew = false;
+    }
+    // What is not heard yet stands at the end.
+    const pending = this.lines.findIndex((other) => other.key === line.key);
+    if (pending >= 0) this.lines.splice(pending, 1);
+    const end = this.lines.findIndex((other) => other.time === undefined);
+    this.lines.splice(end >= 0 ? end : this.lines.length, 0, line);
+    if (message.from === "agent") {
+      this.partial = "";
+    } else {
+      this.#outbox = this.#outbox.filter((say) => say.id !== message.id);
+      this.#keep({ outbox: this.#outbox });
+    }
+  }
+
+  #forget(): void {
+    this.#last = 0;
+    this.#outbox = [];
+    const { token } = this.#kept;
+    this.#kept = {};
+    this.#keep(token === undefined ? {} : { token });
+  }
+
+  #keep(more: Kept): void {
+    this.#kept = { ...this.#kept, ...more };
+    keep(this.#kept);
+  }
+}

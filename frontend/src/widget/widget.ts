@@ -1,0 +1,82 @@
+// <script src="https://.../widget.js" defer></script> puts a button into the corner of a page, which opens the chat.
+//
+// Attributes of the script, all optional:
+//   data-title   what the button says, "Talk with us" by default
+//   data-token   the token, where the agent asks for one: everybody who reads the page's source can read it
+
+const STYLE = `
+  :host { all: initial; }
+  button {
+    position: fixed; right: 1.25rem; bottom: 1.25rem; z-index: 2147483000;
+    width: 3.5rem; height: 3.5rem; padding: 0.75rem; border: 0; border-radius: 50%;
+    background: #2b2740; box-shadow: 0 4px 18px rgb(15 12 25 / 32%); cursor: pointer;
+  }
+  button:focus-visible { outline: 3px solid #8a7cf0; outline-offset: 3px; }
+  svg { display: block; width: 100%; height: 100%; fill: #efeaff; }
+  iframe {
+    position: fixed; right: 1.25rem; bottom: 5.75rem; z-index: 2147483000;
+    width: min(25rem, calc(100vw - 2.5rem)); height: min(38rem, calc(100dvh - 7.5rem));
+    border: 1px solid rgb(128 120 140 / 45%); border-radius: 1.125rem;
+    background: Canvas; box-shadow: 0 10px 40px rgb(15 12 25 / 28%);
+  }
+  iframe[hidden] { display: none; }
+  @media (max-width: 30rem) {
+    iframe { inset: 0; width: 100%; height: 100%; border: 0; border-radius: 0; }
+  }
+`;
+
+const RAVEN =
+  "M5 45C4 27 11 9 27 8.500C33.500 8.300 37 11.500 38.800 15.500L47 21.800C43.500 24.600 38.500 25 34.600 24.700C33 28.500 33.800 31 35.500 33.500C32.500 33.200 31.500 32.800 30.300 32C30.300 35.500 31.500 38.500 34.500 41C31 41.300 28.800 40.700 26.800 39.500C26.300 42 26.800 43.500 28 45ZM30.800 14.300A2.100 2.100 0 1 0 30.800 18.500A2.100 2.100 0 1 0 30.800 14.300Z";
+
+const script = document.currentScript;
+if (script instanceof HTMLScriptElement) {
+  const put = () => embed(new URL("./", script.src), script.dataset);
+  if (document.body === null) document.addEventListener("DOMContentLoaded", put);
+  else put();
+}
+
+/** Put the button, and behind it the chat, onto the page. */
+function embed(page: URL, options: DOMStringMap): void {
+  const host = document.createElement("ravestate-widget");
+  const root = host.attachShadow({ mode: "open" });
+  const sheet = new CSSStyleSheet(); // no inline style, which the page may forbid
+  sheet.replaceSync(STYLE);
+  root.adoptedStyleSheets = [sheet];
+
+  const button = document.createElement("button");
+  button.type = "button";
+  button.setAttribute("aria-label", options.title ?? "Talk with us");
+  button.setAttribute("aria-expanded", "false");
+  const svg = document.createElementNS("http://www.w3.org/2000/svg", "svg");
+  svg.setAttribute("viewBox", "0 0 48 48");
+  svg.setAttribute("aria-hidden", "true");
+  const path = document.createElementNS("http://www.w3.org/2000/svg", "path");
+  path.setAttribute("fill-rule", "evenodd");
+  path.setAttribute("d", RAVEN);
+  svg.append(path);
+  button.append(svg);
+  root.append(button);
+  document.body.append(host);
+
+  let frame: HTMLIFrameElement | null = null;
+
+  function show(open: boolean): void {
+    if (open && frame === null) {
+      frame = document.createElement("iframe"); // only now, so that nobody is there who did not ask
+      frame.title = options.title ?? "Talk with us";
+      frame.src =
+        page.href + (options.token === undefined ? "" : `#token=${encodeURIComponent(options.token)}`);
+      root.append(frame);
+    }
+    if (frame !== null) frame.hidden = !open;
+    button.setAttribute("aria-expanded", String(open));
+    if (open) frame?.focus();
+    else button.focus();
+  }
+
+  button.addEventListener("click", () => show(frame === null || frame.hidden));
+  window.addEventListener("message", (event) => {
+    if (frame !== null && event.source === frame.contentWindow && event.data === "ravestate:close")
+      show(false);
+  });
+}

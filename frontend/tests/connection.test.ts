@@ -1,0 +1,97 @@
+import { afterEach, beforeEach, expect, test, vi } from "vitest";
+import { Backoff } from "../src/lib/backoff";
+import { Connection, type Status } from "../src/lib/connection";
+import { TestSocket } from "./socket";
+
+let statuses: Status[];
+let connection: Connection;
+
+beforeEach(() => {
+  vi.useFakeTimers();
+  TestSocket.all = [];
+  statuses = [];
+  connection = new Connection({
+    hello: () => ({ type: "hello", v: 1 }),
+    onframe: () => undefined,
+    onstatus: (status) => statuses.push(status),
+    open: TestSocket.make,
+    backoff: new Backoff(500, 4000, () => 1),
+  });
+  connection.start();
+});
+
+afterEach(() => {
+  connection.stop();
+  expect(vi.getTimerCount()).toBe(0);
+  vi.useRealTimers();
+});
+
+test("it says hello, and is open once it is welcomed", () => {
+  TestSocket.newest.open();
+  expect(TestSocket.newest.sent).toEqual([{ type: "hello", v: 1 }]);
+  expect(connection.send({ type: "ping" })).toBe(false);
+  TestSocket.newest.welcome("s");
+  expect(statuses).toEqual(["open"]);
+  expect(connection.send({ type: "ping" })).toBe(true);
+});
+
+test("a lost connection comes back, each time after a longer wait", () => {
+  TestSocket.newest.welcome("s");
+  TestSocket.newest.lose();
+  expect(statuses).toEqual(["open", "lost"]);
+  vi.advanceTimersByTime(499);
+  expect(TestSocket.all).toHaveLength(1);
+  vi.advanceTimersByTime(1);
+  expect(TestSocket.all).toHaveLength(2);
+  TestSocket.newest.lose();
+  vi.advanceTimersByTime(1000);
+  expect(TestSocket.all).toHaveLength(3);
+  TestSocket.newest.welcome("s", true);
+  TestSocket.newest.lose();
+  vi.advanceTimersByTime(500);
+  expect(TestSocket.all).toHaveLength(4);
+});
+
+test.each([
+  [1000, "ended"],
+  [4401, "token"],
+  [4400, "refused"],
+] as const)("closed with %i, it is %s, and does not come back", (code, status) => {
+  TestSocket.newest.welcome("s");
+  TestSocket.newest.lose(code);
+  expect(statuses.at(-1)).toBe(status);
+  vi.advanceTimersByTime(60_000);
+  expect(TestSocket.all).toHaveLength(1);
+});
+
+test("a server that is silent is asked, and taken for lost if it does not answer", () => {
+  const first = TestSocket.newest;
+  first.welcome("s");
+  vi.advanceTimersByTime(25_000);
+  expect(first.sent.at(-1)).toEqual({ type: "ping" });
+  first.tell({ type: "pong" });
+  vi.advanceTimersByTime(25_000 + 9_999);
+  expect(statuses).toEqual(["open"]);
+  vi.advanceTimersByTime(1);
+  expect(statuses).toEqual(["open", "lost"]);
+  expect(first.closed).toBe(true);
+});
+
+test("a server that takes the connection and never welcomes is given up", () => {
+  TestSocket.newest.open();
+  vi.advanceTimersByTime(10_000);
+  expect(statuses).toEqual(["lost"]);
+});
+
+test("when the network is back it does not wait", () => {
+  TestSocket.newest.lose();
+  connection.nudge();
+  expect(TestSocket.all).toHaveLength(2);
+});
+
+test("what comes from a socket that was given up is not heard", () => {
+  const first = TestSocket.newest;
+  connection.start();
+  expect(first.closed).toBe(true);
+  expect(first.onmessage).toBeNull();
+});

@@ -1,0 +1,164 @@
+import { afterEach, beforeEach, expect, test, vi } from "vitest";
+import { Conversation } from "../src/lib/conversation.svelte";
+import type { Message } from "../src/lib/protocol";
+import { TestSocket } from "./socket";
+
+let conversation: Conversation;
+
+beforeEach(() => {
+  vi.useFakeTimers();
+  TestSocket.all = [];
+  sessionStorage.clear();
+  history.replaceState(null, "", "/");
+  open();
+});
+
+afterEach(() => {
+  conversation.stop();
+  vi.useRealTimers();
+});
+
+function open(): void {
+  conversation = new Conversation({ open: TestSocket.make });
+  conversation.start();
+}
+
+function reload(): void {
+  conversation.stop();
+  open();
+}
+
+function message(n: number, from: "user" | "agent", text: string, id?: string): Message {
+  return { type: "message", n, from, text, time: 1000 * n, ...(id === undefined ? {} : { id }) };
+}
+
+function texts(): string[] {
+  return conversation.lines.map((line) => line.text);
+}
+
+function lastSaid(): string {
+  const frame = TestSocket.newest.sent.at(-1);
+  if (frame?.type !== "say") throw new Error("nothing was said");
+  return frame.id;
+}
+
+test("what is said waits until the server has it, and is not shown twice then", () => {
+  TestSocket.newest.welcome("s");
+  conversation.say("hello");
+  expect(conversation.lines).toMatchObject([{ text: "hello", from: "user" }]);
+  expect(conversation.lines[0]?.time).toBeUndefined();
+  TestSocket.newest.tell(message(1, "user", "hello", lastSaid()), message(2, "agent", "Hi!"));
+  expect(texts()).toEqual(["hello", "Hi!"]);
+  expect(conversation.lines[0]?.time).toBe(1000);
+});
+
+test("after a lost connection it asks for what it lacks, and says again what was not heard", () => {
+  TestSocket.newest.welcome("s");
+  TestSocket.newest.tell(message(1, "agent", "Hi!"));
+  TestSocket.newest.lose();
+  conversation.say("are you there?");
+  vi.advanceTimersByTime(1000);
+  TestSocket.newest.welcome("s", true);
+  expect(TestSocket.newest.sent[0]).toEqual({ type: "hello", v: 1, session: "s", last: 1 });
+  const id = lastSaid();
+  TestSocket.newest.tell(message(2, "user", "are you there?", id), message(3, "agent", "Yes."));
+  expect(texts()).toEqual(["Hi!", "are you there?", "Yes."]);
+});
+
+test("a message that comes twice is shown once", () => {
+  TestSocket.newest.welcome("s");
+  TestSocket.newest.tell(message(1, "agent", "Hi!"), message(1, "agent", "Hi!"));
+  expect(texts()).toEqual(["Hi!"]);
+});
+
+test("after a reload it takes up the conversation, and says again what was not heard", () => {
+  TestSocket.newest.welcome("s");
+  conversation.say("hello");
+  const id = lastSaid();
+  reload();
+  TestSocket.newest.welcome("s", true);
+  expect(TestSocket.newest.sent).toEqual([
+    { type: "hello", v: 1, session: "s", last: 0 },
+    { type: "say", id, text: "hello" },
+  ]);
+  TestSocket.newest.tell(message(1, "user", "hello", id));
+  reload();
+  TestSocket.newest.welcome("s", true);
+  expect(TestSocket.newest.sent).toHaveLength(1);
+});
+
+test("what comes in between stands before what was not heard yet", () => {
+  TestSocket.newest.welcome("s");
+  conversation.say("one");
+  TestSocket.newest.tell(message(1, "agent", "Hi!"));
+  expect(texts()).toEqual(["Hi!", "one"]);
+});
+
+test("an utterance grows, may be corrected, and is whole at its end", () => {
+  TestSocket.newest.welcome("s");
+  TestSocket.newest.tell({ type: "piece", at: 0, text: "Vermeer " }, { type: "piece", at: 8, text: "did." });
+  expect(conversation.partial).toBe("Vermeer did.");
+  TestSocket.newest.tell({ type: "piece", at: 0, text: "Rem" });
+  expect(conversation.partial).toBe("Rem");
+  TestSocket.newest.tell(message(1, "agent", "Rembrandt."));
+  expect([conversation.partial, ...texts()]).toEqual(["", "Rembrandt."]);
+});
+
+test("when the server has forgotten the conversation, a new one follows on it visibly", () => {
+  TestSocket.newest.welcome("s");
+  TestSocket.newest.tell(message(1, "agent", "Hi!"), message(2, "agent", "Welcome."));
+  TestSocket.newest.lose();
+  conversation.say("are you there?");
+  vi.advanceTimersByTime(1000);
+  TestSocket.newest.welcome("t");
+  TestSocket.newest.tell(message(1, "agent", "Hi again!"));
+  expect(conversation.lines).toMatchObject([
+    { text: "Hi!" },
+    { text: "Welcome." },
+    { text: "Hi again!", anew: true },
+    { text: "are you there?" },
+  ]);
+  expect(new Set(conversation.lines.map((line) => line.key)).size).toBe(4);
+});
+
+test("a conversation that has ended is not taken up again", () => {
+  TestSocket.newest.welcome("s");
+  conversation.leave();
+  expect(TestSocket.newest.sent.at(-1)).toEqual({ type: "bye" });
+  TestSocket.newest.tell(message(1, "agent", "Bye!"), { type: "ended", text: "you left" });
+  TestSocket.newest.lose(1000);
+  expect([conversation.status, conversation.ending]).toEqual(["ended", "you left"]);
+  conversation.again();
+  TestSocket.newest.welcome("t");
+  expect(TestSocket.newest.sent[0]).toEqual({ type: "hello", v: 1, last: 0 });
+  expect(texts()).toEqual([]);
+});
+
+test("the token of a link is presented, kept across reloads, and taken out of the address", () => {
+  history.replaceState(null, "", "/#token=sesame");
+  reload();
+  expect(location.hash).toBe("");
+  reload();
+  TestSocket.newest.open();
+  expect(TestSocket.newest.sent[0]).toMatchObject({ token: "sesame" });
+});
+
+test("a token that was refused may be replaced", () => {
+  TestSocket.newest.open();
+  TestSocket.newest.tell({ type: "error", code: "token", text: "a token is needed" });
+  TestSocket.newest.lose(4401);
+  expect([conversation.status, conversation.trouble]).toEqual(["token", "a token is needed"]);
+  conversation.present("sesame");
+  TestSocket.newest.open();
+  expect(TestSocket.newest.sent[0]).toMatchObject({ token: "sesame" });
+});
+
+test("a browser that keeps nothing loses nothing but the reload", () => {
+  const refuse = vi.spyOn(Storage.prototype, "setItem").mockImplementation(() => {
+    throw new DOMException("refused", "SecurityError");
+  });
+  TestSocket.newest.welcome("s");
+  conversation.say("hello");
+  expect(texts()).toEqual(["hello"]);
+  refuse.mockRestore();
+});

@@ -1,0 +1,29 @@
+// The pages. What is built goes into the Python package and is committed, so that users need no Node.
+import { svelte } from "@sveltejs/vite-plugin-svelte";
+import { defineConfig } from "vitest/config";
+
+export const outDir = "../src/ravestate/modules/platform/webio/page";
+
+export default defineConfig({
+  base: "./", // a page may be mounted anywhere
+  plugins: [svelte()],
+  build: {
+    outDir,
+    emptyOutDir: true,
+    target: "es2022",
+    assetsInlineLimit: 0,
+    modulePreload: { polyfill: false },
+    rolldownOptions: {
+      input: { chat: "index.html" },
+      output: {
+        // Fixed names: the server tells versions apart by their content.
+        entryFileNames: "assets/[name].js",
+        chunkFileNames: "assets/[name].js",
+        assetFileNames: "assets/[name][extname]",
+      },
+    },
+  },
+  server: { proxy: { "/ws": { target: "ws://127.0.0.1:8420", ws: true } } },
+  resolve: process.env.VITEST ? { conditions: ["browser"] } : {},
+  test: { environment: "happy-dom", include: ["tests/**/*.test.ts"] },
+});
