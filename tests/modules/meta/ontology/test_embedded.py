@@ -143,6 +143,10 @@ def test_nothing_is_written_when_there_is_hardly_space(
         with pytest.raises(PlatformError, match="the disk is full"):
             write().result()
     assert len(memory.find("Person").result()) == 1
+    memory.close().result()
+    assert "the disk is full" in failure(path=file.with_name("new.lbug"))
+    memory = open_here(path=file)  # what is there can be read, also now
+    assert len(memory.find("Person").result()) == 1
     monkeypatch.undo()
     memory.create("Person", name="Bob").result()
     assert len(memory.find("Thing").result()) == 2

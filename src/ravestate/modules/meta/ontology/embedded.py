@@ -6,7 +6,6 @@ import contextlib
 import ctypes
 import logging
 import os
-import re
 import shutil
 from collections.abc import Generator, Mapping, Sequence
 from contextlib import contextmanager
@@ -16,8 +15,10 @@ from typing import Any, cast
 from ravestate.errors import PlatformError
 
 from .copying import copy_database
-from .store import FORMAT, RawNode, RawRelation, check_format
-from .types import Kind, Types
+from .faults import is_failed_write, is_torn_log, reason, why_not_opened
+from .store import RawNode, RawRelation
+from .tables import missing_tables, undeclared_types
+from .types import Types
 
 __all__ = ["EmbeddedStore"]
 
@@ -32,18 +33,6 @@ RESERVE = 16 * 2**20
 
 LOG_LIMIT = 4 * 2**20
 """Bytes of the write-ahead log from which it is worked into the file."""
-
-COLUMNS: dict[Kind, str] = {
-    "text": "STRING",
-    "integer": "INT64",
-    "number": "DOUBLE",
-    "yes/no": "BOOL",
-    "date": "STRING",
-    "time": "STRING",
-}
-
-META = "_ravestate"
-"""The table that says how the rest is laid out. No type of a user's begins with ``_``."""
 
 log = logging.getLogger("ravestate.ontology")
 
@@ -81,7 +70,8 @@ class EmbeddedStore:
             path.parent.mkdir(parents=True, exist_ok=True, mode=0o700)
         except OSError as error:
             raise PlatformError(f"memory {path}: cannot make its folder: {error.strerror}") from error
-        self._check_space(0)
+        if not path.exists():
+            self._check_space(0)
         self._open()
 
     # ------------------------------------------------------------------------------------ statements
@@ -126,10 +116,10 @@ class EmbeddedStore:
             return result.get_all()
         except RuntimeError as error:
             said = str(error)
-            if "Cannot write to file" in said or "Cannot sync file" in said:
+            if is_failed_write(said):
                 self._get_stuck(said)
                 raise PlatformError(
-                    f"memory {self._path} cannot be written: {_reason(said)}. Make room on the disk; what was acknowledged is "
+                    f"memory {self._path} cannot be written: {reason(said)}. Make room on the disk; what was acknowledged is "
                     "safe, and memory goes on when there is"
                 ) from error
             raise PlatformError(f"memory {self._path} failed: {said.strip()}") from error
@@ -138,64 +128,15 @@ class EmbeddedStore:
 
     def prepare(self, types: Types) -> None:
         """Make room for all types, properties and relations that are not there yet."""
-        with self.transaction():
-            tables = {name for name, _ in self._execute("CALL show_tables() RETURN name, type")}
-            if META in tables:
-                [[found]] = self._execute(f"MATCH (m:`{META}` {{`key`: 'format'}}) RETURN m.`value`") or [
-                    [None]
-                ]
-                check_format(str(self._path), found)
-            elif tables:
-                raise PlatformError(
-                    f"{self._path} is a ladybug database of something else (it has {', '.join(sorted(tables)[:3])}): name another "
-                    "file with --set ontology.path=FILE. Nothing was changed"
-                )
-            else:
-                self._execute(f"CREATE NODE TABLE `{META}` (`key` STRING PRIMARY KEY, `value` INT64)")
-                self._execute(f"CREATE (:`{META}` {{`key`: 'format', `value`: {FORMAT}}})")
-            for name in types:
-                columns = types.properties(name)
-                if name not in tables:
-                    listed = ", ".join(["`id` STRING PRIMARY KEY", *_columns(columns)])
-                    self._execute(f"CREATE NODE TABLE `{name}` ({listed})")
-                else:
-                    self._add_columns(name, columns)
-            for name, relation in types.relations.items():
-                pairs = types.pairs(name)
-                if name not in tables:
-                    ends = [f"FROM `{source}` TO `{target}`" for source, target in pairs]
-                    self._execute(
-                        f"CREATE REL TABLE `{name}` ({', '.join([*ends, *_columns(relation.properties)])})"
-                    )
-                else:
-                    present = {
-                        (row[0], row[1]) for row in self._execute(f"CALL show_connection('{name}') RETURN *")
-                    }
-                    for source, target in pairs:
-                        if (source, target) not in present:
-                            self._execute(f"ALTER TABLE `{name}` ADD FROM `{source}` TO `{target}`")
-                    self._add_columns(name, relation.properties)
-
-    def _add_columns(self, table: str, properties: Mapping[str, Kind]) -> None:
-        present = self._info(table)
-        for name, kind in properties.items():
-            if name not in present:
-                self._execute(f"ALTER TABLE `{table}` ADD `{name}` {COLUMNS[kind]}")
-            elif present[name] != COLUMNS[kind]:
-                held = next((k for k, column in COLUMNS.items() if column == present[name]), present[name])
-                raise PlatformError(
-                    f"memory {self._path} has {table}.{name} as {held}, and the types say {kind}: write {name}: {held}, or give the "
-                    "property another name. Nothing was changed"
-                )
-
-    def _info(self, table: str) -> dict[str, str]:
-        return {row[0]: row[1] for row in self._execute(f"CALL table_info('{table}') RETURN name, type")}
+        missing = list(missing_tables(self._execute, types, str(self._path)))
+        if missing:  # else nothing is written: a memory may be read from a full disk
+            with self.transaction():
+                for statement in missing:
+                    self._execute(statement)
 
     def undeclared(self, types: Types) -> list[str]:
         """The types of nodes in the file that `types` do not have."""
-        rows = self._execute("CALL show_tables() RETURN name, type")
-        unknown = {str(name) for name, kind in rows if kind == "NODE"} - {META, *types}
-        return sorted(name for name in unknown if self._execute(f"MATCH (n:`{name}`) RETURN n.`id` LIMIT 1"))
+        return undeclared_types(self._execute, types)
 
     # ------------------------------------------------------------------------------------ the file
 
@@ -203,8 +144,8 @@ class EmbeddedStore:
         try:
             self._connect()
         except RuntimeError as error:
-            if "wal file" not in str(error).lower():
-                raise PlatformError(_why_not(self._path, str(error))) from error
+            if not is_torn_log(str(error)):
+                raise PlatformError(why_not_opened(self._path, str(error))) from error
             self._save_what_can_be_read()
         self._log_good = self._log_size()
         with contextlib.suppress(OSError):  # of another user's, who lets us write it
@@ -239,7 +180,7 @@ class EmbeddedStore:
                 f"memory {self._path} has a damaged log, which cannot be copied before it is mended: {error.strerror}"
             ) from error
         except RuntimeError as error:
-            raise PlatformError(_why_not(self._path, str(error))) from error
+            raise PlatformError(why_not_opened(self._path, str(error))) from error
         log.warning(
             "memory %s has a damaged log: what stands before the damage was read, and the log as it was is kept as %s",
             self._path,
@@ -337,7 +278,7 @@ class EmbeddedStore:
         self._open()
 
     def _get_stuck(self, said: str) -> None:
-        self._stuck = _reason(said)
+        self._stuck = reason(said)
         with contextlib.suppress(OSError):
             os.truncate(self._log, self._log_good)  # a record that is torn would stop the next opening
         for held in (self._connection, self._database):  # never collected: that would end the process
@@ -360,44 +301,8 @@ class EmbeddedStore:
             probe.unlink(missing_ok=True)
 
 
-def _columns(properties: Mapping[str, Kind]) -> list[str]:
-    return [f"`{name}` {COLUMNS[kind]}" for name, kind in properties.items()]
-
-
 def _decoded(value: Any) -> Any:
     if isinstance(value, dict) and "_LABEL" in value:
         found = cast("dict[str, Any]", value)
         return (RawRelation if "_SRC" in found else RawNode)(found["_LABEL"], found)
     return cast("Any", value)
-
-
-def _reason(said: str) -> str:
-    """Why a write failed, of what ladybug says about it."""
-    reason = said.rpartition("Error: ")[2].strip().rstrip(".")
-    return reason if reason not in ("", "Success", "No such file or directory") else "the disk is full"
-
-
-def _why_not(path: Path, said: str) -> str:
-    """What a user is told when a file cannot be opened."""
-    first = said.strip().splitlines()[0] if said.strip() else "no reason given"
-    if "set lock" in said:
-        held = re.search(r"PID (\d+)", said)
-        who = f"process {held[1]}" if held else "another process"
-        return (
-            f"memory {path} is in use by {who}: only one process may have it open. End that agent, or name another file "
-            "with --set ontology.path=FILE"
-        )
-    if version := re.search(r"file version: (\d+), Current build storage version: (\d+)", said):
-        newer = int(version[1]) > int(version[2])
-        return (
-            f"memory {path} was written by {'a newer' if newer else 'an older'} version of ladybug (format {version[1]}; this one "
-            f"reads {version[2]}): "
-            + ("pip install --upgrade ladybug" if newer else "export it with that one, and load it here")
-            + ", or name another file with --set ontology.path=FILE. Nothing was changed"
-        )
-    if "Cannot open file" in said or "directory" in said:
-        return f"memory {path} cannot be opened: {first.rpartition(': ')[2] or first}. Name another file with --set ontology.path=FILE"
-    return (
-        f"memory {path} is broken, or no file of memory ({first}): move it away to begin anew, or put a copy of it in its "
-        "place. Nothing was changed"
-    )
