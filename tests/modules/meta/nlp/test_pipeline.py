@@ -121,3 +121,12 @@ def test_reading_takes_no_other_library_along() -> None:
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout == "set()\n"
+
+
+def test_a_pipeline_without_a_parser_reads_the_words(tmp_path: Path) -> None:
+    import spacy
+
+    spacy.blank("de").to_disk(tmp_path / "blank")
+    seen = analyse("Wo wohnst du? Ja.", Pipeline(str(tmp_path / "blank")))
+    assert [word.text for word in seen.tree.words] == ["Wo", "wohnst", "du", "?", "Ja", "."]
+    assert seen.triples == ()

@@ -8,8 +8,9 @@ from dataclasses import dataclass
 
 from .answer import YesNo, yesno_of
 from .entity import Entity
+from .game import wants_to_play
+from .greeting import says_bye, says_hi
 from .inquiry import question_of
-from .intents import says_bye, says_hi, wants_to_play
 from .pipeline import Pipeline
 from .question_word import QuestionWord
 from .statements import triples_of
