@@ -1,6 +1,8 @@
 """The algebra of conditions: it builds values, and refuses what would silently mean something else."""
 
+import functools
 import re
+from collections.abc import AsyncIterator, Iterator
 
 import pytest
 
@@ -114,3 +116,75 @@ def test_predicates_are_functions() -> None:
         rs.DeclarationError, match=r"demo:mood\.holds\('calm'\): expected a function of the value"
     ):
         mood.holds("calm")
+
+
+class Asks:
+    """Predicates that are objects and methods."""
+
+    def __init__(self, word: str) -> None:
+        self.word = word
+
+    def __call__(self, value: str) -> bool:
+        return value == self.word
+
+    async def later(self, value: str) -> bool:
+        return value == self.word
+
+
+class AsksLater:
+    async def __call__(self, value: str) -> bool:
+        return True
+
+
+async def coroutine(value: object) -> bool:
+    return False
+
+
+def generator(value: object) -> Iterator[bool]:
+    yield False
+
+
+async def both(value: object) -> AsyncIterator[bool]:
+    yield False
+
+
+@pytest.mark.parametrize(
+    "predicate",
+    [
+        coroutine,
+        generator,
+        both,
+        Asks("x").later,
+        AsksLater(),
+        functools.partial(coroutine),
+        functools.partial(functools.partial(AsksLater())),
+    ],
+)
+def test_a_predicate_whose_call_only_makes_an_object_is_refused(predicate: object) -> None:
+    """A coroutine is true, whatever it would return."""
+    with pytest.raises(
+        rs.DeclarationError,
+        match=rf"demo:a\.where\(.*\) \({HERE}:\d+\): .* always true: write a plain function of the payload",
+    ):
+        a.where(predicate)
+    with pytest.raises(
+        rs.DeclarationError, match=rf"demo:mood\.holds\(.*\) \({HERE}:\d+\): .* plain function of the value"
+    ):
+        mood.holds(predicate)
+
+
+@pytest.mark.parametrize(
+    "predicate",
+    [cheerful, bool, str.isupper, Asks("x"), Asks("x").__call__, functools.partial(cheerful), re.Pattern],
+)
+def test_whatever_returns_at_once_is_a_predicate(predicate: object) -> None:
+    assert a.where(predicate).predicates == (predicate,)
+    assert mood.holds(predicate).predicate == predicate
+
+
+def test_a_condition_of_any_depth_can_be_read() -> None:
+    condition: rs.Condition = a
+    for _ in range(3000):
+        condition = AllOf((b, AnyOf((condition, c))))
+    assert repr(condition).startswith("demo:b & (demo:b & (demo:b & (")
+    assert repr(condition).endswith("| demo:c) | demo:c) | demo:c)")

@@ -3,6 +3,7 @@
 import pytest
 
 import ravestate as rs
+from ravestate.declare.condition import AllOf, AnyOf
 from ravestate.policy.clauses import MAX_CLAUSES, normal_form
 
 demo = rs.Module("demo")
@@ -50,12 +51,47 @@ def pairs(count: int) -> rs.Condition:
     return condition
 
 
-def test_too_many_clauses_are_refused_before_they_are_made() -> None:
-    assert len(normal_form(pairs(8))) == MAX_CLAUSES == 256
+@pytest.mark.parametrize(
+    ("count", "alternatives"), [(9, "512"), (20, "1048576"), (20_000, "more than 10\\^6020")]
+)
+def test_too_many_clauses_are_refused_before_they_are_made(count: int, alternatives: str) -> None:
     with pytest.raises(
-        rs.DeclarationError, match="has 512 alternatives, more than 256: raise a signal of its own"
+        rs.DeclarationError,
+        match=f"condition has {alternatives} alternatives, more than 256: raise a signal of its own",
     ):
-        normal_form(pairs(60))
+        normal_form(pairs(count))
+
+
+def test_as_many_clauses_as_are_allowed() -> None:
+    assert len(normal_form(pairs(8))) == MAX_CLAUSES == 256
+
+
+def test_a_part_with_too_many_clauses_is_refused() -> None:
+    with pytest.raises(rs.DeclarationError, match="condition has a part that has 512 alternatives"):
+        normal_form(a & pairs(9) | b)
+
+
+def test_a_part_that_stands_in_many_places_is_looked_at_once() -> None:
+    condition: rs.Condition = a
+    for _ in range(60):
+        condition = condition & b | condition & c
+    with pytest.raises(rs.DeclarationError, match="alternatives, more than 256"):
+        normal_form(condition)
+
+
+def test_depth_is_no_limit() -> None:
+    module = rs.Module("deep")
+    signals = [module.signal(f"s{number}") for number in range(2000)]
+    nested: rs.Condition = signals[0]
+    for signal in signals[1:]:
+        nested = signal & nested
+    (one,) = normal_form(nested)
+    assert [c.signal for c in one.constraints] == signals[:0:-1] + signals[:1]
+    layers: rs.Condition = signals[0]
+    for signal in signals[1:]:
+        layers = AllOf((signal, AnyOf((layers,))))
+    assert normal_form(layers) == normal_form(nested)
+    assert repr(AnyOf((layers, a))).count("(") == 1999
 
 
 def test_what_is_no_condition_is_refused() -> None:

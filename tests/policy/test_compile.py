@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 
 import ravestate as rs
+from ravestate.testing import simulate
 
 HERE = re.escape(__file__)
 
@@ -250,7 +251,60 @@ def test_too_many_clauses() -> None:
     for number in range(9):
         condition = condition & (m.signal(f"c{number}") | m.signal(f"d{number}"))
     rule(m, "r", condition)
-    assert "when: its condition has 512 alternatives, more than 256" in faults(m)[0]
+    assert "when: its condition has 1024 alternatives, more than 256" in faults(m)[0]
+
+
+@pytest.mark.parametrize(
+    ("least", "most"),
+    [(0, 0), (0, None), (0, 1e-9), (3, 3), (5, 5), (1e9, None), (4.5, 5), (rs.setting("after"), 2), (2, rs.setting("after"))],
+)  # fmt: skip
+def test_ages_that_some_moment_fulfils(least: Any, most: Any) -> None:
+    m = rs.Module("m", settings=Late)
+    rule(m, "r", m.signal("go").min_age(least).max_age(most))
+    (need,) = rs.compile(m).clauses("m:r")[0].needs
+    assert need.min_age <= need.max_age
+
+
+@pytest.mark.parametrize(
+    ("least", "most", "text"),
+    [
+        (1, 0, "at least 1 s and at most 0 s old: write .min_age(1).max_age(None)"),
+        (1e-9, 0, "at least 1e-09 s and at most 0 s old"),
+        (5.5, 5, "at least 5.5 s and at most 5 s old"),
+        (rs.setting("after"), 0, "at least 2 s and at most 0 s old: write .min_age(2).max_age(None)"),
+        (2.5, rs.setting("after"), "at least 2.5 s and at most 2 s old"),
+    ],
+)
+def test_ages_that_no_moment_fulfils(least: Any, most: Any, text: str) -> None:
+    assert text in only_fault(lambda m, go: rule(m, "r", go.min_age(least).max_age(most)), settings=Late)
+    assert text in only_fault(  # also where nobody else cares
+        lambda m, go: rule(m, "r", m.signal("other") | go.detached().min_age(least).max_age(most)),
+        settings=Late,
+    )
+
+
+def test_the_ages_of_until_are_looked_at_too() -> None:
+    text = only_fault(lambda m, go: rule(m, "r", go, until=go.min_age(1).max_age(0)))
+    assert "until: m:go can never be at least 1 s and at most 0 s old" in text
+
+
+def test_a_spike_of_no_age_is_still_there_when_it_is_born() -> None:
+    m = rs.Module("m")
+    go = m.signal("go")
+    rule(m, "now", go.max_age(0))
+    with simulate(m) as sim:
+        sim.emit(go)
+        assert sim.fired == ["m:now"]
+
+
+# ---------------------------------------------------------------------------------------- size
+
+
+def test_modules_that_require_each_other_in_a_row_of_any_length() -> None:
+    module = rs.Module("m0")
+    for number in range(1, 3000):
+        module = rs.Module(f"m{number}", requires=[module])
+    assert [m.name for m in rs.compile(module).modules][:4] == ["core", "m0", "m1", "m2"]
 
 
 # ---------------------------------------------------------------------------------------- settings

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import TYPE_CHECKING, Any, NoReturn, cast
 
 from ravestate.declare.settings import Number, SettingRef, type_of_number
 from ravestate.declare.wording import place_of_call, spelt
@@ -18,16 +18,27 @@ if TYPE_CHECKING:
     from ravestate.declare.signal import Signal
     from ravestate.declare.slot import Slot
 
-__all__ = ["DEFAULT_MAX_AGE", "AllOf", "AnyOf", "Condition", "Constraint", "Holds"]
+__all__ = ["DEFAULT_MAX_AGE", "AllOf", "AnyOf", "Condition", "Constraint", "Holds", "checked_predicate"]
 
 DEFAULT_MAX_AGE = 5.0
 """Seconds after which a spike no longer fulfils a constraint that does not say otherwise (L4)."""
 
 Predicate = Callable[[Any], object]
 
+LATER = 0x20 | 0x80 | 0x200
+"""Flags of code whose call only makes a generator, a coroutine or both (``inspect.CO_...``, without importing inspect)."""
+
 
 class Condition:
-    """What a rule waits for. Combine with ``&`` (and) and ``|`` (or)."""
+    """What a rule waits for. Combine with ``&`` (and) and ``|`` (or); ``&`` binds tighter.
+
+    Example:
+        >>> import ravestate as rs
+        >>> demo = rs.Module("demo")
+        >>> heard, seen, bored = demo.signal("heard"), demo.signal("seen"), demo.signal("bored")
+        >>> heard & seen.max_age(1) | bored.min_age(2)
+        demo:heard & demo:seen.max_age(1.0) | demo:bored.min_age(2.0)
+    """
 
     __slots__ = ()
 
@@ -55,7 +66,7 @@ class Constraint(Condition):
     predicates: tuple[Predicate, ...] = ()
 
     def min_age(self, seconds: Number) -> Constraint:
-        """Count a spike only once it is `seconds` old (a number, or a setting's name)."""
+        """Count a spike only once it is `seconds` old (a number, or a setting's name), and not yet older than `max_age`."""
         return replace(self, min_age_=_age(seconds, "min_age"))
 
     def max_age(self, seconds: Number | None) -> Constraint:
@@ -67,10 +78,22 @@ class Constraint(Condition):
         return replace(self, is_detached=True)
 
     def where(self, predicate: Predicate) -> Constraint:
-        """Accept only spikes for whose payload ``predicate(payload)`` is true. Adds ln 2 to the utility (L9)."""
-        if not callable(predicate):
-            raise DeclarationError(f"{self}.where({predicate!r}): expected a function of the payload")
-        return replace(self, predicates=(*self.predicates, predicate))
+        """Accept only spikes for whose payload ``predicate(payload)`` is true. Adds ln 2 to the utility (L9).
+
+        Args:
+            predicate: A plain, quick function: it is called on the loop for each spike that is offered to the rule.
+
+        Raises:
+            DeclarationError: It is no function, or an asynchronous one.
+
+        Example:
+            >>> import ravestate as rs
+            >>> rs.Module("demo").signal("word", payload=str).where(str.isupper)
+            demo:word.where(isupper)
+        """
+        return replace(
+            self, predicates=(*self.predicates, checked_predicate(predicate, f"{self}.where", "payload"))
+        )
 
     def __repr__(self) -> str:
         text = self.signal.name
@@ -101,7 +124,7 @@ class AllOf(Condition):
     parts: tuple[Condition, ...]
 
     def __repr__(self) -> str:
-        return " & ".join(f"({p})" if isinstance(p, AnyOf) else str(p) for p in self.parts)
+        return _written(self)
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -111,7 +134,29 @@ class AnyOf(Condition):
     parts: tuple[Condition, ...]
 
     def __repr__(self) -> str:
-        return " | ".join(str(p) for p in self.parts)
+        return _written(self)
+
+
+def checked_predicate(predicate: object, what: str, of: str) -> Predicate:
+    """A predicate, if it is a plain function: the call of another kind only makes an object, which is always true.
+
+    Raises:
+        DeclarationError: It is no function, or an asynchronous one, or a generator.
+    """
+    if not callable(predicate):
+        raise DeclarationError(f"{what}({predicate!r}): expected a function of the {of}")
+    function: Any = predicate
+    while not hasattr(function, "__code__") and hasattr(function, "func"):
+        function = function.func  # functools.partial
+    if not hasattr(function, "__code__"):
+        function = cast("Any", type(function)).__call__
+    code = getattr(function, "__code__", None)
+    if code is not None and code.co_flags & LATER:
+        raise DeclarationError(
+            f"{what}({_title(predicate)}) ({place_of_call()}): what an asynchronous function or a generator returns is "
+            f"always true: write a plain function of the {of}, and move what takes time to a rule that emits a signal"
+        )
+    return predicate
 
 
 def _parts(condition: Condition, kind: type[AllOf] | type[AnyOf]) -> tuple[Condition, ...]:
@@ -136,6 +181,24 @@ def _age(seconds: object, what: str) -> Number:
             f"{what}({seconds!r}): expected seconds as a number, or a setting: {what}(rs.setting('name'))"
         )
     return seconds if isinstance(seconds, SettingRef) else float(seconds)
+
+
+def _written(condition: Condition) -> str:
+    """A condition as it was written, of any depth."""
+    words: list[str] = []
+    stack: list[Condition | str] = [condition]
+    while stack:
+        item = stack.pop()
+        if not isinstance(item, (AllOf, AnyOf)):
+            words.append(str(item))
+            continue
+        inner: list[Condition | str] = []
+        for part in item.parts:
+            bracketed = isinstance(item, AllOf) and isinstance(part, AnyOf)
+            inner.append(" & " if isinstance(item, AllOf) else " | ")
+            inner.extend(("(", part, ")") if bracketed else (part,))
+        stack.extend(reversed(inner[1:]))
+    return "".join(words)
 
 
 def _title(predicate: Predicate) -> str:

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Any, Generic, NamedTuple, NoReturn, TypeVar
 
-from ravestate.declare.condition import Holds, Predicate
+from ravestate.declare.condition import Holds, Predicate, checked_predicate
 from ravestate.declare.signal import Keep, Signal
 from ravestate.declare.wording import place_of_call
 from ravestate.errors import DeclarationError, RuleError, nearest
@@ -85,9 +85,7 @@ class Slot(Generic[T]):
 
     def holds(self, predicate: Predicate) -> Holds:
         """Gate a rule by ``predicate(value)`` of the slot's present value. Adds ln 2 to the utility (L9)."""
-        if not callable(predicate):
-            raise DeclarationError(f"{self.name}.holds({predicate!r}): expected a function of the value")
-        return Holds(self, predicate)
+        return Holds(self, checked_predicate(predicate, f"{self.name}.holds", "value"))
 
     def __getattr__(self, attribute: str) -> NoReturn:
         if attribute.startswith("__"):

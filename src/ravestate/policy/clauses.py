@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, cast
 
@@ -13,6 +15,8 @@ __all__ = ["MAX_CLAUSES", "Conjunction", "normal_form"]
 
 MAX_CLAUSES = 256
 """A condition with more conjunctions than this is a mistake of the designer's, and is refused."""
+
+Atoms = tuple[Constraint | Holds, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,42 +30,84 @@ class Conjunction:
 def normal_form(condition: Condition) -> tuple[Conjunction, ...]:
     """Bring a condition into disjunctive normal form, in declaration order, without doubles.
 
+    Args:
+        condition: Of any depth.
+
     Raises:
-        DeclarationError: More than `MAX_CLAUSES` conjunctions.
+        DeclarationError: More than `MAX_CLAUSES` conjunctions, or a part that is no condition.
+
+    Example:
+        >>> import ravestate as rs
+        >>> demo = rs.Module("demo")
+        >>> a, b, c = (demo.signal(name) for name in "abc")
+        >>> [conjunction.constraints for conjunction in normal_form(a & (b | c))]
+        [(demo:a, demo:b), (demo:a, demo:c)]
     """
+    parts = list(_inner_first(condition))
+    _check(condition, parts)
+    forms: dict[int, list[Atoms]] = {}
+    for part in parts:
+        forms[id(part)] = _expanded(part, forms)
     return tuple(
         dict.fromkeys(
             Conjunction(
                 tuple(dict.fromkeys(a for a in atoms if isinstance(a, Constraint))),
                 tuple(dict.fromkeys(a for a in atoms if isinstance(a, Holds))),
             )
-            for atoms in _expand(condition)
+            for atoms in forms[id(condition)]
         )
     )
 
 
-def _expand(condition: Condition) -> list[tuple[Constraint | Holds, ...]]:
-    if isinstance(condition, Signal):
-        return [(Constraint(cast("Signal[Any]", condition)),)]
-    if isinstance(condition, (Constraint, Holds)):
-        return [(condition,)]
-    if isinstance(condition, AnyOf):
-        found = [atoms for part in condition.parts for atoms in _expand(part)]
-    elif isinstance(condition, AllOf):
-        found: list[tuple[Constraint | Holds, ...]] = [()]
-        for part in condition.parts:
-            right = _expand(part)
-            _check(len(found) * len(right))
-            found = [a + b for a in found for b in right]
-    else:
-        raise DeclarationError(f"{condition!r} is no condition: combine signals with & and |")
-    _check(len(found))
+def _inner_first(condition: Condition) -> Iterator[Condition]:
+    """Every part of a condition once, behind its own parts."""
+    seen: set[int] = set()
+    stack = [(condition, False)]
+    while stack:
+        part, done = stack.pop()
+        if done:
+            yield part
+        elif id(part) not in seen:
+            seen.add(id(part))
+            stack.append((part, True))
+            if isinstance(part, (AllOf, AnyOf)):
+                stack.extend((inner, False) for inner in part.parts)
+
+
+def _check(condition: Condition, parts: list[Condition]) -> None:
+    """Refuse what is no condition, or has too many conjunctions, before any is made."""
+    counts: dict[int, int] = {}
+    for part in parts:
+        key = id(part)
+        if isinstance(part, (AllOf, AnyOf)):
+            of_parts = [counts[id(inner)] for inner in part.parts]
+            count = sum(of_parts) if isinstance(part, AnyOf) else math.prod(of_parts)
+            if count > MAX_CLAUSES:
+                whole = "condition" if part is condition else "condition has a part that"
+                raise DeclarationError(
+                    f"its {whole} has {_shown(count)} alternatives, more than {MAX_CLAUSES}: raise a signal of its own "
+                    "for a part of it"
+                )
+            counts[key] = count
+        elif isinstance(part, (Signal, Constraint, Holds)):
+            counts[key] = 1
+        else:
+            raise DeclarationError(f"{part!r} is no condition: combine signals with & and |")
+
+
+def _shown(count: int) -> str:
+    return f"{count}" if count < 10**9 else f"more than 10^{int((count.bit_length() - 1) * math.log10(2))}"
+
+
+def _expanded(part: Condition, forms: dict[int, list[Atoms]]) -> list[Atoms]:
+    """The conjunctions of a part whose own parts have been expanded."""
+    if isinstance(part, AnyOf):
+        return [atoms for inner in part.parts for atoms in forms[id(inner)]]
+    if isinstance(part, Signal):
+        return [(Constraint(cast("Signal[Any]", part)),)]
+    if not isinstance(part, AllOf):
+        return [(cast("Constraint | Holds", part),)]  # as checked
+    found: list[Atoms] = [()]
+    for inner in part.parts:
+        found = [left + right for left in found for right in forms[id(inner)]]
     return found
-
-
-def _check(count: int) -> None:
-    if count > MAX_CLAUSES:
-        raise DeclarationError(
-            f"its condition has {count} alternatives, more than {MAX_CLAUSES}: raise a signal of its own "
-            "for a part of it"
-        )

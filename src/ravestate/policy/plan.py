@@ -7,12 +7,15 @@ what it concerns and never by how many rules there are.
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ravestate.declare.condition import Constraint, Holds, Predicate
 from ravestate.declare.rule import Rule
 from ravestate.declare.signal import Signal
 from ravestate.declare.slot import Slot
+
+if TYPE_CHECKING:
+    from ravestate.policy.pathways import Pathways
 
 __all__ = ["NO_INFORMATION", "Clause", "Need", "RulePlan", "SignalPlan", "SlotPlan"]
 
@@ -123,21 +126,24 @@ class Clause:
 
     Attributes:
         signals: The signals of its constraints, as declared.
-        pathways: The completed pathways (L8), cheapest first.
+        pathways: The completed pathways (L8), the cheapest first. There may be exponentially many; at most
+            `MAX_PATHWAYS` are told (``policy/pathways.py``), and the first is the least of all.
         utility: The least self-information among its pathways, in nats (L9).
     """
 
     __slots__ = (
+        "_pathways",
         "all_bits",
         "asks_detached",
         "base",
+        "completed",
         "cyclic",
         "firm_bits",
         "guards",
         "index",
+        "least",
         "needs",
         "number",
-        "pathways",
         "reflexive",
         "rule",
         "signals",
@@ -154,7 +160,9 @@ class Clause:
         self.needs: tuple[Need, ...] = ()
         self.guards: tuple[tuple[SlotPlan, Holds], ...] = ()
         self.signals: tuple[Signal[Any], ...] = ()
-        self.pathways: tuple[frozenset[Signal[Any]], ...] = ()
+        self.completed: Pathways | None = None  # those of the policy
+        self.least = 0  # the pathway whose utility it has, in the bits of `completed`
+        self._pathways: tuple[frozenset[Signal[Any]], ...] | None = None
         self.utility = 0.0
         self.base = 0.0  # utility (or NO_INFORMATION) x weight
         self.all_bits = 0
@@ -163,6 +171,12 @@ class Clause:
         self.simple = False  # one need, of any age, and no gate: whoever takes a spike is ready
         self.reflexive = False  # it hears the built-in flags: what it does changes neither (L22)
         self.cyclic = False  # its rule may cause, without detachment, one of its own needs
+
+    @property
+    def pathways(self) -> tuple[frozenset[Signal[Any]], ...]:
+        if self._pathways is None:
+            self._pathways = () if self.completed is None else self.completed.of_clause(self)
+        return self._pathways
 
     def __repr__(self) -> str:
         return self.rule.name if len(self.rule.clauses) <= 1 else f"{self.rule.name}[{self.number}]"

@@ -142,9 +142,7 @@ class Policy:
             return self
         from ravestate.policy.compile import build
 
-        policy = build(self.modules, self.declared, settings)
-        assert policy is not None  # build raises when it is given no list for the faults
-        return policy
+        return build(self.modules, self.declared, settings)
 
     def with_rule(self, rule: Rule[Any, Any], settings: Mapping[str, Any] | None = None) -> Policy:
         """This policy and one more rule, over the signals and slots that it has.
@@ -170,9 +168,7 @@ class Policy:
                     )
                 ]
             )
-        policy = build(self.modules, (*self.declared, rule), self.settings if settings is None else settings)
-        assert policy is not None  # as above
-        return policy
+        return build(self.modules, (*self.declared, rule), self.settings if settings is None else settings)
 
     def __repr__(self) -> str:
         return f"<policy of {len(self.rules)} rules in {len(self.modules)} modules>"

@@ -1,0 +1,121 @@
+"""The graph in which clauses are completed (L8), in bits.
+
+Each signal is completed by one of its *alternatives*: a conjunction of signals that may cause it, or nothing, if it
+is an input or has no causes. A pathway of a clause is thus a set of signals that holds the clause's own, and with
+each signal one of its alternatives; where a cycle closes, the set holds what is asked for already.
+
+Sets of signals are integers here. Bit *n* stands for the *n*-th signal in an order in which causes come before their
+effects, so that the highest bit is the signal that nothing else of the set can lead to, cycles apart.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+
+from ravestate.declare.signal import Signal
+from ravestate.policy.causes import Causes
+from ravestate.policy.components import components
+from ravestate.policy.plan import RulePlan, SignalPlan
+
+__all__ = ["UNIT", "Completion", "each"]
+
+UNIT = 1 << 60
+"""Information is summed in integers of nats / `UNIT`: equal sums compare equal whatever the order of summation."""
+
+
+class Completion:
+    """The alternatives of every signal, and the information that each carries.
+
+    Attributes:
+        place: For each signal, by its index, its place in the order.
+        alternatives: For each place the alternatives, each as places.
+        bare: For each place whether it may stand without causes.
+        information: For each place its self-information in nats / `UNIT` (L9).
+        components: The places that lead to each other once what may stand bare does so; causes first.
+        cycle: For each place the set of those that lead to it and to which it leads; 0 if there are none.
+    """
+
+    __slots__ = (
+        "_signals",
+        "alternatives",
+        "bare",
+        "components",
+        "cycle",
+        "information",
+        "place",
+    )
+
+    def __init__(self, signals: Sequence[SignalPlan], rules: Sequence[RulePlan], causes: Causes) -> None:
+        found = [_alternatives(signal, causes) for signal in signals]
+        bare = [
+            signal.input or not found[signal.index] or frozenset() in found[signal.index]
+            for signal in signals
+        ]
+        pruned = components([() if bare[s] else causes.direct[s] for s in range(len(signals))])
+        order = [signal for members in pruned.members for signal in members]
+        self.place = [0] * len(signals)
+        for place, signal in enumerate(order):
+            self.place[signal] = place
+        self.components = [[self.place[s] for s in members] for members in pruned.members]
+        self.bare = [bare[s] for s in order]
+        self.alternatives = [
+            tuple(tuple(sorted(self.place[c] for c in causes_)) for causes_ in found[s] if causes_)
+            for s in order
+        ]
+        counts = _counts(signals, rules, causes)
+        self.information = [
+            round(-math.log(counts[s] / len(rules)) * UNIT) if counts[s] else 0 for s in order
+        ]
+        self._signals: list[Signal[object]] = [signals[s].signal for s in order]
+        self.cycle = [0] * len(signals)
+        for members in causes.components.members:
+            if len(members) > 1 or members[0] in causes.direct[members[0]]:
+                cycle = sum(1 << self.place[member] for member in members)
+                for member in members:
+                    self.cycle[self.place[member]] = cycle
+
+    def weigh(self, bits: int) -> int:
+        """The information of a set of signals."""
+        return sum(self.information[place] for place in each(bits))
+
+    def signals(self, bits: int) -> frozenset[Signal[object]]:
+        """The set itself."""
+        return frozenset(self._signals[place] for place in each(bits))
+
+
+def each(bits: int) -> Iterator[int]:
+    """The places in a set, the highest first."""
+    while bits:
+        place = bits.bit_length() - 1
+        yield place
+        bits ^= 1 << place
+
+
+def _alternatives(signal: SignalPlan, causes: Causes) -> dict[frozenset[int], None]:
+    return dict.fromkeys(
+        frozenset(need.signal.index for need in clause.needs if not need.detached)
+        for rule in causes.causes[signal.index]
+        for clause in rule.clauses
+    )
+
+
+def _counts(signals: Sequence[SignalPlan], rules: Sequence[RulePlan], causes: Causes) -> list[int]:
+    """For each signal how many rules have it on any of their pathways: those to whose signals it leads."""
+    of, members = causes.components.of, causes.components.members
+    completed = [0] * len(
+        members
+    )  # for each component the rules to whose non-detached needs it leads, as bits
+    looked_at = [0] * len(signals)
+    for rule in rules:
+        bit = 1 << rule.index
+        for clause in rule.clauses:
+            for need in clause.needs:
+                if need.detached:
+                    looked_at[need.signal.index] |= bit
+                else:
+                    completed[of[need.signal.index]] |= bit
+    for number in reversed(range(len(members))):  # effects first
+        for cause in {of[cause] for member in members[number] for cause in causes.direct[member]}:
+            completed[cause] |= completed[number]
+    return [(completed[of[s]] | looked_at[s]).bit_count() for s in range(len(signals))]

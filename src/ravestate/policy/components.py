@@ -1,0 +1,66 @@
+"""Strongly connected components of a graph, without recursion (Tarjan 1972)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+__all__ = ["Components", "components"]
+
+
+@dataclass(frozen=True, slots=True)
+class Components:
+    """The components of a graph.
+
+    Attributes:
+        members: The nodes of each component; it stands behind every other component that it leads to.
+        of: For each node the number of its component.
+    """
+
+    members: list[list[int]]
+    of: list[int]
+
+
+def components(edges: Sequence[Sequence[int]]) -> Components:
+    """Find the components of the graph in which node `n` leads to each of ``edges[n]``.
+
+    Example:
+        >>> components([[1], [2], [1], [0]]).members
+        [[2, 1], [0], [3]]
+    """
+    members: list[list[int]] = []
+    of = [-1] * len(edges)
+    number = [-1] * len(edges)  # in the order in which the nodes are come upon
+    low = [0] * len(edges)  # the least number of an unfinished node that is led back to
+    unfinished: list[int] = []
+    count = 0
+    for root in range(len(edges)):
+        if number[root] >= 0:
+            continue
+        way = [(root, iter(edges[root]))]
+        number[root] = low[root] = count
+        count += 1
+        unfinished.append(root)
+        while way:
+            node, ahead = way[-1]
+            for other in ahead:
+                if number[other] < 0:
+                    number[other] = low[other] = count
+                    count += 1
+                    unfinished.append(other)
+                    way.append((other, iter(edges[other])))
+                    break
+                if of[other] < 0:
+                    low[node] = min(low[node], number[other])
+            else:
+                way.pop()
+                if way:
+                    above = way[-1][0]
+                    low[above] = min(low[above], low[node])
+                if low[node] == number[node]:
+                    component: list[int] = []
+                    while not component or component[-1] != node:
+                        component.append(unfinished.pop())
+                        of[component[-1]] = len(members)
+                    members.append(component)
+    return Components(members, of)

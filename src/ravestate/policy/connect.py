@@ -1,0 +1,75 @@
+"""What the parts of a policy are to each other: who hears whom, which needs belong together, who competes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+from ravestate.policy.causes import Causes
+from ravestate.policy.plan import Clause, Need, RulePlan, SignalPlan, SlotPlan
+
+__all__ = ["connect", "find_contests", "find_kin"]
+
+
+def connect(signals: Sequence[SignalPlan], slots: Iterable[SlotPlan], rules: Iterable[RulePlan]) -> None:
+    """Fill in who hears what, and which signals are inputs (L8)."""
+    raised = {signal for rule in rules for signal in rule.raises}
+    listeners: list[list[Need]] = [[] for _ in signals]
+    watchers: list[list[Need]] = [[] for _ in signals]
+    for rule in rules:
+        for clause in rule.clauses:
+            for need in clause.needs:
+                listeners[need.signal.index].append(need)
+                if need.detached and clause.asks_detached:
+                    need.signal.retain = max(need.signal.retain, need.max_age)
+        for clause in rule.until:
+            for need in clause.needs:
+                watchers[need.signal.index].append(need)
+    for signal in signals:
+        signal.listeners = tuple(listeners[signal.index])
+        signal.watchers = tuple(watchers[signal.index])
+        signal.input = signal.input or signal.index not in raised
+    for slot in slots:
+        slot.heard = any(signal.listeners or signal.watchers for signal in slot.signals)
+
+
+def find_kin(rules: Iterable[RulePlan], causes: Causes) -> None:
+    """Join the needs of a clause whose pathways share a signal (coherence, L12)."""
+    for rule in rules:
+        for clause in rule.clauses:
+            families: list[tuple[int, int]] = []  # of needs, as bits: their roots, themselves
+            for need in clause.needs:
+                if need.detached:
+                    continue
+                roots, kin = causes.roots(need.signal.index), need.bit
+                apart: list[tuple[int, int]] = []
+                for others in families:
+                    if others[0] & roots:
+                        roots, kin = roots | others[0], kin | others[1]
+                    else:
+                        apart.append(others)
+                families = [*apart, (roots, kin)]
+            for need in clause.needs:
+                need.kin = next((kin for _, kin in families if kin & need.bit), need.bit)
+
+
+def find_contests(signals: Iterable[SignalPlan]) -> None:
+    """Set apart the needs of clauses that differ in nothing but who comes first.
+
+    If several clauses are ready with one spike of the same signal, write the same slots, and keep their
+    order for good, then only the first can have consent, until it resigns or fails. The engine need not make
+    activations of the others before that (``engine/contests.py``).
+    """
+    for signal in signals:
+        contests: dict[tuple[frozenset[int], bool], list[Clause]] = {}
+        for need in signal.listeners:
+            clause, rule = need.clause, need.clause.rule
+            fixed = not (need.detached or clause.cyclic or rule.cooldown)
+            if clause.simple and rule.slots and fixed:
+                contests.setdefault((rule.slotset, rule.background), []).append(clause)
+        signal.contests = tuple(
+            tuple(sorted(clauses, key=lambda c: (-c.base, c.index)))
+            for clauses in contests.values()
+            if len(clauses) > 1
+        )
+        contested = {clause for clauses in signal.contests for clause in clauses}
+        signal.uncontested = tuple(need for need in signal.listeners if need.clause not in contested)

@@ -1,0 +1,100 @@
+"""The names of a policy: signals and slots, numbered and found again."""
+
+from __future__ import annotations
+
+import copy
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+from ravestate.declare.module import Module
+from ravestate.declare.signal import Signal
+from ravestate.declare.slot import Slot
+from ravestate.errors import DeclarationError, nearest
+from ravestate.policy.plan import SignalPlan, SlotPlan
+
+__all__ = ["Names"]
+
+
+class Names:
+    """The signals and slots that modules declare, in declaration order.
+
+    Attributes:
+        signals: The numbered signals, those of slots included.
+        slots: The numbered slots.
+        faults: Where names that are used twice, or that nobody declares, are put down.
+    """
+
+    __slots__ = ("_modules", "_signal_of", "_slot_of", "faults", "signals", "slots")
+
+    def __init__(self, modules: Sequence[Module], faults: list[DeclarationError]) -> None:
+        self.faults = faults
+        self.signals: list[SignalPlan] = []
+        self.slots: list[SlotPlan] = []
+        self._modules = Counter(module.name for module in modules)
+        self._signal_of: dict[str, SignalPlan] = {}
+        self._slot_of: dict[str, SlotPlan] = {}
+        for module in modules:
+            for signal in module.signals:
+                self._number(signal, None)
+            for slot in module.slots:
+                other = self._slot_of.get(slot.name)
+                if other is not None:
+                    if other.slot is not slot:
+                        self.twice("slot", slot.name, other.slot.origin, slot.origin)
+                    continue
+                index = len(self.slots)
+                plan = SlotPlan(index, slot, tuple(self._number(s, index) for s in slot.signals))
+                self.slots.append(plan)
+                try:
+                    if slot.kind != "collection":
+                        copy.deepcopy(slot.default)
+                except Exception as error:  # whatever the value's own code raises
+                    self.faults.append(
+                        DeclarationError(
+                            f"slot {slot.name} ({slot.origin}): its default cannot be copied for each context ({error}): "
+                            "write default=None, and set it in a rule on rs.startup"
+                        )
+                    )
+                self._slot_of[slot.name] = plan
+
+    def _number(self, signal: Signal[Any], slot: int | None) -> SignalPlan:
+        other = self._signal_of.get(signal.name)
+        if other is not None:
+            if other.signal is not signal:
+                self.twice("signal", signal.name, other.signal.origin, signal.origin)
+            return other
+        plan = SignalPlan(len(self.signals), signal, slot, signal.input)
+        self.signals.append(plan)
+        self._signal_of[signal.name] = plan
+        return plan
+
+    def twice(self, what: str, name: str, first: str, second: str) -> None:
+        if self._modules[name.split(":")[0]] < 2:  # else the modules' names are the fault
+            self.faults.append(
+                DeclarationError(f"two {what}s are named {name!r}: {first} and {second}; rename one")
+            )
+
+    def signal(self, signal: Signal[Any], where: str) -> SignalPlan | None:
+        plan = self._signal_of.get(signal.name)
+        if plan is not None and plan.signal is signal:
+            return plan
+        self._unknown("signal", signal.name, signal.origin, self._signal_of, where)
+        return None
+
+    def slot(self, slot: Slot[Any], where: str) -> SlotPlan | None:
+        plan = self._slot_of.get(slot.name)
+        if plan is not None and plan.slot is slot:
+            return plan
+        self._unknown("slot", slot.name, slot.origin, self._slot_of, where)
+        return None
+
+    def _unknown(self, what: str, name: str, origin: str, names: Iterable[str], where: str) -> None:
+        module = name.split(":")[0]
+        if name in names:
+            hint = f"another {what} of that name is in the policy: two modules are named {module!r}"
+        elif module in self._modules:
+            hint = f"module {module} does not hold it{nearest(name, names)}"
+        else:
+            hint = f"write requires=[{module}] in the module of the rule, or compile module {module} as well"
+        self.faults.append(DeclarationError(f"{where}: unknown {what} {name} (declared at {origin}): {hint}"))

@@ -1,0 +1,97 @@
+"""Numbers of rules: checked, and looked up where a setting is named instead."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+from ravestate.declare.module import Module
+from ravestate.declare.rule import Rule
+from ravestate.declare.settings import Number, SettingRef
+from ravestate.errors import DeclarationError, nearest
+
+__all__ = ["Numbers"]
+
+
+class Numbers:
+    """What the numbers of rules come to under some settings.
+
+    Attributes:
+        refers: Whether any was a setting's name.
+        faults: Where numbers out of range, and settings that are not there, are put down.
+    """
+
+    __slots__ = ("_modules", "_named", "_settings", "faults", "refers")
+
+    def __init__(
+        self, modules: Sequence[Module], settings: Mapping[str, Any], faults: list[DeclarationError]
+    ) -> None:
+        self.faults = faults
+        self.refers = False
+        self._modules = modules
+        self._named = {module.name: module for module in modules}
+        self._settings = settings
+
+    def number(
+        self, rule: Rule[Any, Any], number: Number, what: str, valid: Callable[[float], bool], wanted: str
+    ) -> float:
+        """The number, or 1 if it has a fault.
+
+        Args:
+            rule: Whose it is.
+            number: The number, or the setting that it is.
+            what: What it is, for the message.
+            valid: Whether a number is in range.
+            wanted: The range in words.
+        """
+        where = f"rule {rule.name} ({rule.origin}): {what}"
+        source = repr(number)
+        if isinstance(number, SettingRef):
+            self.refers = True
+            found = self._setting(rule, number, where)
+            if found is None:
+                return 1.0
+            source = f"{number!r} = {found!r}"
+            number = found
+        if math.isnan(number) or math.isinf(number) or not valid(number):
+            self.faults.append(DeclarationError(f"{where}={source} must be {wanted}"))
+            return 1.0
+        return float(number)
+
+    def _setting(self, rule: Rule[Any, Any], ref: SettingRef, where: str) -> float | None:
+        """The value of a named setting: of the class it was taken from, else of the rule's own module."""
+        own = self._named.get(rule.name.split(":")[0])
+        module = own
+        if ref.owner is not None and (own is None or own.settings is not ref.owner):
+            module = next((m for m in self._modules if m.settings is ref.owner), own)
+        if module is None or module.settings is None:
+            self.faults.append(
+                DeclarationError(
+                    f"{where}={ref!r}: module {rule.name.split(':')[0]} has no settings: write "
+                    f"rs.Module({rule.name.split(':')[0]!r}, settings=Settings) with a field {ref.name}"
+                )
+            )
+            return None
+        values = self._settings.get(module.name)
+        if values is None:
+            fields: Mapping[str, Any] = getattr(module.settings, "model_fields", {})
+            if ref.name not in fields:
+                self.faults.append(
+                    DeclarationError(
+                        f"{where}={ref!r}: settings of module {module.name} have no field {ref.name!r}"
+                        f"{nearest(ref.name, fields)}"
+                    )
+                )
+                return None
+            value = fields[ref.name].get_default(call_default_factory=True)
+        else:
+            value = getattr(values, ref.name, None)
+        if isinstance(value, bool) or not isinstance(value, (int, float)):
+            self.faults.append(
+                DeclarationError(
+                    f"{where}={ref!r}: the setting is {value!r}, not a number; give it a number as its default"
+                )
+            )
+            return None
+        return float(value)

@@ -1,0 +1,34 @@
+"""Rules that could never run."""
+
+from __future__ import annotations
+
+from ravestate.errors import DeclarationError
+from ravestate.policy.causes import Causes
+
+__all__ = ["check_reachable"]
+
+
+def check_reachable(causes: Causes, faults: list[DeclarationError]) -> None:
+    """Refuse rules that wait, directly or not, for an effect of their own, with no way in from outside.
+
+    Slots may be put from outside and detached effects make loops on purpose: those are findings.
+    """
+    given = {s.index for s in causes.signals if s.input or s.slot is not None}
+    given |= {signal for rule in causes.rules if rule.detached for signal in rule.raises}
+    grounded = causes.grounded(given)
+    for rule in causes.rules:
+        if any(all(n.signal.index in grounded for n in clause.needs) for clause in rule.clauses):
+            continue
+        lacking = [
+            n.signal for clause in rule.clauses for n in clause.needs if n.signal.index not in grounded
+        ]
+        if not lacking:
+            continue
+        raisers = ", ".join(dict.fromkeys(r.name for s in lacking for r in causes.all_causes[s.index]))
+        faults.append(
+            DeclarationError(
+                f"rule {rule.name} ({rule.rule.origin}) is unreachable: it waits for "
+                f"{', '.join(dict.fromkeys(s.name for s in lacking))}, raised only by {raisers}, which wait for each "
+                f"other; if it comes from outside, declare it with input=True"
+            )
+        )

@@ -1,0 +1,146 @@
+"""Rules, numbered: what they may do, and the clauses by which they fire."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from ravestate.declare.condition import Condition, Constraint
+from ravestate.declare.core import activity, pressure
+from ravestate.declare.rule import Rule
+from ravestate.errors import DeclarationError
+from ravestate.policy.clauses import Conjunction, normal_form
+from ravestate.policy.names import Names
+from ravestate.policy.numbers import Numbers
+from ravestate.policy.plan import Clause, Need, RulePlan, SignalPlan
+
+__all__ = ["Rules"]
+
+FLAGS = (f"{activity.name}:", f"{pressure.name}:")
+"""How the signals of the built-in flags begin. An activation that stands on one of them is neither activity nor pressure:
+else it would withdraw what it stands on, come back, and so on, all in one instant."""
+
+
+class Rules:
+    """The rules of a policy in their order, as they are added.
+
+    Attributes:
+        plans: The numbered rules.
+        faults: Where what is wrong with them is put down.
+    """
+
+    __slots__ = ("_count", "_named", "faults", "names", "numbers", "plans")
+
+    def __init__(self, names: Names, numbers: Numbers, faults: list[DeclarationError]) -> None:
+        self.names = names
+        self.numbers = numbers
+        self.faults = faults
+        self.plans: list[RulePlan] = []
+        self._named: dict[str, Rule[Any, Any]] = {}
+        self._count = 0  # of clauses
+
+    def add(self, rule: Rule[Any, Any]) -> None:
+        other = self._named.setdefault(rule.name, rule)
+        if other is not rule:
+            self.names.twice("rule", rule.name, other.origin, rule.origin)
+        plan = RulePlan(len(self.plans), rule)
+        self.plans.append(plan)
+        where = f"rule {rule.name} ({rule.origin})"
+        plan.weight = self.numbers.number(rule, rule.weight, "weight", lambda n: n > 0, "above 0")
+        plan.cooldown = self.numbers.number(rule, rule.cooldown, "cooldown", lambda n: n >= 0, "0 s or more")
+        if rule.patience is not None:
+            plan.patience = self.numbers.number(
+                rule, rule.patience, "patience", lambda n: n >= 0, "0 s or more"
+            )
+        if rule.timeout is not None:
+            plan.timeout = self.numbers.number(
+                rule, rule.timeout, "timeout", lambda n: n > 0, "more than 0 s"
+            )
+        written = [self.names.slot(slot, f"{where}: writes") for slot in rule.writes]
+        read = [self.names.slot(slot, f"{where}: reads") for slot in rule.reads]
+        emitted = [self.names.signal(signal, f"{where}: emits") for signal in rule.emits]
+        plan.slots = tuple(slot.index for slot in written if slot)
+        plan.slotset = frozenset(plan.slots)
+        plan.readable = frozenset((*plan.slots, *(slot.index for slot in read if slot)))
+        plan.emits = frozenset(signal.index for signal in emitted if signal)
+        plan.raises = tuple(
+            dict.fromkeys(
+                (
+                    *(signal.index for signal in emitted if signal),
+                    *(signal.index for slot in written if slot for signal in slot.signals),
+                )
+            )
+        )
+        plan.clauses = self._clauses(plan, rule.when, where, "when")
+        if rule.until is not None:
+            plan.until = self._clauses(plan, rule.until, where, "until")
+
+    def _clauses(self, plan: RulePlan, condition: Condition, where: str, what: str) -> tuple[Clause, ...]:
+        try:
+            conjunctions = normal_form(condition)
+        except DeclarationError as fault:
+            self.faults.append(DeclarationError(f"{where}: {what}: {fault}"))
+            return ()
+        return tuple(
+            self._clause(plan, number, conjunction, f"{where}: {what}")
+            for number, conjunction in enumerate(conjunctions)
+        )
+
+    def _clause(self, plan: RulePlan, number: int, conjunction: Conjunction, where: str) -> Clause:
+        source = " & ".join(str(part) for part in (*conjunction.constraints, *conjunction.guards))
+        clause = Clause(self._count, number, plan, source)
+        self._count += 1
+        needs: list[Need] = []
+        for constraint in conjunction.constraints:
+            signal = self.names.signal(constraint.signal, where)
+            if signal is not None:
+                needs.append(self._need(clause, len(needs), constraint, signal, plan.rule, where))
+        if not conjunction.constraints:
+            self.faults.append(
+                DeclarationError(
+                    f"{where}: {source!r} waits for no signal; a predicate on a slot only gates: write "
+                    f"{conjunction.guards[0].slot.name.split(':')[-1]}.changed & ..."
+                )
+            )
+        guards = [(self.names.slot(guard.slot, where), guard) for guard in conjunction.guards]
+        clause.needs = tuple(needs)
+        clause.guards = tuple((slot, guard) for slot, guard in guards if slot is not None)
+        clause.signals = tuple(need.signal.signal for need in needs)
+        clause.all_bits = (1 << len(needs)) - 1
+        clause.firm_bits = sum(need.bit for need in needs if not need.detached)
+        clause.reflexive = any(need.signal.name.startswith(FLAGS) for need in needs) or any(
+            guard.slot in (activity, pressure) for guard in conjunction.guards
+        )
+        clause.simple = len(needs) == 1 and not clause.guards and not needs[0].min_age
+        clause.asks_detached = 0 < clause.firm_bits < clause.all_bits
+        return clause
+
+    def _need(
+        self,
+        clause: Clause,
+        index: int,
+        constraint: Constraint,
+        signal: SignalPlan,
+        rule: Rule[Any, Any],
+        where: str,
+    ) -> Need:
+        def positive(n: float) -> bool:
+            return n >= 0
+
+        low = self.numbers.number(
+            rule, constraint.min_age_, f"{constraint.signal}.min_age", positive, "0 s or more"
+        )
+        high = math.inf
+        if constraint.max_age_ is not None:
+            high = self.numbers.number(
+                rule, constraint.max_age_, f"{constraint.signal}.max_age", positive, "0 s or more"
+            )
+        if low > high:
+            self.faults.append(
+                DeclarationError(
+                    f"{where}: {constraint.signal} can never be at least {low:g} s and at most {high:g} s old: write "
+                    f".min_age({low:g}).max_age(None)"
+                    + (" (max_age is 5 s unless you say otherwise)" if constraint.max_age_ == 5.0 else "")
+                )
+            )
+        return Need(clause, index, constraint, signal, low, high)
