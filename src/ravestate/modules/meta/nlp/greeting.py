@@ -9,17 +9,24 @@ from .word_set import word_set
 
 __all__ = ["says_bye", "says_hi"]
 
-_OPENERS = phrases("""
+Phrase = tuple[str, ...]
+
+_OPENERS = frozenset(
+    phrases("""
     oh; ok; okay; well; so; ah; and; yes; no; yeah; alright; all right; great; thanks; thank you (|very much|so much); sorry; anyway; then;
     now; why; fine; good; cool; (|i am|i'm) sorry but; but
 """)
+)
 """What may stand before."""
 
-_GREETINGS = phrases("""
+_GREETINGS = frozenset(
+    phrases("""
     hi; hello; hey; hiya; howdy; hallo; greetings; welcome; sup; yo; (what's|whats|what is) up; good (morning|afternoon|evening|day);
     morning; (|it's|it is|i'm|i am) (nice|good|great|pleased|glad|lovely) to (meet|see) you
 """)
-_FAREWELLS = phrases("""
+)
+_FAREWELLS = frozenset(
+    phrases("""
     bye; byebye; bye bye; bye-bye; goodbye; good bye; good-bye; goodnight; good night; farewell; cheerio; ciao; so long; adieu; cya; take care;
     see (you|ya|u) (|all) (|again|later|soon|tomorrow|around|then|next time|next week|tonight|on monday|on tuesday|on wednesday|on thursday|on
     friday|on saturday|on sunday); until (tomorrow|next time|then|we meet again); have a (nice|good|great|lovely|wonderful)
@@ -27,10 +34,15 @@ _FAREWELLS = phrases("""
     (|let's|let us) talk (later|soon|tomorrow); (i|we) (|really) (have to|must|need to|should|gotta|got to|better) (go|leave|run|be going|be off|get going)
     (|now) (|home|soon|to bed|then); (i'm|i am|im) (leaving|off|going) (|now) (|home|to bed|then)
 """)
-_LAST_WORDS = phrases(
-    "it was (|so|very|really) (nice|great|good|lovely|a pleasure) (talking|meeting|chatting|to talk|to meet|to chat)"
+)
+_LAST_WORDS = frozenset(
+    phrases(
+        "it was (|so|very|really) (nice|great|good|lovely|a pleasure) (talking|meeting|chatting|to talk|to meet|to chat)"
+    )
 )
 """Farewells after which anything may follow."""
+_LONGEST = max(len(phrase) for phrase in (*_OPENERS, *_GREETINGS, *_FAREWELLS, *_LAST_WORDS))
+
 _ADDRESS = word_set(
     "my dear friend robot everyone everybody all guys again too then now for thanks thank you and until next time the moment"
 )
@@ -84,7 +96,7 @@ def _parts(text: str) -> list[list[str]]:
     return parts
 
 
-def _without_openers(words: list[str], known: list[tuple[str, ...]]) -> list[str]:
+def _without_openers(words: list[str], known: frozenset[Phrase]) -> list[str]:
     while not _beginning(words, known) and (
         length := _beginning(words, _OPENERS)
     ):  # "good" opens, "good night" does not
@@ -92,6 +104,9 @@ def _without_openers(words: list[str], known: list[tuple[str, ...]]) -> list[str
     return words
 
 
-def _beginning(words: list[str], known: list[tuple[str, ...]]) -> int:
+def _beginning(words: list[str], known: frozenset[Phrase]) -> int:
     """How many words the longest of the known phrases has with which `words` begin; 0 if there is none."""
-    return max((len(phrase) for phrase in known if tuple(words[: len(phrase)]) == phrase), default=0)
+    for length in range(min(_LONGEST, len(words)), 0, -1):
+        if tuple(words[:length]) in known:
+            return length
+    return 0
