@@ -2,10 +2,19 @@
 
 from __future__ import annotations
 
+import tempfile
+from functools import cache
+from pathlib import Path
+
+from quality.measure import Reply
 from ravestate.modules import emotion
+from ravestate.modules import genqa as genqa_module
 from ravestate.modules.meta.nlp import QuestionWord, Settings
 from ravestate.modules.meta.nlp.analysis import Analysis, analyse
 from ravestate.modules.meta.nlp.pipeline import pipeline
+from ravestate.modules.skill.agentqa.life_file import read_life
+from ravestate.modules.skill.agentqa.router import Match, router_of
+from ravestate.modules.skill.genqa.answering import Answerer
 
 
 def _seen(text: str) -> Analysis:
@@ -40,3 +49,29 @@ def yesno(text: str) -> str:
 def emotions(text: str) -> str:
     """By emotion."""
     return emotion.recognise(text, Settings().agent_names) or "-"
+
+
+def agentqa(text: str) -> str:
+    """By agentqa, which is told by nlp whether it is a question."""
+    found = _router().route(text, question=_seen(text).question is not None)
+    topic = found.topic if isinstance(found, Match) else "-"
+    return {"abilities": "can_do"}.get(topic, topic)
+
+
+_router = cache(lambda: router_of(read_life()))
+
+
+def genqa(text: str) -> Reply | None:
+    """By genqa, which is only asked what nlp takes for a question."""
+    settings = genqa_module.Settings()
+    if _seen(text).question is None:
+        return None
+    answer = _answerer().answer(text)
+    if not answer.text or answer.confidence < settings.unsure:
+        return None
+    return Reply(answer.text, sure=answer.confidence >= settings.sure)
+
+
+@cache
+def _answerer() -> Answerer:
+    return Answerer(Path(tempfile.mkdtemp(prefix="ravestate-quality-")) / "index.sqlite")

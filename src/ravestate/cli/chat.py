@@ -19,6 +19,8 @@ COMPLETE = (
     "hibye",
     "fillers",
     "agenda",
+    "agentqa",
+    "genqa",
     "wildtalk",
 )
 """The modules that take part in any chat."""
