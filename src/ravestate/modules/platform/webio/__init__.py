@@ -90,7 +90,7 @@ def app(agent: Agent, routes: Iterable[BaseRoute] = ()) -> Starlette:
         ```
     """
     _load()
-    from .app import make_app
+    from .application import make_app
 
     return make_app(agent, routes)
 

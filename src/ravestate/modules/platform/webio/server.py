@@ -16,7 +16,7 @@ import uvicorn
 
 from ravestate.errors import PlatformError
 
-from .app import ENDING, make_app
+from .application import ENDING, make_app
 from .connection import LONGEST
 from .door import Door, Line
 from .gate import is_local

@@ -1,0 +1,24 @@
+"""The token bucket: a burst at once, then so many a second, and never more."""
+
+from hypothesis import given
+from hypothesis import strategies as st
+
+from ravestate.modules.platform.webio.bucket import Bucket
+
+
+@given(st.lists(st.floats(0, 10), min_size=1, max_size=60))
+def test_within_any_stretch_no_more_get_through_than_burst_and_rate_allow(gaps: list[float]) -> None:
+    bucket = Bucket(burst=5, rate=2.0, now=0.0)
+    now, through = 0.0, []
+    for gap in gaps:
+        now += gap
+        now += bucket.wait(now)  # who comes has to wait before the next one is looked at
+        through.append(now)
+    for n, begin in enumerate(through):
+        for count, end in enumerate(through[n:], start=1):
+            assert count <= 5 + 2.0 * (end - begin) + 1e-6
+
+
+def test_who_is_within_the_limits_never_waits() -> None:
+    bucket = Bucket(burst=3, rate=1.0, now=0.0)
+    assert [bucket.wait(t) for t in (0.0, 0.0, 0.0, 1.0, 2.0, 3.0)] == [0.0] * 6

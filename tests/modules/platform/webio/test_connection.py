@@ -1,0 +1,209 @@
+"""One connection: its manners, and what is done about bad ones."""
+
+import asyncio
+import json
+
+import pytest
+
+import ravestate as rs
+from modules.platform.webio.visit import Visit, in_virtual_time, page
+from ravestate.modules import rawio, webio
+from ravestate.modules.platform.webio import connection, history
+from ravestate.runtime.agent import Agent
+
+TOKEN = "open sesame, please"
+
+flood = rs.Module("flood", requires=(rawio,))
+
+
+@flood.rule(when=rawio.input.changed, writes=rawio.output)
+async def talk_without_end(ctx: rs.RuleContext) -> None:
+    for number in range(history.MESSAGES + 10):
+        ctx[rawio.output] = f"{number}"
+
+
+@in_virtual_time
+async def test_who_says_nothing_is_told_what_was_expected_and_closed() -> None:
+    async with page() as app, Visit(app) as visit:
+        error = await visit.next()
+        assert error["text"] == 'no hello within 10 s: begin with {"type": "hello", "v": 1}'
+        await visit.next()
+        assert (visit.closed, asyncio.get_running_loop().time()) == (4408, 10.0)
+        assert len(app.state.sessions) == 0
+
+
+@pytest.mark.parametrize(
+    ("first", "said"),
+    [
+        ("GET / HTTP/1.1", "not JSON"),
+        ('{"type": "say", "id": "a", "text": "hello"}', "begin with"),
+        ('{"type": "hello"}', 'hello lacks "v"'),
+        ('{"type": "hello", "v": 2}', "this side speaks version 1 only"),
+        (b"\x00\x01", "not a binary one"),
+        ("", "not JSON"),
+    ],
+)
+def test_who_begins_otherwise_is_told_and_closed(first: str | bytes, said: str) -> None:
+    @in_virtual_time
+    async def test() -> None:
+        async with page() as app, Visit(app) as visit:
+            visit.send(first)
+            assert said in (await visit.next())["text"]
+            await visit.next()
+            assert visit.closed == 4400
+            assert len(app.state.sessions) == 0
+
+    test()
+
+
+@in_virtual_time
+async def test_a_bad_frame_later_is_told_and_the_conversation_goes_on() -> None:
+    async with page() as app, Visit(app) as visit:
+        await visit.hello()
+        await visit.messages(1)
+        for bad in ("nonsense", '{"type": "say", "id": "a"}', '{"type": "hello", "v": 1}', b"\xff"):
+            visit.send(bad)
+            assert (await visit.next())["code"] == "malformed"
+        visit.say("  \n ")
+        assert await visit.next() == {
+            "type": "error",
+            "code": "empty",
+            "text": 'say: "text" has nothing in it',
+        }
+        visit.say("hello")
+        assert await visit.messages(2) == ["user: hello", "agent: hello"]
+
+
+@in_virtual_time
+async def test_a_frame_that_is_too_long_ends_it() -> None:
+    async with page() as app, Visit(app) as visit:
+        await visit.hello()
+        await visit.messages(1)
+        visit.say("x" * connection.LONGEST)
+        assert (await visit.next())["code"] == "too-long"
+        await visit.next()
+        assert visit.closed == 1009
+
+
+@in_virtual_time
+async def test_who_sends_too_much_has_to_wait_and_loses_nothing() -> None:
+    async with page() as app, Visit(app) as visit, Visit(app) as other:
+        await visit.hello()
+        await other.hello()
+        for number in range(100):
+            visit.say(f"{number}", id=f"{number}")
+        answers = [text for text in await visit.messages(201) if text.startswith("agent")]
+        assert answers == ["agent: Hello!", *(f"agent: {number}" for number in range(100))]
+        assert asyncio.get_running_loop().time() == pytest.approx(80 / connection.RATE)
+
+
+@in_virtual_time
+async def test_who_asks_and_does_not_read_is_dropped() -> None:
+    async with page() as app, Visit(app) as visit:
+        await visit.hello()
+        visit.reading.clear()
+        for _ in range(connection.REPLIES + 2):
+            visit.tell("ping")
+        await visit.over()
+        assert app.state.sessions.get(visit.session).onlookers == set()
+
+
+@in_virtual_time
+async def test_who_reads_slowly_misses_nothing_that_is_kept_and_is_told_of_what_is_not() -> None:
+    async with page(flood) as app, Visit(app) as slow:
+        await slow.hello()
+        slow.reading.clear()
+        slow.say("go")
+        async with Visit(app) as quick:
+            await quick.hello(session=slow.session)
+            await quick.frames("message")
+        slow.reading.set()
+        frames = await slow.frames("error")
+        assert frames[-1]["code"] == "behind"
+        await slow.next()
+        assert slow.closed == 4409
+        last = max((frame["n"] for frame in frames if frame["type"] == "message"), default=0)
+        async with Visit(app) as again:
+            welcome = await again.hello(session=slow.session, last=last)
+            assert welcome["resumed"]
+            assert welcome["first"] == 12
+            frames = [await again.next() for _ in range(history.MESSAGES)]
+            assert [frame["n"] for frame in frames] == list(range(12, history.MESSAGES + 12))
+
+
+@in_virtual_time
+async def test_the_token_comes_in_the_hello_or_in_the_header() -> None:
+    async with page(token=TOKEN, host="0.0.0.0") as app:
+        async with Visit(app) as visit:
+            assert (await visit.hello(token=TOKEN))["type"] == "welcome"
+        async with Visit(app, authorization=f"Bearer {TOKEN}") as visit:
+            assert (await visit.hello())["type"] == "welcome"
+        for wrong in ({}, {"token": "guess"}):
+            async with Visit(app) as visit:
+                assert (await visit.hello(**wrong))["code"] == "token"
+                await visit.next()
+                assert visit.closed == 4401
+
+
+@in_virtual_time
+async def test_a_foreign_origin_is_refused_before_anything_is_said() -> None:
+    async with page() as app, Visit(app, origin="https://evil.example") as visit:
+        start, body = await visit.next(), await visit.next()
+        assert (visit.accepted, start["status"]) == (False, 403)
+        assert b"'https://evil.example' may not connect" in body["body"]
+
+
+@in_virtual_time
+async def test_a_site_that_may_embed_it_may_connect() -> None:
+    async with page(origins=("https://museum.example",)) as app:
+        async with Visit(app, origin="https://museum.example") as visit:
+            assert (await visit.hello())["type"] == "welcome"
+
+
+@in_virtual_time
+async def test_a_script_that_is_said_is_text_as_any_other() -> None:
+    script = "</script><script>alert(1)</script>"
+    async with page() as app, Visit(app) as visit:
+        await visit.hello(name=script)
+        assert await visit.messages(1) == [f"agent: Hello {script}!"]
+        visit.say(script)
+        assert await visit.messages(2) == [f"user: {script}", f"agent: {script}"]
+
+
+def test_an_agent_without_the_module_has_no_page() -> None:
+    with pytest.raises(rs.PlatformError, match=r"the agent has no webio: write Agent\(webio, \.\.\.\)"):
+        webio.app(Agent(flood))
+
+
+def test_a_console_for_each_visitor_is_refused() -> None:
+    from ravestate.modules import conio
+
+    with pytest.raises(rs.PlatformError, match="webio has many users, conio has one: leave conio out"):
+        webio.app(Agent(webio, conio))
+
+
+def test_frames_on_the_wire_are_what_the_reference_shows() -> None:
+    @in_virtual_time
+    async def test() -> None:
+        async with page(title="Elske") as app, Visit(app) as visit:
+            welcome = await visit.hello()
+            assert welcome == {
+                "type": "welcome",
+                "v": 1,
+                "session": visit.session,
+                "resumed": False,
+                "first": 1,
+                "agent": "Elske",
+            }
+            hello = await visit.next()
+            visit.say("hi", id="a1")
+            heard, answer = [await visit.next() for _ in range(2)]
+            assert json.dumps([{**f, "time": 0} for f in (hello, heard, answer)]) == json.dumps(
+                [
+                    {"type": "message", "n": 1, "from": "agent", "text": "Hello!", "time": 0},
+                    {"type": "message", "n": 2, "from": "user", "text": "hi", "time": 0, "id": "a1"},
+                    {"type": "message", "n": 3, "from": "agent", "text": "hi", "time": 0},
+                ]
+            )
+
+    test()

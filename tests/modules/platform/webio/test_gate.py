@@ -1,0 +1,100 @@
+"""Who may come in."""
+
+import asyncio
+
+import pytest
+
+from modules.platform.webio.visit import in_virtual_time
+from ravestate.modules.platform.webio import Settings
+from ravestate.modules.platform.webio.gate import Gate, is_local
+from ravestate.modules.platform.webio.protocol import ProtocolError
+
+TOKEN = "open sesame, please"
+
+
+@pytest.mark.parametrize("host", ["127.0.0.1", "localhost", "::1", "[::1]", "127.9.9.9"])
+def test_addresses_of_this_machine(host: str) -> None:
+    assert is_local(host)
+
+
+@pytest.mark.parametrize(
+    "host", ["0.0.0.0", "::", "192.168.0.7", "museum.example", "", "localhost.evil.example"]
+)
+def test_addresses_that_others_reach(host: str) -> None:
+    assert not is_local(host)
+
+
+@pytest.mark.parametrize(
+    ("host", "origin"),
+    [
+        ("127.0.0.1:8420", None),
+        ("localhost:8420", "http://localhost:8420"),
+        ("[::1]:8420", "http://[::1]:8420"),
+        ("LOCALHOST:8420", "http://localhost:8420"),
+        ("chat.museum.example", "https://chat.museum.example"),
+        ("127.0.0.1:8420", "https://chat.museum.example"),
+    ],
+)
+def test_the_page_and_those_who_may_embed_it_come_in(host: str, origin: str | None) -> None:
+    gate = Gate(Settings(origins=("https://chat.museum.example",)))
+    assert gate.refusal({"host": host} | ({"origin": origin} if origin else {})) is None
+
+
+@pytest.mark.parametrize(
+    ("host", "origin"),
+    [
+        ("127.0.0.1:8420", "https://evil.example"),
+        ("127.0.0.1:8420", "http://127.0.0.1:9999"),
+        ("127.0.0.1:8420", "null"),
+        ("127.0.0.1:8420", "https://museum.example.evil.example"),
+        ("evil.example:8420", "http://evil.example:8420"),  # a name that was made to point here
+        ("evil.example", None),
+        ("127.0.0.1.evil.example", None),
+        ("", None),
+        ("[", None),
+    ],
+)
+def test_others_do_not(host: str, origin: str | None) -> None:
+    gate = Gate(Settings(origins=("https://museum.example",)))
+    refusal = gate.refusal({"host": host} | ({"origin": origin} if origin else {}))
+    assert refusal is not None
+    assert "webio.origins" in refusal
+
+
+def test_with_a_token_it_answers_to_any_name_but_not_to_any_page() -> None:
+    gate = Gate(Settings(token=TOKEN))
+    assert gate.refusal({"host": "robot.lan", "origin": "http://robot.lan"}) is None
+    assert gate.refusal({"host": "robot.lan", "origin": "https://evil.example"}) is not None
+
+
+@pytest.mark.parametrize("token", [None, "", "open sesame", TOKEN + "!", "ö", "\ud800"])
+def test_a_wrong_token_is_refused(token: str | None) -> None:
+    assert not Gate(Settings(token=TOKEN)).admits(token)
+
+
+def test_the_right_one_is_taken_and_none_is_needed_where_none_is_set() -> None:
+    assert Gate(Settings(token=TOKEN)).admits(TOKEN)
+    assert Gate(Settings()).admits(None)
+
+
+@in_virtual_time
+async def test_guessing_takes_long() -> None:
+    gate, now = Gate(Settings(token=TOKEN)), asyncio.get_running_loop().time
+    with pytest.raises(ProtocolError, match="the token is wrong"):
+        await gate.check_token("guess")
+    assert now() == 1.0
+    with pytest.raises(ProtocolError, match="a token is needed"):
+        await gate.check_token(None)
+
+
+@pytest.mark.parametrize(
+    "origin", ["museum.example", "https://museum.example/", "*", "https://a; script-src *"]
+)
+def test_what_is_no_origin_is_no_setting(origin: str) -> None:
+    with pytest.raises(ValueError, match=r"write an origin, e\.g\. https://museum\.example"):
+        Settings(origins=(origin,))
+
+
+def test_a_short_token_is_no_setting() -> None:
+    with pytest.raises(ValueError, match="at least 12"):
+        Settings(token="secret")

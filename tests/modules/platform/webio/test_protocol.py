@@ -1,0 +1,142 @@
+"""Frames: whatever comes, a record or a `ProtocolError`; what is written can be read."""
+
+import json
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from ravestate.modules._text import printable
+from ravestate.modules.platform.webio.protocol import (
+    CLIENT,
+    GREATEST,
+    SERVER,
+    Bye,
+    Ended,
+    Error,
+    Hello,
+    Message,
+    Piece,
+    Ping,
+    Pong,
+    ProtocolError,
+    Say,
+    Typing,
+    Welcome,
+    parse,
+    serialise,
+)
+
+texts = st.text().map(printable)
+keys = st.from_regex(r"[A-Za-z0-9_-]{1,64}", fullmatch=True)
+numbers = st.integers(0, GREATEST)
+names = st.text(st.characters(categories=("L", "N")), min_size=1, max_size=80)
+
+client_frames = st.one_of(
+    st.builds(Hello, st.just(1), st.none() | keys, numbers, st.none() | texts, st.none() | names),
+    st.builds(Say, keys, texts),
+    st.just(Bye()),
+    st.just(Ping()),
+)
+server_frames = st.one_of(
+    st.builds(Welcome, st.just(1), keys, st.booleans(), numbers, texts),
+    st.builds(Message, numbers, st.sampled_from(("user", "agent")), texts, numbers, st.none() | keys),
+    st.builds(Piece, numbers, texts),
+    st.builds(Typing, st.booleans()),
+    st.builds(Ended, texts),
+    st.builds(Error, texts, texts),
+    st.just(Pong()),
+)
+values = st.recursive(
+    st.none() | st.booleans() | st.integers() | st.floats() | st.text(),
+    lambda inner: st.lists(inner, max_size=3) | st.dictionaries(st.text(), inner, max_size=3),
+    max_leaves=8,
+)
+FIELDS = ("v", "session", "last", "token", "name", "id", "text")
+
+
+@given(client_frames)
+def test_what_a_client_writes_is_read(frame: Any) -> None:
+    assert parse(serialise(frame), CLIENT) == frame
+
+
+@given(server_frames)
+def test_what_the_server_writes_is_read(frame: Any) -> None:
+    assert parse(serialise(frame), SERVER) == frame
+
+
+def understood(text: str | bytes) -> bool:
+    """Whether a text is a client's frame. Anything but a `ProtocolError` is a failure of the test."""
+    try:
+        frame = parse(text, CLIENT)
+    except ProtocolError as error:
+        assert error.code in ("malformed", "version")
+        str(error).encode()  # it can be sent back
+        return False
+    assert type(frame) in CLIENT.values()
+    serialise(frame).encode()
+    return True
+
+
+@given(st.text() | st.binary())
+def test_any_text_is_a_frame_or_refused(text: str | bytes) -> None:
+    understood(text)
+
+
+@given(values)
+def test_any_json_is_a_frame_or_refused(value: Any) -> None:
+    understood(json.dumps(value))
+
+
+@given(st.sampled_from((*CLIENT, *SERVER)), st.dictionaries(st.sampled_from(FIELDS), values))
+def test_any_fields_make_a_frame_or_are_refused(name: str, fields: dict[str, Any]) -> None:
+    understood(json.dumps({**fields, "type": name}))
+
+
+@pytest.mark.parametrize(
+    "text", ["[" * 60_000, '{"type":' * 20_000, "1" * 60_000, '{"type": "ping", "x": NaN}', "\ud800"]
+)
+def test_what_parsers_stumble_over(text: str) -> None:
+    understood(text)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("hello", 'not JSON: \'hello\'; a frame is an object: {"type": "hello", "v": 1}'),
+        (b"{}", "a frame is a text message, not a binary one"),
+        ("[1]", '\'[1]\' is no object: write {"type": "hello", "v": 1}'),
+        ("{}", "\"type\": 'None' is none of hello, say, bye, ping"),
+        ('{"type": "hallo"}', "'hallo' is none of hello, say, bye, ping; did you mean 'hello'?"),
+        ('{"type": ["say"]}', "is none of hello, say, bye, ping"),
+        ('{"type": "hello"}', 'hello lacks "v": the version, 1'),
+        ('{"type": "hello", "v": true}', "hello: \"v\": 'True' is not the version, 1"),
+        ('{"type": "hello", "v": 1, "last": -1}', "hello: \"last\": '-1' is not a whole number from 0 on"),
+        ('{"type": "hello", "v": 1, "last": 1.0}', "is not a whole number from 0 on"),
+        ('{"type": "hello", "v": 1, "session": "../x"}', "is not 1 to 64 letters, digits, - or _"),
+        ('{"type": "hello", "v": 1, "name": "   "}', "is not a text of 1 to 80 characters"),
+        ('{"type": "say", "text": "hi"}', 'say lacks "id": 1 to 64 letters, digits, - or _'),
+        ('{"type": "say", "id": "a", "text": 7}', "say: \"text\": '7' is not a text"),
+    ],
+)
+def test_what_is_malformed_is_told_what_was_expected(text: str | bytes, said: str) -> None:
+    with pytest.raises(ProtocolError) as refused:
+        parse(text, CLIENT)
+    assert refused.value.code == "malformed"
+    assert said in str(refused.value)
+
+
+def test_another_version_is_refused_as_such() -> None:
+    with pytest.raises(ProtocolError, match='"v": 2: this side speaks version 1 only') as refused:
+        parse('{"type": "hello", "v": 2}', CLIENT)
+    assert refused.value.code == "version"
+
+
+def test_fields_that_are_not_known_are_left_aside() -> None:
+    assert parse('{"type": "bye", "why": "tired"}', CLIENT) == Bye()
+
+
+def test_control_characters_are_taken_out() -> None:
+    text = json.dumps({"type": "say", "id": "a", "text": "a\x1b[31mb\x00\ud800"})
+    assert parse(text, CLIENT).text == "ab\ufffd"

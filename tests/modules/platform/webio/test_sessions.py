@@ -1,0 +1,256 @@
+"""Conversations: apart from each other, taken up again, kept for a while, ended in order, bounded in number."""
+
+import asyncio
+import logging
+
+import pytest
+
+import ravestate as rs
+from modules.platform.webio.visit import Visit, in_virtual_time, page, parrot
+from ravestate.modules import interloc, rawio
+from ravestate.modules.platform.webio import sessions
+
+chronicle: list[str] = []
+keeper = rs.Module("keeper", requires=(rawio, interloc))
+
+
+@keeper.rule(when=interloc.users.added)
+async def note_who_comes(ctx: rs.RuleContext) -> None:
+    chronicle.append(f"+{ctx.payload(interloc.users.added).item}")
+
+
+@keeper.rule(when=interloc.users.removed)
+async def note_who_goes(ctx: rs.RuleContext) -> None:
+    chronicle.append(f"-{ctx.payload(interloc.users.removed).item}")
+
+
+@keeper.rule(when=rs.shutdown)
+async def note_the_end(ctx: rs.RuleContext) -> None:
+    await ctx.sleep(0.5)
+    chronicle.append("end")
+
+
+quitter = rs.Module("quitter", requires=(rawio,))
+
+
+@quitter.rule(when=rawio.input.changed, writes=rawio.output)
+async def quit_or_fail(ctx: rs.RuleContext) -> None:
+    if ctx.payload(rawio.input.changed) == "fail":
+        ctx.stop(rs.PlatformError("the robot has fallen over"))
+    else:
+        ctx[rawio.output] = "I go."
+        ctx.stop()
+
+
+@pytest.fixture(autouse=True)
+def _new_chronicle() -> None:
+    chronicle.clear()
+
+
+@in_virtual_time
+async def test_two_visitors_have_conversations_of_their_own() -> None:
+    async with page() as app, Visit(app) as ada, Visit(app) as bob:
+        await ada.hello(name="Ada")
+        await bob.hello(name="Bob")
+        assert ada.session != bob.session
+        assert await ada.messages(1) == ["agent: Hello Ada!"]
+        assert await bob.messages(1) == ["agent: Hello Bob!"]
+        ada.say("I am Ada")
+        bob.say("I am Bob")
+        assert await ada.messages(2) == ["user: I am Ada", "agent: I am Ada"]
+        assert await bob.messages(2) == ["user: I am Bob", "agent: I am Bob"]
+        assert ada.nothing_more()
+        assert bob.nothing_more()
+
+
+@in_virtual_time
+async def test_after_a_lost_connection_nothing_is_missing_and_nothing_comes_twice() -> None:
+    async with page() as app:
+        async with Visit(app) as first:
+            await first.hello()
+            await first.messages(1)
+            first.say("one")
+            assert await first.messages(2) == ["user: one", "agent: one"]
+            first.say("two")
+        async with Visit(app) as second:
+            welcome = await second.hello(session=first.session, last=3)
+            assert (welcome["resumed"], welcome["session"], welcome["first"]) == (True, first.session, 1)
+            assert await second.messages(2) == ["user: two", "agent: two"]
+        async with Visit(app) as third:
+            await third.hello(session=first.session)
+            frames = [await third.next() for _ in range(5)]
+            assert [frame["n"] for frame in frames] == [1, 2, 3, 4, 5]
+            assert third.nothing_more()
+
+
+@in_virtual_time
+async def test_what_is_sent_twice_is_heard_once() -> None:
+    async with page() as app, Visit(app) as visit:
+        await visit.hello()
+        visit.say("one", id="a")
+        visit.say("one", id="a")
+        await visit.messages(3)
+        async with Visit(app) as again:
+            await again.hello(session=visit.session, last=3)
+            again.say("one", id="a")
+            again.say("two", id="b")
+            assert await again.messages(2) == ["user: two", "agent: two"]
+
+
+@in_virtual_time
+async def test_all_windows_of_a_visitor_show_the_same() -> None:
+    async with page() as app, Visit(app) as one, Visit(app) as other:
+        await one.hello()
+        await other.hello(session=one.session)
+        one.say("hello", id="a")
+        assert await one.messages(3) == await other.messages(3)
+
+
+@in_virtual_time
+async def test_a_conversation_that_is_not_known_is_not_made_up() -> None:
+    async with page() as app, Visit(app) as visit:
+        welcome = await visit.hello(session="chosen-by-the-client", last=7)
+        assert not welcome["resumed"]
+        assert welcome["session"] != "chosen-by-the-client"
+        assert await visit.messages(1) == ["agent: Hello!"]
+
+
+@in_virtual_time
+async def test_a_client_that_claims_more_than_there_is_gets_everything() -> None:
+    async with page() as app, Visit(app) as visit:
+        await visit.hello()
+        await visit.messages(1)
+        async with Visit(app) as again:
+            await again.hello(session=visit.session, last=99)
+            assert await again.messages(1) == ["agent: Hello!"]
+
+
+@in_virtual_time
+async def test_a_conversation_is_kept_for_a_while_and_then_ends_in_order() -> None:
+    async with page(keeper, keep=60.0) as app:
+        async with Visit(app) as visit:
+            await visit.hello(name="Ada")
+            visit.tell("ping")
+            await visit.next()
+        await past(59.0)
+        async with Visit(app) as again:
+            assert (await again.hello(session=visit.session))["resumed"]
+            await past(100.0)
+            assert chronicle == ["+Ada"]  # somebody looks on
+        await past(59.9)
+        assert chronicle == ["+Ada"]
+        await past(1.0)
+        assert chronicle == ["+Ada", "-Ada", "end"]
+        assert len(app.state.sessions) == 0
+        async with Visit(app) as late:
+            assert not (await late.hello(session=visit.session))["resumed"]
+
+
+@in_virtual_time
+async def test_who_leaves_for_good_is_bidden_farewell() -> None:
+    async with page(parrot, keeper) as app, Visit(app) as visit:
+        await visit.hello()
+        visit.tell("bye")
+        assert [frame.get("text") for frame in await visit.frames("ended")] == ["Hello!", "Bye!", "you left"]
+        assert (await visit.next())["type"] == "websocket.close"
+        assert visit.closed == 1000
+        assert chronicle == ["+None", "-None", "end"]
+        async with Visit(app) as again:
+            assert not (await again.hello(session=visit.session))["resumed"]
+
+
+@in_virtual_time
+async def test_when_the_page_is_closed_all_are_told() -> None:
+    async with page() as app, Visit(app) as one, Visit(app) as other:
+        await one.hello()
+        await other.hello()
+        await app.state.sessions.close("the agent has been switched off")
+        for visit in (one, other):
+            assert (await visit.frames("ended"))[-1]["text"] == "the agent has been switched off"
+        async with Visit(app) as late:
+            assert (await late.hello())["code"] == "closing"
+            await late.next()
+            assert late.closed == 1001
+
+
+@in_virtual_time
+async def test_an_agent_that_leaves_ends_this_conversation_alone() -> None:
+    async with page(quitter) as app, Visit(app) as one, Visit(app) as other:
+        await one.hello()
+        await other.hello()
+        one.say("go")
+        assert [f.get("text") for f in await one.frames("ended")] == ["go", "I go.", "the agent has left"]
+        other.say("go")
+        assert (await other.next())["text"] == "go"
+
+
+@in_virtual_time
+async def test_an_agent_that_fails_ends_this_conversation_and_says_so(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    async with page(quitter) as app, Visit(app) as visit:
+        await visit.hello()
+        with caplog.at_level(logging.ERROR):
+            visit.say("fail")
+            assert (await visit.frames("ended"))[-1]["text"] == "the agent has failed"
+        assert "a conversation ended: the robot has fallen over" in caplog.text
+
+
+@in_virtual_time
+async def test_beyond_the_limit_those_end_first_that_are_missed_least() -> None:
+    async with page(sessions=3) as app, Visit(app) as present:
+        await present.hello()
+        async with Visit(app) as talker:
+            await talker.hello()
+            talker.say("hello")
+            await talker.messages(3)
+        async with Visit(app) as silent:
+            await silent.hello()
+        async with Visit(app) as fourth:
+            assert (await fourth.hello())["type"] == "welcome"
+            assert app.state.sessions.get(silent.session) is None
+            async with Visit(app) as fifth:
+                assert (await fifth.hello())["type"] == "welcome"
+                assert app.state.sessions.get(talker.session) is None
+                async with Visit(app) as sixth:
+                    refused = await sixth.hello()
+                    assert refused["text"] == "3 visitors are here already: try again later"
+                    await sixth.next()
+                    assert sixth.closed == 1013
+        present.say("still here")
+        assert await present.messages(3) == ["agent: Hello!", "user: still here", "agent: still here"]
+
+
+@in_virtual_time
+async def test_a_conversation_has_only_so_many_windows() -> None:
+    async with page() as app, Visit(app) as visit:
+        await visit.hello()
+        windows = [Visit(app) for _ in range(sessions.ONLOOKERS - 1)]
+        for window in windows:
+            await window.__aenter__()
+            assert (await window.hello(session=visit.session))["resumed"]
+        async with Visit(app) as one_more:
+            assert (await one_more.hello(session=visit.session))["code"] == "full"
+        for window in windows:
+            await window.drop()
+
+
+@in_virtual_time
+async def test_when_all_is_over_nothing_is_left() -> None:
+    async with page(keep=0.0) as app:
+        for _ in range(5):
+            async with Visit(app) as visit:
+                await visit.hello()
+                visit.say("hello")
+                await visit.messages(3)
+        await past(10.0)
+        assert len(app.state.sessions) == 0
+        assert not [task for task in asyncio.all_tasks() if task is not asyncio.current_task()]
+
+
+async def past(seconds: float) -> None:
+    """Let virtual time go by."""
+    loop = asyncio.get_running_loop()
+    over = loop.create_future()
+    loop.call_later(seconds, over.set_result, None)
+    await over

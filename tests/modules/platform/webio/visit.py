@@ -1,0 +1,160 @@
+"""Visitors of a page, for tests: clients that speak the protocol with the application in memory, in virtual time."""
+
+import asyncio
+import contextlib
+import functools
+import json
+from collections.abc import AsyncGenerator, Callable, Coroutine
+from typing import Any
+
+from starlette.applications import Starlette
+
+import ravestate as rs
+from ravestate.modules import interloc, rawio, webio
+from ravestate.runtime.agent import Agent
+from ravestate.testing.virtual_loop import VirtualLoop
+
+parrot = rs.Module("parrot", requires=(rawio, interloc))
+
+
+@parrot.rule(when=interloc.users.added, writes=rawio.output)
+async def greet(ctx: rs.RuleContext) -> None:
+    name = ctx.payload(interloc.users.added).item
+    ctx[rawio.output] = f"Hello {name}!" if name else "Hello!"
+
+
+@parrot.rule(when=interloc.users.removed, writes=rawio.output)
+async def miss(ctx: rs.RuleContext) -> None:
+    ctx[rawio.output] = "Bye!"
+
+
+@parrot.rule(when=rawio.input.changed, writes=rawio.output)
+async def repeat(ctx: rs.RuleContext) -> None:
+    ctx[rawio.output] = ctx.payload(rawio.input.changed)
+
+
+def in_virtual_time(test: Callable[..., Coroutine[Any, Any, None]]) -> Callable[..., None]:
+    """Run an async test function on a loop whose time jumps to what is due next; what never comes is an error."""
+
+    @functools.wraps(test)
+    def run(*arguments: Any, **named: Any) -> None:
+        with asyncio.Runner(loop_factory=VirtualLoop) as runner:
+            runner.run(test(*arguments, **named))
+
+    return run
+
+
+@contextlib.asynccontextmanager
+async def page(*modules: Any, **settings: Any) -> AsyncGenerator[Starlette]:
+    """The page of an agent, which says again what it hears if no modules are given."""
+    app = webio.app(Agent(*(modules or (parrot,)), webio, settings={"webio": settings}))
+    async with app.router.lifespan_context(app):
+        yield app
+
+
+class Visit:
+    """One WebSocket to an application: ``async with Visit(app) as visit``."""
+
+    def __init__(self, app: Starlette, **headers: str) -> None:
+        self._app = app
+        self._headers = {"host": "127.0.0.1:8420", **headers}
+        self._in: asyncio.Queue[dict[str, Any]] = asyncio.Queue()
+        self._out: asyncio.Queue[dict[str, Any]] = asyncio.Queue()
+        self.reading = asyncio.Event()
+        """Cleared, nothing more is taken from the server, which then waits in its `send`."""
+        self.reading.set()
+        self.accepted = False
+        self.closed: int | None = None
+        """The code with which the server has closed."""
+        self.session = ""
+        self._said = 0
+        self._task: asyncio.Task[None] | None = None
+
+    async def __aenter__(self) -> "Visit":
+        scope = {
+            "type": "websocket",
+            "asgi": {"version": "3.0", "spec_version": "2.4"},
+            "http_version": "1.1",
+            "scheme": "ws",
+            "path": "/ws",
+            "raw_path": b"/ws",
+            "root_path": "",
+            "query_string": b"",
+            "headers": [(name.encode(), value.encode()) for name, value in self._headers.items()],
+            "client": ("127.0.0.1", 50000),
+            "server": ("127.0.0.1", 8420),
+            "subprotocols": [],
+            "state": {},
+            "extensions": {"websocket.http.response": {}},
+        }
+        self._in.put_nowait({"type": "websocket.connect"})
+        self._task = asyncio.create_task(self._app(scope, self._in.get, self._send))
+        return self
+
+    async def __aexit__(self, *_: object) -> None:
+        self.reading.set()
+        await self.drop()
+
+    async def over(self) -> None:
+        """Wait until the server has done with it."""
+        assert self._task is not None
+        await self._task
+
+    async def drop(self) -> None:
+        """Lose the connection."""
+        self._in.put_nowait({"type": "websocket.disconnect", "code": 1006})
+        await self.over()
+
+    async def _send(self, message: dict[str, Any]) -> None:
+        await self.reading.wait()
+        if message["type"] == "websocket.accept":
+            self.accepted = True
+            return
+        if message["type"] == "websocket.close":
+            self.closed = message["code"]
+        self._out.put_nowait(message)
+
+    def send(self, text: str | bytes) -> None:
+        """Send a message as it is."""
+        self._in.put_nowait({"type": "websocket.receive", "text" if isinstance(text, str) else "bytes": text})
+
+    def tell(self, type: str, **fields: Any) -> None:
+        """Send a frame."""
+        self.send(json.dumps({"type": type, **fields}))
+
+    def say(self, text: str, id: str | None = None) -> None:
+        """Say something."""
+        self._said += 1
+        self.tell("say", id=id or f"{self.session[:8]}-{self._said}", text=text)
+
+    async def hello(self, **fields: Any) -> dict[str, Any]:
+        """Say hello; the welcome."""
+        self.tell("hello", v=1, **fields)
+        welcome = await self.next()
+        self.session = welcome.get("session", "")
+        return welcome
+
+    async def next(self) -> dict[str, Any]:
+        """The next frame; or what ends the connection."""
+        message = await self._out.get()
+        return json.loads(message["text"]) if message["type"] == "websocket.send" else message
+
+    async def frames(self, until: str) -> list[dict[str, Any]]:
+        """The next frames, up to the first of a type."""
+        found = [await self.next()]
+        while found[-1]["type"] != until:
+            found.append(await self.next())
+        return found
+
+    async def messages(self, count: int) -> list[str]:
+        """The next messages, as "speaker: text"; whatever comes in between is left aside."""
+        found: list[str] = []
+        while len(found) < count:
+            frame = await self.next()
+            if frame["type"] == "message":
+                found.append(f"{frame['from']}: {frame['text']}")
+        return found
+
+    def nothing_more(self) -> bool:
+        """Whether everything that has come was looked at."""
+        return self._out.empty()
