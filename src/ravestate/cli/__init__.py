@@ -22,6 +22,7 @@ COMMANDS = {
     "graph": "draw an agent's Signal-Rule-Slot diagram",
     "nlp": "show what the agent sees in a text: words, names, triples, yes or no, signals",
     "memory": "list, show, export and forget what an agent knows",
+    "genqa": "read documents, and answer questions from them",
     "new": "write a small project to begin with",
 }
 

@@ -13,7 +13,7 @@ __all__ = ["LONGEST", "passages_of"]
 
 LONGEST = 400
 """Characters of a passage: what is longer is cut, at the best place there is."""
-SHORTEST = 15
+SHORTEST = 12
 """What is shorter is no answer: page numbers, captions, crumbs."""
 
 _PARAGRAPH = re.compile(r"\n\s*\n")
@@ -43,28 +43,30 @@ def passages_of(text: str) -> Iterator[Passage]:
             if held and _LEANS.match(sentence) and len(held) + len(sentence) < LONGEST:
                 held = f"{held} {sentence}"
                 continue
-            if held:
+            if len(held) >= SHORTEST:
                 yield Passage(held)
             held = sentence
-        if held:
+        if len(held) >= SHORTEST:
             yield Passage(held)
 
 
 def _sentences(paragraph: str) -> Iterator[str]:
     start = 0
     for end in _END.finditer(paragraph):
-        if not _ABBREVIATION.search(paragraph[start : end.start()]):
-            yield from _fitting(paragraph[start : end.end()].strip())
+        if not _ABBREVIATION.search(paragraph[max(start, end.start() - 12) : end.start()]):
+            yield from _fitting(paragraph, start, end.end())
             start = end.end()
-    yield from _fitting(paragraph[start:].strip())
+    yield from _fitting(paragraph, start, len(paragraph))
 
 
-def _fitting(sentence: str) -> Iterator[str]:
-    """`sentence` in parts that are short enough; nothing if there is too little in it."""
-    while len(sentence) > LONGEST:
-        cut = max(sentence.rfind(mark, LONGEST // 3, LONGEST) for mark in ("; ", ": ", ", "))
-        cut = cut + 1 if cut > 0 else max(sentence.rfind(" ", LONGEST // 3, LONGEST), 0) or LONGEST
-        yield sentence[:cut].strip()
-        sentence = sentence[cut:].strip()
-    if len(sentence) >= SHORTEST and any(character.isalpha() for character in sentence):
+def _fitting(paragraph: str, start: int, end: int) -> Iterator[str]:
+    """The sentence from `start` to `end` in parts that are short enough; nothing if it has no letter."""
+    while end - start > LONGEST:
+        window = paragraph[start : start + LONGEST]
+        cut = max(window.rfind(mark, LONGEST // 3) for mark in ("; ", ": ", ", ")) + 1
+        cut = cut or window.rfind(" ", LONGEST // 3) + 1 or LONGEST
+        yield window[:cut].strip()
+        start += cut
+    sentence = paragraph[start:end].strip()
+    if any(character.isalpha() for character in sentence):
         yield sentence

@@ -26,9 +26,11 @@ _ASKS = re.compile(
     r"(?:'s|'re|s)?\b",
     re.IGNORECASE,
 )
-# Somebody's "you" that is everybody: "how do you make ice cream".
+# Where "you" and "I" are everybody: "how do you make ice cream", "how often must I descale the machine".
 _ANYBODY = re.compile(
-    r"\b(?:how|where|when|why|what) (?:do|can|could|would|should) you (?=make|cook|bake|build|say|find|get to\b|see|call)"
+    r"\b(?:how|where|when|why|what) (?:do|can|could|would|should) you (?=make|cook|bake|build|say|find|get to\b|see|call)|"
+    r"\b(?:how(?: \w+)?|where) (?:can|could|must|should|do) i (?!live|look|feel|sound|know|work|like|come|seem|do\b|sleep|eat)|"
+    r"^(?:can|may|must|do) i (?=use|have to|need to|get|find|put|open|take|bring|park|pay)"
 )
 _PERSONAL = re.compile(r"\b(?:you|your|yours|yourself|u|ur|i|i'm|im|me|my|mine|myself|we both|between us)\b")
 _NOW = re.compile(
@@ -58,6 +60,9 @@ _KIND_WORDS = """
     before become became gain gained live lives believe there time year day place way happen happens cause causes average
     total current national main major
 """
+_QUESTION_WORDS = frozenset(
+    ("who", "whom", "whose", "what", "which", "when", "where", "why", "how", "many", "much", "tell", "know")
+)
 _EMPTY = frozenset(_EMPTY_WORDS.split())
 _KINDS = frozenset(_KIND_WORDS.split())
 
@@ -99,8 +104,8 @@ def as_question(heard: str) -> Question:
     )
     words = tuple(word for word in said if word.lower() not in _KINDS)
     kinds = tuple(word for word in said if word.lower() in _KINDS)
-    if not words:  # "Who are people?": then these are all there is
-        words, kinds = kinds, ()
+    if not words:  # "What is time?": then these are all there is
+        words = tuple(word for word in kinds if word.lower() not in _QUESTION_WORDS)
     if _PERSONAL.search(_ANYBODY.sub("how ", folded)):
         return Question(asked, words, kinds, "it is about the two who talk")
     if _NOW.search(folded):

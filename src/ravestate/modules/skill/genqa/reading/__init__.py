@@ -6,8 +6,6 @@ from collections.abc import Callable, Iterator
 from importlib import import_module
 from pathlib import Path
 
-from ravestate.errors import PlatformError
-
 from ..document import Document
 from .unreadable import Unreadable
 
@@ -42,8 +40,8 @@ def read(path: Path, source: str) -> Iterator[Document]:
         source: Where answers will say that they are from.
 
     Raises:
-        Unreadable: It cannot be read, or is not what its ending says: the message says why, without the name.
-        PlatformError: What reads this kind of file is not installed.
+        Unreadable: It cannot be read, is not what its ending says, or what reads it is not installed: the message says
+            why, without the file's name.
     """
     kind = kind_of(path)
     if kind is None:
@@ -53,7 +51,7 @@ def read(path: Path, source: str) -> Iterator[Document]:
     reader: Callable[[Path, str], Iterator[Document]] = import_module(f"{__name__}.{kind}").read
     try:
         yield from reader(path, source)
-    except (Unreadable, PlatformError):
+    except Unreadable:
         raise
     except OSError as error:
         raise Unreadable(error.strerror or str(error)) from error

@@ -7,8 +7,6 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from ravestate.errors import PlatformError
-
 from ..document import Document
 from ..passages import passages_of
 from .text import LARGEST
@@ -45,14 +43,12 @@ def documents_in(content: bytes | str, title: str, source: str) -> Iterator[Docu
         source: Where it is from.
 
     Raises:
-        PlatformError: beautifulsoup4 is not installed.
+        Unreadable: beautifulsoup4 is not installed.
     """
     try:
         import bs4
     except ImportError as error:
-        raise PlatformError(
-            "genqa needs beautifulsoup4 to read HTML: pip install 'ravestate[genqa]'"
-        ) from error
+        raise Unreadable("genqa needs beautifulsoup4 to read HTML: pip install 'ravestate[genqa]'") from error
     with warnings.catch_warnings():
         warnings.simplefilter(
             "ignore"

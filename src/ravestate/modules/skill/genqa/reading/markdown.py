@@ -12,8 +12,7 @@ from .text import decoded
 
 __all__ = ["read"]
 
-_FENCE = re.compile(r"^(```|~~~).*?^\1[ \t]*$", re.MULTILINE | re.DOTALL)
-_COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
+_FENCE = re.compile(r"^[ ]{0,3}(```|~~~)", re.MULTILINE)
 _FRONT = re.compile(r"\A---\n.*?^---\n", re.MULTILINE | re.DOTALL)
 _HEADING = re.compile(r"^(#{1,6})[ \t]+(.+?)[ \t#]*$", re.MULTILINE)
 _ITEM = re.compile(r"^[ \t]*(?:[-*+]|\d+[.)])[ \t]+", re.MULTILINE)
@@ -24,7 +23,7 @@ _RULE = re.compile(r"^[ \t|:*_=-]+$", re.MULTILINE)
 def read(path: Path, source: str) -> Iterator[Document]:
     """A document for each heading; its title is the headings that stand above it."""
     text = _FRONT.sub("", decoded(path).replace("\r\n", "\n"), count=1)
-    text = _COMMENT.sub("", _FENCE.sub("", text))
+    text = _without_comments(_without_fences(text))
     above: list[str] = []
     start, title = 0, path.stem.replace("_", " ")
     for heading in _HEADING.finditer(text):
@@ -42,9 +41,36 @@ def _seen(text: str) -> str:
     return _inline(re.sub(r"^[ \t]*>[ \t]?", "", text, flags=re.MULTILINE))
 
 
+def _without_fences(text: str) -> str:
+    """`text` without blocks of code."""
+    kept, open_mark = list[str](), ""
+    for line in text.split("\n"):
+        fence = _FENCE.match(line)
+        if fence is None:
+            kept += [] if open_mark else [line]
+        elif not open_mark:
+            open_mark = fence[1]
+        elif fence[1] == open_mark:
+            open_mark = ""
+    return "\n".join(kept)
+
+
+def _without_comments(text: str) -> str:
+    kept, start = list[str](), 0
+    while (opened := text.find("<!--", start)) >= 0 and (closed := text.find("-->", opened)) >= 0:
+        kept.append(text[start:opened])
+        start = closed + 3
+    return "".join(kept) + text[start:]
+
+
+# What belongs together is near: each pattern looks so far and no farther, or a file of opening brackets takes for ever.
+_PICTURE = re.compile(r"!\[([^\]\n]{0,300})\]\([^)\n]{0,500}\)")
+_LINK = re.compile(r"\[([^\]\n]{0,300})\](?:\([^)\n]{0,500}\)|\[[^\]\n]{0,300}\])")
+_TAG = re.compile(r"</?[a-zA-Z][^<>\n]{0,300}>")
+_EMPHASIS = re.compile(r"(?<!\\)(\*\*|__|\*|`{1,3})(?=\S)([^\n]{1,300}?)(?<![\s\\])\1")
+_ESCAPED = re.compile(r"\\([\\`*_{}\[\]()#+.!|-])")
+
+
 def _inline(text: str) -> str:
-    text = re.sub(r"!\[([^\]]*)\]\([^)]*\)", r"\1", text)
-    text = re.sub(r"\[([^\]]*)\](?:\([^)]*\)|\[[^\]]*\])", r"\1", text)
-    text = re.sub(r"</?[a-zA-Z][^>]*>", "", text)
-    text = re.sub(r"(\*\*|__|\*|`+)(?=\S)(.+?)(?<=\S)\1", r"\2", text)
-    return re.sub(r"\\([\\`*_{}\[\]()#+.!|-])", r"\1", text).strip(" ")
+    text = _TAG.sub("", _LINK.sub(r"\1", _PICTURE.sub(r"\1", text)))
+    return _ESCAPED.sub(r"\1", _EMPHASIS.sub(r"\2", text)).strip(" ")

@@ -7,8 +7,6 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from ravestate.errors import PlatformError
-
 from ..document import Document
 from ..passages import passages_of
 from .unreadable import Unreadable
@@ -21,7 +19,7 @@ def read(path: Path, source: str) -> Iterator[Document]:
     try:
         import pypdf
     except ImportError as error:
-        raise PlatformError("genqa needs pypdf to read PDF: pip install 'ravestate[genqa]'") from error
+        raise Unreadable("genqa needs pypdf to read PDF: pip install 'ravestate[genqa]'") from error
     library: Any = pypdf
     logging.getLogger("pypdf").setLevel(logging.ERROR)  # it warns of each oddity that it copes with
     try:

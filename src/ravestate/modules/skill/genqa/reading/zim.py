@@ -7,8 +7,6 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-from ravestate.errors import PlatformError
-
 from ..document import Document
 from .html import documents_in
 from .unreadable import Unreadable
@@ -21,7 +19,7 @@ def read(path: Path, source: str) -> Iterator[Document]:
     try:
         reader: Any = import_module("libzim.reader")
     except ImportError as error:
-        raise PlatformError(
+        raise Unreadable(
             "genqa needs libzim to read ZIM: pip install libzim (it is under the GPL, so it comes by itself)"
         ) from error
     try:

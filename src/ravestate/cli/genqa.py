@@ -1,0 +1,185 @@
+"""``ravestate genqa``: the documents from which questions about the world are answered."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections import Counter
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ravestate.cli import UsageError
+from ravestate.errors import PlatformError
+
+if TYPE_CHECKING:
+    from ravestate.modules.skill.genqa import Settings
+    from ravestate.modules.skill.genqa.collecting import Found, Outcome
+    from ravestate.modules.skill.genqa.index import Index
+
+__all__ = ["add_arguments", "run"]
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """The command's options."""
+    parser.add_argument(
+        "--index",
+        metavar="FILE",
+        help="the index; by default the setting's: the environment's RAVESTATE_GENQA_INDEX, or a file in your data folder",
+    )
+    actions = parser.add_subparsers(dest="action", metavar="ACTION", required=True)
+    action = actions.add_parser(
+        "index",
+        help="read files and folders",
+        description="Read files and folders: text, Markdown, HTML, PDF, JSON lines, ZIM. Called again, it reads what is new "
+        "or changed, and forgets what is gone. Interrupted, it goes on where it was. Exit code 1: something could not be read.",
+    )
+    action.add_argument("paths", nargs="+", metavar="PATH", help="a file, or a folder with all that is in it")
+    actions.add_parser("list", help="list what has been read")
+    action = actions.add_parser("forget", help="forget files and folders")
+    action.add_argument("paths", nargs="+", metavar="PATH", help="a file, or a folder with all that is in it")
+    action = actions.add_parser("ask", help="ask a question, and see what is found")
+    action.add_argument("question", nargs="+", metavar="QUESTION")
+
+
+def run(options: argparse.Namespace) -> int:
+    """Carry the command out."""
+    settings = _settings(options.index)
+    if options.action == "ask":
+        return _ask(settings, " ".join(options.question))
+    from ravestate.modules.skill.genqa.index import Index
+    from ravestate.modules.skill.genqa.places import path_of
+
+    path = path_of(settings)
+    if options.action != "index" and not path.exists():
+        print(f"nothing has been read yet: ravestate genqa index PATH (into {path})")
+        return 0 if options.action == "list" else 1
+    with Index(path) as index:
+        if options.action == "index":
+            return _index(index, options.paths)
+        if options.action == "forget":
+            return _forget(index, options.paths)
+        return _list(index)
+
+
+def _settings(index: str | None) -> Settings:
+    """The module's settings, as an agent without a file would have them."""
+    from ravestate.modules.skill import genqa
+    from ravestate.settings import load_settings
+
+    given: dict[str, Any] = {} if index is None else {"index": index}
+    return load_settings([genqa.module], {"genqa": given})["genqa"]
+
+
+def _index(index: Index, paths: Iterable[str]) -> int:
+    from ravestate.modules.skill.genqa.collecting import collect, find
+
+    found = find((Path(path) for path in paths), index)
+    counts: Counter[str] = Counter()
+    passages = 0
+    try:
+        for outcome in _with_bar(collect(found, index), found):
+            counts[outcome.kind] += 1
+            if outcome.kind in ("added", "replaced"):
+                passages += outcome.passages
+            if outcome.kind == "unreadable":
+                _warn(f"{outcome.path}: {outcome.why}")
+    except KeyboardInterrupt:
+        _warn("interrupted; what was read so far is kept, and the same command goes on")
+        return 130
+    told = ", ".join(f"{count} {kind}" for kind, count in counts.items()) or "nothing to read"
+    print(f"{told}; {passages} new passages in {index.path}")
+    return 1 if counts["unreadable"] else 0
+
+
+def _with_bar(outcomes: Iterator[Outcome], found: Found) -> Iterator[Outcome]:
+    """Show how far it is, in bytes, to a person who watches."""
+    try:
+        from tqdm import tqdm
+    except ImportError as error:
+        raise PlatformError("genqa needs tqdm to index: pip install 'ravestate[genqa]'") from error
+    sizes: dict[Path, int] = {}
+    for path, _ in found.files:
+        try:
+            sizes[path] = path.stat().st_size
+        except OSError:
+            sizes[path] = 0  # its turn will come
+    with tqdm(
+        total=sum(sizes.values()), unit="B", unit_scale=True, disable=not sys.stderr.isatty(), leave=False
+    ) as bar:
+        for outcome in outcomes:
+            bar.set_postfix_str(outcome.path.name[-40:])
+            bar.update(sizes.get(outcome.path, 0))
+            yield outcome
+
+
+def _warn(text: str) -> None:
+    from ravestate.modules._text import printable
+
+    line = f"ravestate genqa: {printable(text)}"
+    if sys.stderr.isatty():
+        from tqdm import tqdm
+
+        tqdm.write(line, file=sys.stderr)  # above the bar
+    else:
+        print(line, file=sys.stderr)
+
+
+def _list(index: Index) -> int:
+    from ravestate.modules._text import printable
+    from ravestate.modules.skill.genqa.shipped import SHIPPED
+
+    for file in index.files():
+        name = "(the collection that comes with Ravestate)" if file.path == SHIPPED else file.path
+        print(f"{file.passages:9,} passages  {printable(name)}")
+    print(f"{index.size():9,} passages  in {index.path}")
+    return 0
+
+
+def _forget(index: Index, paths: Iterable[str]) -> int:
+    import os
+
+    from ravestate.modules.skill.genqa.collecting import within
+
+    code = 0
+    for path in paths:
+        root = Path(os.path.abspath(Path(path).expanduser()))
+        known = [file.path for file in index.files() if within(file.path, root)]
+        for name in known:
+            index.forget(name)
+        if known:
+            print(f"forgot {path}: {len(known)} file{'' if len(known) == 1 else 's'}")
+        else:
+            _warn(f"nothing was read from {path}; see: ravestate genqa list")
+            code = 1
+    return code
+
+
+def _ask(settings: Settings, question: str) -> int:
+    from ravestate.modules._text import printable
+    from ravestate.modules.skill.genqa.places import answerer_of
+
+    if not question.strip():
+        raise UsageError('ask something: ravestate genqa ask "What is the capital of Peru?"')
+    answer = answerer_of(settings).answer(question)
+    if not answer.text:
+        print(f"no answer: {answer.reason}")
+        return 0
+    how = (
+        "sure"
+        if answer.confidence >= settings.sure
+        else "unsure"
+        if answer.confidence >= settings.unsure
+        else "silent"
+    )
+    print(f"{printable(answer.text)}\n  source      {printable(answer.source)}")
+    print(
+        f"  confidence  {answer.confidence:.2f} ({how}: sure from {settings.sure}, unsure from {settings.unsure})"
+    )
+    print("  read        score  covers")
+    for candidate in answer.candidates:
+        text = printable(candidate.text)
+        print(
+            f"            {candidate.score:7.1f}  {candidate.covered:5.0%}  {text[:100]}{'…' if len(text) > 100 else ''}"
+        )
+    return 0

@@ -1,0 +1,25 @@
+"""An index of the shipped collection, made once, and one to change."""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from ravestate.modules.skill.genqa.answering import Answerer
+from ravestate.modules.skill.genqa.index import Index
+
+
+@pytest.fixture(scope="session")
+def collection(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Answerer]:
+    """Answers from the collection that comes with Ravestate."""
+    answerer = Answerer(tmp_path_factory.mktemp("collection") / "index.sqlite")
+    answerer.load()
+    yield answerer
+    answerer.close()
+
+
+@pytest.fixture
+def index(tmp_path: Path) -> Iterator[Index]:
+    """An empty index."""
+    with Index(tmp_path / "index.sqlite") as index:
+        yield index

@@ -1,0 +1,200 @@
+"""The index: found by words, replaced as a whole, and clear about what is wrong."""
+
+import shutil
+import sqlite3
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+import ravestate as rs
+from ravestate.modules.skill.genqa.document import Document, Passage
+from ravestate.modules.skill.genqa.index import FORMAT, Index, IndexedFile
+
+
+def file(name: str = "/notes.txt", digest: str = "1") -> IndexedFile:
+    return IndexedFile(name, 10, 1, digest)
+
+
+def notes(*texts: str, title: str = "Notes", source: str = "notes.txt") -> list[Document]:
+    return [Document(title, source, [Passage(text) for text in texts])]
+
+
+def found(index: Index, *words: str) -> list[str]:
+    return [each.text for each in index.search(words, 10)]
+
+
+def test_what_shares_most_and_rarest_words_comes_first(index: Index) -> None:
+    index.put(
+        file(), notes("The tram is red.", "The bus is red.", "The tram is yellow, and goes to the beach.")
+    )
+    assert found(index, "tram", "beach")[0] == "The tram is yellow, and goes to the beach."
+    assert found(index, "submarine") == []
+
+
+def test_titles_and_hints_are_searched_and_stems_are_one(index: Index) -> None:
+    index.put(file(), [Document("Trams", "t", [Passage("Number 7 goes there.", hints="beaches")])])
+    assert found(index, "tram") == found(index, "beach") == ["Number 7 goes there."]
+
+
+@pytest.mark.parametrize(
+    "words", [('"',), ("a OR b",), ("NEAR(",), ("*",), ("title:x",), ("\0",), ("",), ("é" * 9999,)]
+)
+def test_no_word_is_an_operator(index: Index, words: tuple[str, ...]) -> None:
+    index.put(file(), notes("The tram is red."))
+    assert found(index, *words) == []
+
+
+def test_a_file_is_replaced_as_a_whole(index: Index) -> None:
+    index.put(file(), notes("The tram is red.", "The bus is red."))
+    index.put(file("/other.txt"), notes("The ship is grey.", source="other.txt"))
+    index.put(file(digest="2"), notes("The tram is blue."))
+    assert found(index, "tram", "bus", "ship") == ["The ship is grey.", "The tram is blue."] or found(
+        index, "tram", "bus", "ship"
+    ) == ["The tram is blue.", "The ship is grey."]
+    assert index.size() == 2
+    known = index.file("/notes.txt")
+    assert known is not None
+    assert (known.digest, known.passages) == ("2", 1)
+
+
+def test_each_passage_knows_where_it_is_from(index: Index) -> None:
+    index.put(file("/a"), [*notes("The tram is red.", source="a, page 1"), *notes(source="a, page 2")])
+    index.put(file("/b"), notes("The ship is grey.", source="b"))
+    index.put(
+        file("/a"),
+        [*notes("The kite is red.", source="a, page 1"), *notes("The owl is wise.", source="a, page 2")],
+    )
+    sources = {each.text: index.source(each.row) for each in index.search(["kite", "owl", "ship"], 9)}
+    assert sources == {
+        "The kite is red.": "a, page 1",
+        "The owl is wise.": "a, page 2",
+        "The ship is grey.": "b",
+    }
+
+
+def test_what_is_forgotten_is_gone(index: Index) -> None:
+    index.put(file(), notes("The tram is red."))
+    assert index.forget("/notes.txt")
+    assert not index.forget("/notes.txt")
+    assert found(index, "tram") == []
+    assert (index.size(), list(index.files()), index.frequencies(["tram"])) == (0, [], {})
+
+
+def test_frequencies_are_those_of_stems(index: Index) -> None:
+    index.put(file(), notes("Trams go there.", "A tram is red.", "A bus is blue."))
+    assert index.frequencies(["tram", "bu", "ship"]) == {"tram": 2, "bu": 1}
+
+
+def test_what_fails_while_it_is_read_changes_nothing(index: Index) -> None:
+    index.put(file(), notes("The tram is red."))
+
+    def broken() -> Iterator[Document]:
+        yield from notes("The tram is blue.")
+        raise ValueError("damaged")
+
+    with pytest.raises(ValueError, match="damaged"):
+        index.put(file(digest="2"), broken())
+    assert found(index, "tram") == ["The tram is red."]
+    index.put(file(digest="3"), notes("The tram is green."))  # and it can be written again
+    assert found(index, "tram") == ["The tram is green."]
+
+
+def test_it_is_still_there_another_day(tmp_path: Path) -> None:
+    with Index(tmp_path / "deep" / "er" / "index.sqlite") as index:
+        index.put(file(), notes("The tram is red."))
+    with Index(tmp_path / "deep" / "er" / "index.sqlite") as index:
+        assert found(index, "tram") == ["The tram is red."]
+
+
+def test_another_process_reads_while_one_writes(index: Index) -> None:
+    index.put(file(), notes("The tram is red."))
+
+    def slow() -> Iterator[Document]:
+        with Index(index.path) as reader:
+            assert found(reader, "tram") == ["The tram is red."]
+        yield from notes("The tram is blue.")
+
+    index.put(file(digest="2"), slow())
+    assert found(index, "tram") == ["The tram is blue."]
+
+
+# -------------------------------------------------------------------------------- what may be wrong
+
+
+def test_a_full_disk_is_told_and_nothing_is_lost(index: Index) -> None:
+    index.put(file(), notes("The tram is red."))
+    pages = index._base.execute("PRAGMA page_count").fetchone()[0]  # pyright: ignore[reportPrivateUsage]
+    index._base.execute(f"PRAGMA max_page_count = {pages + 4}")  # pyright: ignore[reportPrivateUsage]
+    with pytest.raises(rs.PlatformError, match="the disk is full: make room"):
+        index.put(file("/big.txt"), notes(*(f"Passage {n} is about rain." for n in range(5000))))
+    assert found(index, "tram") == ["The tram is red."]
+    assert [known.path for known in index.files()] == ["/notes.txt"]
+
+
+def test_a_file_of_a_newer_version_is_refused_and_left_alone(tmp_path: Path) -> None:
+    path = tmp_path / "index.sqlite"
+    Index(path).close()
+    base = sqlite3.connect(path)
+    base.execute(f"PRAGMA user_version = {FORMAT + 1}")
+    base.close()
+    before = path.read_bytes()
+    with pytest.raises(
+        rs.PlatformError, match=rf"newer Ravestate \(format {FORMAT + 1}, this one knows {FORMAT}\)"
+    ):
+        Index(path)
+    assert path.read_bytes() == before
+
+
+def test_another_program_s_file_is_refused(tmp_path: Path) -> None:
+    base = sqlite3.connect(tmp_path / "photos.sqlite")
+    base.execute("CREATE TABLE photos (name TEXT)")
+    base.close()
+    with pytest.raises(rs.PlatformError, match="no index of genqa"):
+        Index(tmp_path / "photos.sqlite")
+
+
+@pytest.mark.parametrize("content", [b"Dear diary, " * 100, b"SQLite format 3\0" + b"\xff" * 4096])
+def test_a_file_that_is_none_is_refused(tmp_path: Path, content: bytes) -> None:
+    (tmp_path / "index.sqlite").write_bytes(content)
+    with pytest.raises(rs.PlatformError, match="it is no index, or damaged"):
+        Index(tmp_path / "index.sqlite")
+    assert (tmp_path / "index.sqlite").read_bytes() == content
+
+
+def test_a_place_that_cannot_hold_a_file_is_told(tmp_path: Path) -> None:
+    (tmp_path / "file").touch()
+    with pytest.raises(rs.PlatformError, match="genqa: the index"):
+        Index(tmp_path / "file" / "index.sqlite")
+    with pytest.raises(rs.PlatformError, match="genqa: the index"):
+        Index(tmp_path)
+
+
+def test_a_file_that_may_not_be_written_is_told(index: Index) -> None:
+    index.put(file(), notes("The tram is red."))
+    index._base.execute("PRAGMA query_only = ON")  # pyright: ignore[reportPrivateUsage]
+    with pytest.raises(rs.PlatformError, match="may not be written: name another file"):
+        index.put(file(digest="2"), notes("The tram is blue."))
+    assert found(index, "tram") == ["The tram is red."]
+
+
+def test_whoever_writes_for_too_long_is_told_to_the_other(index: Index) -> None:
+    def meanwhile() -> Iterator[Document]:
+        with (
+            Index(index.path, timeout=0.0) as other,
+            pytest.raises(rs.PlatformError, match="another process is writing"),
+        ):
+            other.put(file("/other.txt"), notes("The ship is grey."))
+        yield from notes("The tram is red.")
+
+    index.put(file(), meanwhile())
+    assert found(index, "tram", "ship") == ["The tram is red."]
+
+
+def test_it_notices_that_another_file_has_taken_its_place(index: Index, tmp_path: Path) -> None:
+    assert index.in_place()
+    shutil.copy(index.path, tmp_path / "copy")
+    index.path.unlink()
+    assert not index.in_place()
+    (tmp_path / "copy").rename(index.path)
+    assert not index.in_place()

@@ -1,0 +1,72 @@
+"""Running text becomes passages that can be answers."""
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from ravestate.modules.skill.genqa.passages import LONGEST, passages_of
+
+
+def texts(text: str) -> list[str]:
+    return [passage.text for passage in passages_of(text)]
+
+
+def test_sentences_are_passages() -> None:
+    assert texts("Tram 7 goes to the beach. Tram 9 goes to the woods!\nAre you coming along?") == [
+        "Tram 7 goes to the beach.",
+        "Tram 9 goes to the woods!",
+        "Are you coming along?",
+    ]
+
+
+def test_what_leans_on_the_sentence_before_stays_with_it() -> None:
+    assert texts("The shed is green. It has a key. The key is old enough.") == [
+        "The shed is green. It has a key.",
+        "The key is old enough.",
+    ]
+    assert texts("The shed is green.\n\nIt stands in the garden.") == [
+        "The shed is green.",
+        "It stands in the garden.",
+    ], "but not with another paragraph"
+
+
+@pytest.mark.parametrize(
+    "sentence",
+    [
+        "Dr. Kolm met Mrs. A. Smith in St. Ives.",
+        "It weighs 3.5 kilograms, i.e. 7.7 pounds.",
+        "On 3. May the U.S. Navy came, with approx. 40 ships.",
+        "See www.example.com for more of this kind.",
+    ],
+)
+def test_abbreviations_and_numbers_end_no_sentence(sentence: str) -> None:
+    assert texts(sentence) == [sentence]
+
+
+def test_lines_that_were_broken_are_joined_again() -> None:
+    assert texts("The main-\ntenance of the pump\nis due in May.") == [
+        "The maintenance of the pump is due in May."
+    ]
+
+
+def test_crumbs_are_left_out() -> None:
+    assert texts("7\n\nFig. 3\n\n--- --- --- --- ---\n\n1234567890 1234567890") == []
+
+
+def test_controls_and_escapes_are_not_kept() -> None:
+    assert texts("The \x1b[31mred\x1b[0m line\x00 is short\udce9 now.") == [
+        "The red line is short\ufffd now."
+    ]
+
+
+def test_a_sentence_without_end_is_cut_where_it_may_be() -> None:
+    parts = texts("rain, snow, hail, " * 200)
+    assert all(len(part) <= LONGEST and part.endswith(",") for part in parts[:-1])
+    assert sum(part.count("snow") for part in parts) == 200
+
+
+@given(st.text(max_size=2000))
+def test_any_text_gives_short_passages_of_its_own_characters(text: str) -> None:
+    for passage in passages_of(text):
+        assert 0 < len(passage.text) <= LONGEST + 1
+        assert passage.text.encode("utf-8")
