@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from ravestate.modules.meta import idle, nlp, ontology, verbaliser
     from ravestate.modules.modality import emotion, interloc, rawio
     from ravestate.modules.platform import conio, webio
-    from ravestate.modules.skill import agenda, agentqa, fillers, genqa, hibye, wildtalk
+    from ravestate.modules.skill import agenda, agentqa, fillers, genqa, hibye, persqa, wildtalk
 
 __all__ = [
     "BUILT_IN",
@@ -31,6 +31,7 @@ __all__ = [
     "interloc",
     "nlp",
     "ontology",
+    "persqa",
     "rawio",
     "verbaliser",
     "webio",
@@ -52,6 +53,7 @@ BUILT_IN = {
     "agentqa": "skill",
     "fillers": "skill",
     "genqa": "skill",
+    "persqa": "skill",
     "wildtalk": "skill",
 }
 """Every built-in module, and the folder in which it stands."""

@@ -1,0 +1,145 @@
+"""Pieces of what somebody says: where a value ends, and whether it can be one."""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from collections.abc import Iterable, Mapping
+
+from ravestate.modules._text import printable
+
+from .topics import Kind, Topic
+from .wording import tidy
+from .words import DETERMINERS, NEVER_IN, NO_EMPLOYER, NO_HOBBY, NO_PLACE, NO_SUBJECT, STATES
+
+__all__ = ["LONGEST", "is_value", "plain", "values"]
+
+LONGEST = 500
+"""So many characters are read: who says more does not answer a question."""
+
+MARK = re.compile(r"[.;:!?…\n()\[\]{}<>|\"“”„«»]+|,(?=\S*\s*)|\s[-–—]+(?:\s|$)")
+LISTED = re.compile(r"\s*(?:[,;/&+]|\band\b|\bor\b|\bas well as\b|\bplus\b)\s*", re.IGNORECASE)
+HEDGES = re.compile(
+    r"^(?:(?:also|sometimes|maybe|perhaps|mostly|mainly|just|only|actually|a bit of|a little|some|lots of|a lot of|"
+    r"well|of course|basically|currently|now|originally|usually|really|still|like|to|called|named|both|and|or|e\.g\.) )+",
+    re.IGNORECASE,
+)
+TAIL = re.compile(
+    r"\s(?:too|as well|though|now|right now|at the moment|at present|these days|nowadays|currently|actually|originally|"
+    r"mostly|mainly|sometimes|please|thanks|thank you|by the way|btw|here|there|again|anyway|of course|i guess|i think|"
+    r"i suppose|you know|for now|any ?more|instead|then|lol|haha|and so on|and stuff|etc|by (?:trade|profession|training))$",
+    re.IGNORECASE,
+)
+_ENDS: Mapping[Kind, str] = {
+    "name": "and|but|or|from|by|because|so|since|what|how|nice|i|i'm|you|not|is|was|if|with|like|short|the|my|btw",
+    "place": "and|but|or|since|because|so|for|with|where|which|who|that|when|while|though|although|if|as|by|i|i'm|"
+    "my|we|you|it|not|is|was|has|have|until|before|after|together|in|near|at|right|these|on",
+    "activity": "because|since|but|so|when|while|if|that|which|who|though|although|i'm|i am|my friends|in my|every|as a",
+    "work": "and|but|or|at|for|in|with|because|since|so|when|while|if|that|which|who|though|although|i|i'm|my|on|not|by|near",
+    "organisation": "because|since|but|so|when|while|if|that|which|who|though|although|as|in|on|with|for|near|"
+    "and (?:i|i'm|my|live|work|have|am|also|it|love|like|we|come|study|play)|i|i'm|my|not|is",
+    "subject": "at|in|because|since|but|so|when|while|if|that|which|who|though|although|with|for|i|i'm|my|on|not|"
+    "and (?:i|i'm|my|live|work|have|am|also|it)",
+    "people": "but|because|since|so|when|while|if|that|which|who|though|although|from|i|i'm|we|is|are|with|not",
+}
+"""What follows a value of each kind, and is none of it."""
+
+ENDS = {kind: re.compile(rf"\s(?:{words})\b.*$", re.IGNORECASE | re.DOTALL) for kind, words in _ENDS.items()}
+
+
+A_PLACE = re.compile(
+    r"\b(?:town|city|village|suburb|capital|countryside|north|south|east|west|island|netherlands|hague|states|usa|us|uk|"
+    r"kingdom|republic|region|area|coast|mountains|philippines|gambia|bahamas|congo|vatican)\b",
+    re.IGNORECASE,
+)
+
+
+def plain(text: str) -> str:
+    """What is read of a text: its beginning, with plain apostrophes and single spaces.
+
+    Example:
+        >>> plain("I’m\\t Ada")
+        "I'm Ada"
+    """
+    text = unicodedata.normalize("NFC", printable(text[: 2 * LONGEST]))[:LONGEST]
+    text = re.sub(r"[’‘ʼ´`]", "'", text)
+    return re.sub(r"[^\S\n]+", " ", text).strip()
+
+
+def values(rest: str, topic: Topic) -> tuple[str, ...]:
+    """The values at the beginning of `rest`, the words after *I live in* or the like, as they are written down.
+
+    Example:
+        >>> from .topics import TOPICS
+        >>> values("new york since 2010", TOPICS["home"]), values("chess, and a bit of football!", TOPICS["hobby"])
+        (('New York',), ('chess', 'football'))
+    """
+    pieces = _pieces(rest, topic)
+    found: list[str] = []
+    for piece in pieces:
+        value = _value(piece, topic)
+        if value is None:
+            break  # what follows a piece that is none is no value either
+        if value.casefold() not in [known.casefold() for known in found]:
+            found.append(value)
+    return tuple(found[: 5 if topic.many else 1])
+
+
+def _pieces(rest: str, topic: Topic) -> Iterable[str]:
+    if not topic.many:
+        # quotes, at which a value ends, may also stand around it
+        return [MARK.split(rest.lstrip(" .,;:-\"'“„«([{"), maxsplit=1)[0]]
+    sentence = re.split(r"[.;:!?…\n()\"]", rest.lstrip(" .,;:-\"'"), maxsplit=1)[0]
+    sentence = ENDS[topic.kind].sub("", " " + sentence)
+    return [piece for piece in LISTED.split(sentence.strip()) if piece]
+
+
+def _value(piece: str, topic: Topic) -> str | None:
+    value = HEDGES.sub("", piece.strip())
+    value = ENDS[topic.kind].sub("", " " + value).strip()
+    while (shorter := TAIL.sub("", " " + value).strip()) != value:
+        value = shorter
+    value = value.strip(" '-_*~.,")
+    if topic.kind in ("work", "subject", "activity"):
+        value = re.sub(r"^(?:a|an)\s+(?=\S)", "", value, flags=re.IGNORECASE)
+    if topic.kind == "work":
+        value = re.sub(r"^the\s+(?=\S)", "", value, flags=re.IGNORECASE)
+    if not is_value(value, topic):
+        return None
+    return tidy(value, topic)
+
+
+def is_value(value: str, topic: Topic) -> bool:
+    """Whether these words can be what `topic` asks for."""
+    words = value.lower().split()
+    if not words or len(value) > 60 or len(words) > (4 if topic.kind in ("name", "people", "place") else 7):
+        return False
+    if NEVER_IN & set(words) or not any(_tells(letter) for letter in value):
+        return False
+    first = words[0]
+    match topic.kind:
+        case "name" | "people":
+            return (
+                first not in STATES
+                and not any(letter.isdigit() for letter in words[0][:1])
+                and not re.fullmatch(r"\w+ing", value)  # leaving, working
+            )
+        case "place":
+            if any(letter.isdigit() for letter in value) or words[-1] in NO_PLACE:
+                return False
+            return first not in DETERMINERS or A_PLACE.search(value) is not None
+        case "organisation":
+            return (
+                first not in NO_EMPLOYER and first not in ("and", "or", "not", "no") and not first.isdigit()
+            )
+        case "subject":
+            return first not in NO_SUBJECT
+        case "work":
+            return first not in STATES or value.lower() in ("retired", "self-employed", "freelance")
+        case "activity":
+            return first not in NO_HOBBY
+
+
+def _tells(letter: str) -> bool:
+    """Whether a character says anything: a letter of any script, or a picture."""
+    return letter.isalpha() or unicodedata.category(letter) == "So"

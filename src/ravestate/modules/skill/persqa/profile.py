@@ -1,0 +1,98 @@
+"""What is known of the user after he has told something. Values: nothing is written here."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+from .topics import NAME, TOPICS, Fact
+from .wording import same
+
+__all__ = ["Facts", "News", "learn", "merged", "told_apart"]
+
+Facts = Mapping[str, tuple[str, ...]]
+"""Values by topic; an empty tuple means that there are none."""
+
+
+@dataclass(frozen=True, slots=True)
+class News:
+    """What is new.
+
+    Attributes:
+        facts: All that is known now.
+        topics: What was told about, known before or not.
+        changed: The topics whose old values are replaced or taken away.
+        new: The topics with values that were not known.
+    """
+
+    facts: Facts
+    topics: tuple[str, ...]
+    changed: frozenset[str]
+    new: frozenset[str]
+
+
+def learn(facts: Facts, told: Iterable[Fact], instead_of: tuple[str, ...] = ()) -> News:
+    """Return what is known after somebody has `told` something; his name is none of it.
+
+    Args:
+        facts: What was known.
+        told: What he has told.
+        instead_of: Values that it corrects.
+
+    Example:
+        >>> learn({"hobby": ("chess",)}, [Fact("hobby", ("go",)), Fact("home", ("Bremen",))]).facts
+        {'hobby': ('chess', 'go'), 'home': ('Bremen',)}
+    """
+    now = dict(facts)
+    topics: list[str] = []
+    changed: set[str] = set()
+    new: set[str] = set()
+    for fact in told:
+        if fact.topic == NAME:
+            continue
+        topics.append(fact.topic)
+        before = now.get(fact.topic)
+        if fact.gone:
+            _strike(now, fact)
+            if fact.topic == "occupation" and not now.get("occupation"):
+                topics.append("employer")
+                now["employer"] = ()
+        else:
+            kept = _without(before or (), instead_of) if TOPICS[fact.topic].many else ()
+            now[fact.topic] = kept + _without(fact.values, kept)
+            if _without(fact.values, before or ()):
+                new.add(fact.topic)
+        if before and _without(before, now.get(fact.topic, ())):
+            changed.add(fact.topic)
+    return News(now, tuple(topics), frozenset(changed), frozenset(new))
+
+
+def _strike(facts: dict[str, tuple[str, ...]], fact: Fact) -> None:
+    left = _without(facts.get(fact.topic, ()), fact.values) if fact.values else ()
+    if left or (not fact.values and TOPICS[fact.topic].kind not in ("place", "organisation")):
+        facts[fact.topic] = left
+    else:
+        facts.pop(fact.topic, None)  # there is another, which may be asked for
+
+
+def _without(values: Iterable[str], others: Iterable[str]) -> tuple[str, ...]:
+    others = tuple(others)
+    return tuple(value for value in values if not any(same(value, other) for other in others))
+
+
+def merged(remembered: Facts, told: Facts) -> Facts:
+    """What was known before, and what was told in this talk, which goes first."""
+    found = dict(remembered)
+    for topic, values in told.items():
+        before = remembered.get(topic, ()) if TOPICS[topic].many and values else ()
+        found[topic] = before + _without(values, before)
+    return {topic: found[topic] for topic in TOPICS if topic in found}
+
+
+def told_apart(facts: Facts, remembered: Facts, told: Iterable[str]) -> Facts:
+    """Of what is known, what was told in this talk alone."""
+    return {
+        topic: _without(facts[topic], remembered.get(topic, ())) if TOPICS[topic].many else facts[topic]
+        for topic in told
+        if topic in facts
+    }

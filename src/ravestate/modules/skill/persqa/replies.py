@@ -1,0 +1,50 @@
+"""What there is to say, as intents for the verbaliser."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Iterable
+
+from ravestate.modules.meta.verbaliser.intents import Intent
+
+from .profile import Facts
+from .topics import NAME, TOPICS
+from .wording import clause, joined, spoken
+
+__all__ = ["asking", "learned", "reminder", "say", "stating", "summary"]
+
+PACKAGE = __name__.rpartition(".")[0]
+"""Where the phrases are."""
+
+
+def say(intent: str, known: Facts, **parameters: str | None) -> Intent:
+    """Return an intent whose phrases may mention all that is known, and `parameters`."""
+    mentioned = {topic: spoken(topic, values) for topic, values in known.items() if values}
+    return Intent(intent, {**mentioned, **parameters}, PACKAGE)
+
+
+def asking(topic: str, known: Facts) -> Intent:
+    """Ask about a topic."""
+    return say(f"ask_{topic}", known)
+
+
+def learned(topic: str, values: tuple[str, ...], known: Facts) -> Intent:
+    """Show that `values` were understood."""
+    return say(f"learned_{topic}", known, **{topic: spoken(topic, values)})
+
+
+def stating(intent: str, topic: str, values: tuple[str, ...], known: Facts) -> Intent:
+    """Say something that has what is known about one topic as a clause: ``{fact}``."""
+    return say(intent, known, fact=clause(topic, values))
+
+
+def reminder(known: Facts, remembered: Facts, chance: random.Random, intent: str = "remind") -> Intent:
+    """Remind the user of something that he told in another talk."""
+    topic = chance.choice([topic for topic, values in remembered.items() if values] or [NAME])
+    return stating(intent, topic, remembered.get(topic) or known[topic], known)
+
+
+def summary(known: Facts) -> Intent:
+    """Tell the user all that is known of him."""
+    clauses: Iterable[str] = (clause(topic, known[topic]) for topic in TOPICS if known.get(topic))
+    return say("recall_everything", known, facts=joined(list(clauses)))

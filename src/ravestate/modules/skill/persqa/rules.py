@@ -1,0 +1,161 @@
+"""When the user is asked, how he is understood, and who says what."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import ravestate as rs
+from ravestate.errors import RavestateError
+from ravestate.modules import idle, interloc, nlp, ontology, rawio, verbaliser
+
+from . import Settings, facts, module, reply, talk, who
+from .acquaintance import Acquaintance
+from .profile import Facts
+from .replies import asking, reminder
+from .response import respond_to
+from .talk import Talk
+from .topics import NAME, due
+from .understanding import Heard, understand
+
+TRIES = 2
+"""So often a topic is brought up in one talk at most."""
+
+
+@module.rule(
+    when=idle.bored,
+    reads=(who, facts),
+    writes=(
+        verbaliser.intent,
+        rawio.output,
+        talk,
+    ),  # the output too: else another might say something instead
+    weight=1.2,
+    cooldown=20.0,
+    detached=True,  # thus the intent, in a causal group of its own, may still be worded
+)
+async def ask(ctx: rs.RuleContext) -> rs.Resign | None:
+    """Nothing happens: ask the user about himself, or show him that he is remembered."""
+    settings: Settings = ctx.settings
+    now = ctx[talk]
+    if now.quiet:
+        return rs.Resign("the user has taken leave")
+    question = now.question
+    if question is not None and not question.turns:
+        if (age := ctx.now - question.since) < settings.gap:
+            return rs.Resign(f"a question was asked {age:.0f} s ago; persqa.gap is {settings.gap:g} s")
+        now = now.waiting()
+    if now.ignored >= settings.ignored:
+        return rs.Resign(f"the user left {now.ignored} questions without a word")
+    known = known_of(ctx)
+    if now.remembered and not now.reminded:
+        ctx[talk] = replace(now, reminded=True, question=None)
+        ctx[verbaliser.intent] = reminder(known, now.remembered, ctx.random)
+        return None
+    topic = due(settings.topics, known, now.closed, now.tries, last=now.last, limit=TRIES)
+    if not topic:
+        return rs.Resign("there is nothing left to ask")
+    ctx[talk] = now.asking(topic, ctx.now)
+    ctx[verbaliser.intent] = asking(topic, known)
+    return None
+
+
+@module.rule(
+    when=rawio.input.changed & nlp.entities.changed & nlp.question.changed & nlp.yesno.changed,
+    reads=ontology.memory,
+    writes=(talk, who, facts, interloc.users),
+    emits=reply,
+)
+async def listen(ctx: rs.RuleContext) -> None:
+    """Learn what the user tells of himself, and raise what to say to it, if it is for this module to answer."""
+    settings: Settings = ctx.settings
+    heard = Heard(
+        ctx.payload(rawio.input.changed),
+        ctx.payload(nlp.yesno.changed),
+        ctx.payload(nlp.question.changed),
+        ctx.payload(nlp.entities.changed),
+    )
+    meaning = understand(heard, ctx[talk], known_of(ctx), ctx.now, settings.within)
+    before = acquaintance_of(ctx)
+    answer, after = await respond_to(meaning, before, ctx[ontology.memory], ctx.now, ctx.random)
+    if after.talk.trouble and after.talk.trouble != before.talk.trouble:
+        ctx.log.error("%s", after.talk.trouble)
+    keep(ctx, after)
+    name = after.name
+    users = ctx[interloc.users]
+    if name and name != before.name and len(users) == 1:
+        [(key, item)] = users.items()
+        if item is None or item == before.name:
+            users.add(key, name)
+    if answer is not None and meaning.aloud:
+        ctx.emit(reply, answer)
+
+
+@module.rule(when=reply, writes=verbaliser.intent)
+async def respond(ctx: rs.RuleContext) -> None:
+    """Say what there is to say to the user's words."""
+    ctx[verbaliser.intent] = ctx.payload(reply)
+
+
+@module.rule(when=rawio.output.changed.max_age(None).detached(), writes=talk, background=True)
+async def overhear(ctx: rs.RuleContext) -> None:
+    """Whoever makes the agent speak unasked has the user's next words: they are no answer to the question before."""
+    ctx[talk] = ctx[talk].speaking()
+
+
+@module.rule(
+    when=interloc.users.added.max_age(None).detached(),
+    reads=(ontology.memory, interloc.users),
+    writes=(talk, who, facts),
+    background=True,
+)
+async def welcome(ctx: rs.RuleContext) -> rs.Resign | None:
+    """A platform knows who has come: so does memory, perhaps. Others greet; this module reminds him when it is quiet."""
+    item: object = ctx.payload(interloc.users.added).item
+    if len(ctx[interloc.users]) > 1:
+        return rs.Resign("somebody is there already")
+    before = acquaintance_of(ctx)
+    before = replace(before, talk=replace(before.talk, quiet=False))
+    if isinstance(item, ontology.Node) and item.get(NAME):
+        after = replace(before, who=item)
+    elif isinstance(item, str) and item.strip():
+        after = replace(before, who=ontology.Node("Person", {NAME: item.strip()}))
+    else:
+        keep(ctx, before)
+        return None
+    try:
+        keep(ctx, await after.recall(ctx[ontology.memory]))
+    except RavestateError as error:
+        ctx.log.error("%s", error)
+        keep(ctx, after)
+    return None
+
+
+@module.rule(
+    when=interloc.users.removed.max_age(None).detached(),
+    reads=interloc.users,
+    writes=(talk, who, facts),
+    background=True,
+)
+async def part(ctx: rs.RuleContext) -> rs.Resign | None:
+    """Nobody is left: the next talk is another one, and may be with somebody else."""
+    if ctx[interloc.users]:
+        return rs.Resign("somebody is still there")
+    keep(ctx, Acquaintance(None, {}, Talk(quiet=True)))
+    return None
+
+
+def known_of(ctx: rs.RuleContext) -> Facts:
+    """All that is known of the user, his name included."""
+    return acquaintance_of(ctx).known
+
+
+def acquaintance_of(ctx: rs.RuleContext) -> Acquaintance:
+    """The user as the slots have him."""
+    return Acquaintance(ctx[who], dict(ctx[facts]), ctx[talk])
+
+
+def keep(ctx: rs.RuleContext, now: Acquaintance) -> None:
+    """Put the user back into the slots."""
+    ctx[who], ctx[talk] = now.who, now.talk
+    if dict(ctx[facts]) != dict(now.facts):
+        ctx[facts] = now.facts  # type: ignore[assignment]  # a collection takes any mapping

@@ -1,0 +1,170 @@
+"""What the user's words mean for the talk about him."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from typing import Literal
+
+from ravestate.modules import nlp
+
+from .answers import answer, correction, has_none, refuses
+from .inquiries import inquiry, wants_to_be_forgotten
+from .phrase import plain
+from .statements import statements
+from .talk import FORGET, Talk
+from .topics import NAME, TOPICS, Fact
+
+__all__ = ["Heard", "Meaning", "persons_in", "understand"]
+
+Kind = Literal[
+    "nothing",  # that concerns persqa
+    "told",
+    "corrected",
+    "declined",  # he would rather not say
+    "none",  # he has no hobby
+    "unsure",
+    "which",  # he said no more than yes
+    "asked",  # what is known of him
+    "forget",  # he wants to be forgotten
+    "forget_yes",
+    "forget_no",
+]
+
+
+LEAVE = re.compile(
+    r"(?:^|[.,;!?…] *|\b(?:ok|okay|well|thanks|thank you|so|and) )(?:bye+|goodbye|good ?night|farewell|cheerio|ciao|see (?:you|ya)|"
+    r"take care(?! of)|have a (?:nice|good|great) (?:day|evening|night|one)|(?:i'll )?talk to you (?:later|soon)|until tomorrow|"
+    r"i (?:really )?(?:have to|must|need to|gotta|got to) (?:go|leave|run))\b(?! to\b)",
+    re.IGNORECASE,
+)
+"""Takes leave."""
+
+
+@dataclass(frozen=True, slots=True)
+class Heard:
+    """An utterance, and what `nlp` made of it."""
+
+    text: str
+    yesno: nlp.YesNo = field(default_factory=nlp.YesNo)
+    question: nlp.QuestionWord | None = None
+    entities: tuple[nlp.Entity, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Meaning:
+    """What an utterance means.
+
+    Attributes:
+        kind: What the user does.
+        facts: What he tells, or asks.
+        topic: The question that he answers, by its topic.
+        leave: Whether he takes leave.
+        aloud: Whether it wants a reply. The user's own questions, farewells and games go first: what he tells on
+            the side is learnt in silence.
+    """
+
+    kind: Kind
+    facts: tuple[Fact, ...] = ()
+    topic: str = ""
+    leave: bool = False
+    aloud: bool = True
+
+
+def understand(
+    heard: Heard, talk: Talk, known: Mapping[str, tuple[str, ...]], now: float, within: float
+) -> Meaning:
+    """Return what an utterance means.
+
+    Args:
+        heard: The utterance.
+        talk: How the talk stands before it.
+        known: The values by topic, the name among them.
+        now: Seconds since the context began.
+        within: Seconds for which a question waits for its answer.
+    """
+    text = plain(heard.text)
+    leave = LEAVE.search(text) is not None
+    pending = talk.pending(now, within)
+    topic = pending.topic if pending else ""
+    if wants_to_be_forgotten(text):
+        return Meaning("forget", leave=leave)
+    if topic == FORGET:
+        return _of_forgetting(heard, leave)
+    if heard.question is not None and (asked := inquiry(text)):
+        return Meaning("asked", (asked,))
+    told = statements(text, persons=persons_in(text, heard.entities), asked=topic)
+    told = [fact for fact in told if not fact.gone or _matters(fact, known, topic)]
+    aside = leave or heard.question is not None
+    if told:
+        return Meaning("told", tuple(told), topic, leave, aloud=not aside)
+    if aside:
+        before = _before_question(text) if heard.question is not None and topic else ""
+        side = answer(before, topic) if before else []
+        return Meaning("told" if side else "nothing", tuple(side), topic, leave, aloud=False)
+    if talk.correctable and (not topic or heard.yesno.no):
+        put_right = correction(text, talk.correctable, talk.latest)
+        if put_right:
+            return Meaning("corrected", tuple(put_right), talk.correctable)
+    if pending is None:
+        return Meaning("nothing")
+    if not pending.turns and refuses(text):
+        return Meaning("declined", topic=topic)
+    if pending.fresh and has_none(text):
+        return Meaning("none" if topic != NAME else "declined", topic=topic)
+    if answered := answer(text, topic):
+        return Meaning("told", tuple(answered), topic)
+    if not pending.fresh:
+        return Meaning("nothing")
+    return Meaning(_of_yesno(heard.yesno, topic, text), topic=topic)
+
+
+def _of_forgetting(heard: Heard, leave: bool) -> Meaning:
+    if heard.yesno.yes:
+        return Meaning("forget_yes", leave=leave)
+    if heard.yesno.no or heard.yesno.unsure:
+        return Meaning("forget_no", leave=leave)
+    return Meaning("nothing", leave=leave)
+
+
+def _of_yesno(yesno: nlp.YesNo, topic: str, text: str) -> Kind:
+    if yesno.unsure:
+        return "unsure"
+    if yesno.no:
+        return "declined" if topic in (NAME, "home", "origin") else "none"
+    if (
+        yesno.yes
+        and len(text.split()) <= 4
+        and not re.match(r"\W*(?:fine|good|great|ok|okay|right)\b", text, re.IGNORECASE)
+    ):
+        return "which"
+    return "nothing"
+
+
+def _matters(fact: Fact, known: Mapping[str, tuple[str, ...]], topic: str) -> bool:
+    """Whether a denial says anything: it denies what is known, or that there is anything."""
+    if fact.topic == NAME:
+        return any(value in known.get(NAME, ()) for value in fact.values)
+    if fact.values:
+        low = [value.casefold() for value in known.get(fact.topic, ())]
+        return any(value.casefold() in low for value in fact.values)
+    return fact.topic == topic or TOPICS[fact.topic].kind != "place" or bool(known.get(fact.topic))
+
+
+def _before_question(text: str) -> str:
+    """What is said before a question in the same breath: *hannover* in *hannover, and you?*."""
+    parts = re.split(r"(?:[,.;!…\n]+|\s(?=(?:and|what about|how about) (?:you|yours)\b))", text.rstrip(" ?"))
+    return parts[0].strip() if len(parts) > 1 else ""
+
+
+def persons_in(text: str, entities: Iterable[nlp.Entity]) -> frozenset[str]:
+    """The names of persons in a text: those that `nlp` has found, and what has a capital and is nothing else."""
+    entities = list(entities)
+    found = {entity.text for entity in entities if entity.label == "PERSON"}
+    other = {word for entity in entities if entity.label != "PERSON" for word in entity.text.split()}
+    for match in re.finditer(r"(?<=[\s,])[^\W\d_a-z][\w'-]*(?: [^\W\d_a-z][\w'-]+)*", text):
+        words = match[0].split()
+        if not other & set(words) and words[0] not in ("I", "I'm"):
+            found.update((match[0], words[0]))
+    return frozenset(found)

@@ -1,0 +1,110 @@
+"""How values are written down, and how they are said."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+
+from .topics import TOPICS, Topic
+from .words import SMALL
+
+__all__ = ["clause", "joined", "parameters", "same", "spoken", "tidy"]
+
+BARE = frozenset(["retired", "self-employed", "freelance", "unemployed"])
+"""Occupations that take no article."""
+
+
+def tidy(text: str, topic: Topic) -> str:
+    """Write a value as it is written: names with capitals, the rest in the user's words.
+
+    Example:
+        >>> tidy("new york", TOPICS["home"]), tidy("Nurse", TOPICS["occupation"]), tidy("ibm", TOPICS["employer"])
+        ('New York', 'nurse', 'IBM')
+    """
+    words = text.split()
+    match topic.kind:
+        case "name" | "people" | "place":
+            if text != text.lower() and not (text.isupper() and len(text) > 3):
+                return text
+            if words[0].lower() in ("a", "an") and len(words) > 1:
+                return text  # a small town
+            return " ".join(_capital(word.lower(), first=not index) for index, word in enumerate(words))
+        case "organisation":
+            if text != text.lower() or words[0] in ("a", "an", "the", "my", "our"):
+                return text
+            if len(text) <= 3:
+                return text.upper()
+            return " ".join(_capital(word, first=not index) for index, word in enumerate(words))
+        case "work":
+            return " ".join(word.lower() if word[1:].islower() else word for word in words)
+        case _:
+            return text
+
+
+def _capital(word: str, *, first: bool) -> str:
+    if word in SMALL and not first:
+        return word
+    # not str.title, which would make "O'Brien'S" of it, nor capitalize, which would undo "McKay"
+    parts = [part[:1].upper() + part[1:] for part in word.split("-")]
+    word = "-".join(parts)
+    return "O'" + word[2:3].upper() + word[3:] if word.startswith("O'") else word
+
+
+def same(one: str, other: str) -> bool:
+    """Whether two values mean the same.
+
+    Example:
+        >>> same("The Red Cross", "red cross")
+        True
+    """
+    return _key(one) == _key(other)
+
+
+def _key(value: str) -> str:
+    words = value.casefold().split()
+    return " ".join(words[1:] if len(words) > 1 and words[0] in ("the", "a", "an") else words)
+
+
+def joined(values: Sequence[str]) -> str:
+    """Enumerate.
+
+    Example:
+        >>> joined(["chess", "football", "tea"])
+        'chess, football and tea'
+    """
+    return values[0] if len(values) == 1 else f"{', '.join(values[:-1])} and {values[-1]}"
+
+
+def spoken(topic: str, values: Sequence[str]) -> str:
+    """Values as they are said within a sentence.
+
+    Example:
+        >>> spoken("occupation", ["engineer"])
+        'an engineer'
+    """
+    if TOPICS[topic].kind != "work":
+        return joined(values)
+    return joined([value if value in BARE else f"{_article(value)} {value}" for value in values])
+
+
+def _article(noun: str) -> str:
+    low = noun.lower()
+    like_you = low.startswith(("uni", "use", "euro")) and not low.startswith("unin")
+    return "an" if low[:1] in "aeiou" and not like_you else "a"
+
+
+def clause(topic: str, values: Sequence[str]) -> str:
+    """What is known, as a clause said to the user.
+
+    Example:
+        >>> clause("home", ["Hannover"])
+        'you live in Hannover'
+    """
+    return TOPICS[topic].clause.format(spoken(topic, values))
+
+
+def parameters(name: str | None, facts: Mapping[str, Iterable[str]]) -> dict[str, object]:
+    """What phrases may mention: each topic that is known, by its name."""
+    found: dict[str, object] = {
+        topic: spoken(topic, list(values)) for topic, values in facts.items() if values
+    }
+    return {**found, "name": name}
