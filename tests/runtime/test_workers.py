@@ -1,5 +1,7 @@
 """Worker threads: as many as are busy at once, kept, never waited for at the end."""
 
+import subprocess
+import sys
 import threading
 from collections.abc import Callable
 from queue import SimpleQueue
@@ -80,3 +82,27 @@ def test_an_idle_thread_is_used_again() -> None:
     for thread in seen:
         thread.join(LIMIT)
         assert not thread.is_alive()
+
+
+def test_the_end_of_the_process_waits_for_a_function_at_work_but_not_for_one_that_hangs() -> None:
+    program = """
+import sys, threading, time
+from ravestate.runtime import workers
+
+workers.LAST_GRACE = 1.0
+at_work = threading.Event()
+
+def work():
+    at_work.set()
+    time.sleep({seconds})
+    print("done", flush=True)
+
+workers.Workers().submit(work)
+at_work.wait()
+"""
+    for seconds, expected in ((0.2, "done\n"), (3600, "")):
+        ended = subprocess.run(
+            [sys.executable, "-c", program.format(seconds=seconds)],
+            capture_output=True, text=True, timeout=20, check=True,
+        )  # fmt: skip
+        assert ended.stdout == expected

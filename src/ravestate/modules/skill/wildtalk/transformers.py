@@ -85,7 +85,7 @@ class TransformersBackend:
 
         prompt, ends = model.prompt(messages)
         arguments = (prompt, max_tokens, temperature, seed, tell, left)
-        threading.Thread(target=model.write, args=arguments, name="ravestate-model", daemon=True).start()
+        threading.Thread(target=model.write, args=arguments, name="ravestate-model").start()
         stops = (*stop, *ends)
         written, shown = "", 0
         try:
