@@ -53,7 +53,8 @@ NONE = re.compile(
 )
 
 CORRECTION = re.compile(
-    r"^\W*(?:(?:no|nope|nah|wrong|not quite|not really|that's wrong|that is wrong|that's not (?:right|correct|true)|sorry|actually|wait|oh|"
+    r"^\W*(?:(?:no(?! (?:problem|way|worries|worry|idea|thanks|thank|need|matter|doubt|chance|clue|one|kidding|offen[cs]e|more|longer|"
+    r"other|big deal|reason|wonder|joke|really))|nope|nah|wrong|not quite|not really|that's wrong|that is wrong|that's not (?:right|correct|true)|sorry|actually|wait|oh|"
     r"i (?:meant|mean|said)|correction|rather)(?![\w'])[\s,.:;!…-]*)+",
     re.IGNORECASE,
 )
@@ -128,7 +129,7 @@ def _name(rest: str) -> tuple[str, ...]:
 def _of(topic: str, said: tuple[str, ...]) -> list[Fact]:
     """The facts in words that nothing introduces: less may be a value there."""
     words = said[0].lower().split() if said else []
-    if not words or STATES.issuperset(words) or (words[0] in REMARKS and words != ["nice"]):
+    if not words or (words != ["nice"] and (STATES.issuperset(words) or words[0] in REMARKS)):
         return []
     return [Fact(topic, said)]
 

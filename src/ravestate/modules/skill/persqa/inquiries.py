@@ -63,7 +63,7 @@ _FORGET = re.compile(
     re.IGNORECASE,
 )
 _NOT_FORGET = re.compile(
-    r"(?:(?:don't|do not|never|won't|didn't|not|will|did|have|would|could) (?:\w+ )?(?:you )?(?:ever )?$|(?:you|they|he|she|people|everybody|everyone|who|to) (?:will |would |always |might |may |could )*$)",
+    r"(?:(?:don't|do not|never|won't|didn't|not|will|did|have|would|could) (?:\w+ )?(?:you )?(?:ever )?$|(?:i|we|you|they|he|she|people|everybody|everyone|who|to) (?:will |would |always |might |may |could )*$)",
     re.IGNORECASE,
 )
 
@@ -111,7 +111,7 @@ def wants_to_be_forgotten(text: str) -> bool:
             "remember" in match[0].lower()
             or not _NOT_FORGET.search(before)
             or re.search(
-                r"(?:can|could|would|will|want|like) (?:you |to |you to )?(?:please )?$",
+                r"(?:(?:can|could|would|will) you |(?:want|like) (?:you )?to )(?:please |just )*$",
                 before,
                 re.IGNORECASE,
             )

@@ -18,6 +18,7 @@ LONGEST = 500
 """So many characters are read: who says more does not answer a question."""
 
 MARK = re.compile(r"[.;:!?…\n()\[\]{}<>|\"“”„«»]+|,(?=\S*\s*)|\s[-–—]+(?:\s|$)")
+_TITLE = re.compile(r"\b(dr|mr|mrs|ms|prof|st)\.(?= ?\w)", re.IGNORECASE)
 LISTED = re.compile(r"\s*(?:[,;/&+]|\band\b|\bor\b|\bas well as\b|\bplus\b)\s*", re.IGNORECASE)
 HEDGES = re.compile(
     r"^(?:(?:also|sometimes|maybe|perhaps|mostly|mainly|just|only|actually|a bit of|a little|some|lots of|a lot of|"
@@ -33,7 +34,7 @@ TAIL = re.compile(
 _ENDS: Mapping[Kind, str] = {
     "name": "and|but|or|from|by|because|so|since|what|how|nice|i|i'm|you|not|is|was|if|with|like|short|the|my|btw",
     "place": "and|but|or|since|because|so|for|with|where|which|who|that|when|while|though|although|if|as|by|i|i'm|"
-    "my|we|you|it|not|is|was|has|have|until|before|after|together|in|near|at|right|these|on",
+    "my|we|you|it|not|is|was|has|have|until|before|after|together|in|near|at|right|these|on|last|recently|ago",
     "activity": "because|since|but|so|when|while|if|that|which|who|though|although|i'm|i am|my friends|in my|every|as a",
     "work": "and|but|or|at|for|in|with|because|since|so|when|while|if|that|which|who|though|although|i|i'm|my|on|not|by|near",
     "organisation": "because|since|but|so|when|while|if|that|which|who|though|although|as|in|on|with|for|near|"
@@ -87,6 +88,7 @@ def values(rest: str, topic: Topic) -> tuple[str, ...]:
 
 def _pieces(rest: str, topic: Topic) -> Iterable[str]:
     if not topic.many:
+        rest = _TITLE.sub(r"\1", rest)
         # quotes, at which a value ends, may also stand around it
         return [MARK.split(rest.lstrip(" .,;:-\"'“„«([{"), maxsplit=1)[0]]
     sentence = re.split(r"[.;:!?…\n()\"]", rest.lstrip(" .,;:-\"'"), maxsplit=1)[0]
@@ -125,12 +127,16 @@ def is_value(value: str, topic: Topic) -> bool:
                 and not re.fullmatch(r"\w+ing", value)  # leaving, working
             )
         case "place":
-            if any(letter.isdigit() for letter in value) or words[-1] in NO_PLACE:
+            if any(letter.isdigit() for letter in value):
                 return False
-            return first not in DETERMINERS or A_PLACE.search(value) is not None
+            if first in DETERMINERS:
+                return A_PLACE.search(value) is not None
+            return words[-1] not in NO_PLACE
         case "organisation":
             return (
-                first not in NO_EMPLOYER and first not in ("and", "or", "not", "no") and not first.isdigit()
+                not NO_EMPLOYER & {first, words[-1]}
+                and first not in ("and", "or", "not", "no")
+                and not first.isdigit()
             )
         case "subject":
             return first not in NO_SUBJECT

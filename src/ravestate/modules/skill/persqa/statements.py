@@ -99,8 +99,8 @@ GONE: tuple[tuple[str, str], ...] = (
     ("occupation", r"i (?:don't|do not|dont) work(?: any ?more)?()(?=$|[,.;!])"),
     ("occupation", rf"{AM}(?:unemployed|jobless|out of work|between jobs|looking for (?:a job|work))()"),
     ("occupation", rf"{HAVE}(?:quit|lost) my job()"),
-    ("occupation", rf"{AM}no longer (an? .+?)(?=$|[,.;!])"),
-    ("occupation", rf"{AM}not (an? .+?) any ?more"),
+    ("occupation", rf"{AM}no longer (an? (?!(?:\w+ )?member).+?)(?=$|[,.;!])"),
+    ("occupation", rf"{AM}not (an? (?!(?:\w+ )?member).+?) any ?more"),
     ("employer", rf"{I}(?:don't|do not|dont) work (?:there|(?:for|at) (.+?))(?: any ?(?:more|longer))?(?=$|[,.;!])"),
     ("employer", rf"{I}no longer work (?:there|(?:for|at) (.+?))(?=$|[,.;!])"),
     ("subject", rf"{I}(?:don't|do not|dont) study(?: any ?(?:more|thing))?()(?=$|[,.;!])"),
@@ -122,7 +122,7 @@ _DENIED = tuple((topic, re.compile(_BEFORE + words, re.IGNORECASE)) for topic, w
 
 _I_AM = re.compile(rf"{_BEFORE}(?:{AM}|this is )(.+)", re.IGNORECASE)
 _A = re.compile(r"(?:an? )(.+)", re.IGNORECASE)
-_STUDENT = re.compile(r"(?:an? )?((?:[\w-]+ ){1,3}?)student\b", re.IGNORECASE)
+_STUDENT = re.compile(r"(?:an? )?((?!an? )(?:[\w-]+ ){1,3}?)student\b", re.IGNORECASE)
 _UNREAL = re.compile(
     r"\b(?:if|when|whenever|wish|unless|until|once|suppose|imagine|pretend|say|says|said|whether|where|before|while|after|"
     r"dreamt|dreamed|thought|think|thinks|hope|because)(?: that)? $",
@@ -220,8 +220,9 @@ def worker(text: str) -> list[Fact]:
     if not said:
         return []
     where = re.match(r"[^,.;!?]*? (?:at|for) (.+)", text, re.IGNORECASE)
-    employer = values(where[1], TOPICS["employer"]) if where else ()
-    return [Fact("occupation", said), *([Fact("employer", employer)] if employer else [])]
+    place = "university" if said == ("student",) else "employer"
+    there = values(where[1], TOPICS[place]) if where else ()
+    return [Fact("occupation", said), *([Fact(place, there)] if there else [])]
 
 
 def _heads(value: str) -> bool:

@@ -27,7 +27,9 @@ def tidy(text: str, topic: Topic) -> str:
                 return text
             if words[0].lower() in ("a", "an") and len(words) > 1:
                 return text  # a small town
-            return " ".join(_capital(word.lower(), first=not index) for index, word in enumerate(words))
+            return " ".join(
+                _capital(word.lower(), first=not index and word != "the") for index, word in enumerate(words)
+            )
         case "organisation":
             if text != text.lower() or words[0] in ("a", "an", "the", "my", "our"):
                 return text
@@ -44,8 +46,10 @@ def _capital(word: str, *, first: bool) -> str:
     if word in SMALL and not first:
         return word
     # not str.title, which would make "O'Brien'S" of it, nor capitalize, which would undo "McKay"
-    parts = [part[:1].upper() + part[1:] for part in word.split("-")]
-    word = "-".join(parts)
+    parts = word.split("-")
+    word = "-".join(
+        part if index and part in SMALL else part[:1].upper() + part[1:] for index, part in enumerate(parts)
+    )
     return "O'" + word[2:3].upper() + word[3:] if word.startswith("O'") else word
 
 

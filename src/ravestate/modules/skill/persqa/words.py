@@ -37,7 +37,7 @@ STATES = word_set(
     probably never always nah nope yeah yep yup hmm hm um uh oh ah wow lol haha oops cheers morning evening night later
     tomorrow today yesterday again anyway absolutely certainly definitely exactly correct true false stop wait help quit exit
     me you he she we they us them him i i'm im do does did don't dont go come tell say talk ask let let's lets give show play
-    sing stay move forget shut leave doing being having having good-bye welcome nonsense rubbish bullshit fuck shit damn
+    sing stay move forget shut leave doing being having having good-bye question welcome nonsense rubbish bullshit fuck shit damn
     """
 )
 """Words with which no name begins: how one is, and what one says instead of a name."""
@@ -57,7 +57,7 @@ NO_PLACE = word_set(
 )
 
 NO_EMPLOYER = word_set(
-    """home night nights day days weekends least all it that this myself you me fun money free a living hours years weeks months
+    """home night nights day days weekends least all it that this myself you me fun money free living hours years weeks months lot while
     minimum remote remotely something someone somebody nothing nobody now work once times
     """
 )
@@ -96,7 +96,7 @@ DETERMINERS = word_set("a an the my your his her our their this that it some any
 REMARKS = word_set(
     """no nope nah not never none nothing nobody noone yes yeah thanks thank hello hi hey bye goodbye what why how who lol haha hm hmm
     cool great awesome amazing sorry stop help please maybe perhaps whatever wow oops nonsense next skip pass tell shut go come wait
-    interesting very too so really nice true false right wrong exactly take see have"""
+    interesting raining snowing sunny cloudy windy rainy very too so really nice true false right wrong exactly take see have"""
 )
 """With these words begins what is no answer, unless something is called so: *New York*, but *no chance*."""
 
