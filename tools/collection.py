@@ -81,7 +81,7 @@ CONTINENT_OF = {"rs": "Europe", "cy": "Asia"}
 
 def plain(markup: str) -> str:
     """Text without tags and entities, on one line; what stood on lines of its own is parted by ``¦``."""
-    text = re.sub(r"<\s*(?:br|p|/p)\s*/?>", "¦", html.unescape(markup))
+    text = re.sub(r"<\s*(?:br|p|/p)\s*/?>", "¦", html.unescape(html.unescape(markup)))
     text = re.sub(r"<[^>]+>", "", text).replace("\xa0", " ").replace("\u200b", "")
     text = re.sub(r"\s+", " ", text)
     return re.sub(r"(?:\s*¦\s*)+", "¦", text).strip(" ¦")

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ravestate.errors import PlatformError
+from ravestate.modules._text import printable
 
 from .document import Document
 from .stems import TOKENIZER
@@ -193,17 +194,17 @@ class Index:
             self._forget(file.path)
             row = first = self._base.execute("SELECT coalesce(max(rowid), 0) + 1 FROM passages").fetchone()[0]
             for document in documents:
-                start = row
+                start, title, source = row, printable(document.title), printable(document.source)
                 for passage in document.passages:
                     self._base.execute(
                         "INSERT INTO passages (rowid, title, text, hints) VALUES (?, ?, ?, ?)",
-                        (row, document.title, passage.text, passage.hints),
+                        (row, title, passage.text, passage.hints),
                     )
                     row += 1
                 if row > start:
                     self._base.execute(
                         "INSERT INTO documents (first, last, path, title, source) VALUES (?, ?, ?, ?, ?)",
-                        (start, row - 1, file.path, document.title, document.source),
+                        (start, row - 1, file.path, title, source),
                     )
             self._base.execute(
                 "INSERT INTO files (path, size, modified, digest, passages) VALUES (?, ?, ?, ?, ?)",

@@ -128,5 +128,5 @@ def is_supported(text: str, passages: Sequence[str], question: str) -> bool:
 
 
 def _words(text: str) -> list[str]:
-    """Words and numbers; ``1,234.5`` is one."""
-    return re.findall(r"\d[\d.,]*\d|\w+(?:['’-]\w+)*", text)
+    """Words and numbers; ``1,234.5`` is one, ``Peru's`` is *Peru*."""
+    return re.findall(r"\d[\d.,]*\d|\d|\w\w+(?:-\w+)*", text)

@@ -1,0 +1,199 @@
+"""Files and folders get into the index: incrementally, and file by file whatever happens."""
+
+import os
+import signal
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+import ravestate as rs
+from ravestate.modules.skill.genqa import collecting
+from ravestate.modules.skill.genqa.collecting import collect, find
+from ravestate.modules.skill.genqa.document import Document, Passage
+from ravestate.modules.skill.genqa.index import Index
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """Some documents."""
+    docs = tmp_path / "docs"
+    (docs / "deep").mkdir(parents=True)
+    (docs / "tram.txt").write_text("The tram is red.", encoding="utf-8")
+    (docs / "deep" / "ship.md").write_text("# Ships\n\nThe ship is grey.", encoding="utf-8")
+    (docs / "photo.jpg").write_bytes(b"\xff\xd8")
+    (docs / ".hidden.txt").write_text("Nobody reads this file.", encoding="utf-8")
+    return docs
+
+
+def take_in(index: Index, *paths: Path) -> dict[str, str]:
+    """What became of each file."""
+    return {outcome.path.name: outcome.kind for outcome in collect(find(paths, index), index)}
+
+
+def said(index: Index, *words: str) -> set[str]:
+    return {found.text for found in index.search(words, 20)}
+
+
+def test_a_folder_with_all_that_can_be_read(index: Index, folder: Path) -> None:
+    assert take_in(index, folder) == {"tram.txt": "added", "ship.md": "added"}
+    assert said(index, "tram", "ship", "nobody") == {"The tram is red.", "The ship is grey."}
+    rows = {found.text: index.source(found.row) for found in index.search(["tram", "ship"], 9)}
+    assert rows == {"The tram is red.": "docs/tram.txt", "The ship is grey.": "docs/deep/ship.md"}
+
+
+def test_what_has_not_changed_is_not_read_again(
+    index: Index, folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    take_in(index, folder)
+    monkeypatch.setattr(collecting, "read", lambda path, source: pytest.fail(f"{path} was read"))
+    assert take_in(index, folder) == {"tram.txt": "unchanged", "ship.md": "unchanged"}
+    os.utime(folder / "tram.txt", ns=(1, 1))  # another date, the same words
+    assert take_in(index, folder)["tram.txt"] == "unchanged"
+    monkeypatch.setattr(collecting, "_digest", lambda path: pytest.fail(f"{path} was opened"))
+    assert take_in(index, folder)["tram.txt"] == "unchanged", "the new date was noted"
+
+
+def test_what_has_changed_is_replaced(index: Index, folder: Path) -> None:
+    take_in(index, folder)
+    (folder / "tram.txt").write_text("The tram is yellow now.", encoding="utf-8")
+    assert take_in(index, folder) == {"tram.txt": "replaced", "ship.md": "unchanged"}
+    assert said(index, "tram") == {"The tram is yellow now."}
+
+
+def test_what_is_gone_is_forgotten(index: Index, folder: Path) -> None:
+    take_in(index, folder)
+    (folder / "tram.txt").unlink()
+    assert take_in(index, folder) == {"ship.md": "unchanged", "tram.txt": "removed"}
+    assert said(index, "tram") == set()
+
+
+def test_other_folders_are_left_alone(index: Index, folder: Path, tmp_path: Path) -> None:
+    take_in(index, folder)
+    (tmp_path / "docs2").mkdir()
+    (tmp_path / "docs2" / "bus.txt").write_text("The bus is blue.", encoding="utf-8")
+    assert take_in(index, tmp_path / "docs2") == {"bus.txt": "added"}
+    assert index.size() == 3
+
+
+def test_a_folder_that_is_not_there_costs_nothing(index: Index, folder: Path) -> None:
+    """A disk that is not mounted must not empty the index."""
+    take_in(index, folder)
+    folder.rename(folder.with_name("moved"))
+    (outcome,) = collect(find([folder], index), index)
+    assert outcome.kind == "unreadable"
+    assert (
+        outcome.why == f"it does not exist; to forget what was read from it: ravestate genqa forget {folder}"
+    )
+    assert index.size() == 2
+
+
+def test_what_cannot_be_read_is_named_and_the_others_are_read(index: Index, folder: Path) -> None:
+    (folder / "a.txt").write_bytes(b"\xff\xfe\xfa")
+    (folder / "b.pdf").write_bytes(b"%PDF-")
+    (folder / "c.jsonl").write_text("{", encoding="utf-8")
+    (folder / "d.txt").symlink_to(folder / "nowhere")
+    assert take_in(index, folder) == {
+        "a.txt": "unreadable",
+        "b.pdf": "unreadable",
+        "c.jsonl": "unreadable",
+        "d.txt": "unreadable",
+        "tram.txt": "added",
+        "ship.md": "added",
+    }
+
+
+def test_what_can_no_longer_be_read_stays_as_it_was(index: Index, folder: Path) -> None:
+    take_in(index, folder)
+    (folder / "tram.txt").write_bytes(b"\xff broken")
+    assert take_in(index, folder)["tram.txt"] == "unreadable"
+    assert said(index, "tram") == {"The tram is red."}
+
+
+def test_a_file_named_itself_may_have_no_ending_that_is_unknown(index: Index, folder: Path) -> None:
+    (outcome,) = collect(find([folder / "photo.jpg"], index), index)
+    assert outcome.kind == "unreadable"
+    assert "'.jpg'" in outcome.why
+
+
+def test_a_path_named_twice_is_read_once(index: Index, folder: Path) -> None:
+    found = find([folder, folder / "tram.txt", folder / "deep" / ".." / "tram.txt"], index)
+    assert len(found.files) == 2
+
+
+def test_links_that_go_round_do_not_hang(index: Index, folder: Path) -> None:
+    (folder / "deep" / "up").symlink_to(folder)
+    assert set(take_in(index, folder)) == {"tram.txt", "ship.md"}
+
+
+def test_a_name_that_is_not_utf8(index: Index, folder: Path) -> None:
+    name = os.fsdecode(b"caf\xe9.txt")
+    (folder / name).write_text("The cafe is closed.", encoding="utf-8")
+    assert take_in(index, folder)[name] == "added"
+    assert take_in(index, folder)[name] == "unchanged"
+    assert said(index, "cafe") == {"The cafe is closed."}
+
+
+def test_interrupted_it_keeps_what_was_complete(
+    index: Index, folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def read(path: Path, source: str) -> Iterator[Document]:
+        yield Document("x", source, [Passage("The tram is red.")])
+        if path.name == "tram.txt":
+            raise KeyboardInterrupt
+
+    monkeypatch.setattr(collecting, "read", read)
+    (folder / "a.txt").write_text("x", encoding="utf-8")
+    with pytest.raises(KeyboardInterrupt):
+        take_in(index, folder)
+    assert [Path(file.path).name for file in index.files()] == ["a.txt"]
+    monkeypatch.undo()
+    assert take_in(index, folder) == {"a.txt": "unchanged", "tram.txt": "added", "ship.md": "added"}
+
+
+def test_a_full_disk_ends_it_and_keeps_what_was_complete(index: Index, folder: Path) -> None:
+    (folder / "zz.txt").write_text(
+        "\n\n".join(f"Passage {n} is of rain." for n in range(20_000)), encoding="utf-8"
+    )
+    base = index._base  # pyright: ignore[reportPrivateUsage]
+    base.execute(f"PRAGMA max_page_count = {base.execute('PRAGMA page_count').fetchone()[0] + 40}")
+    with pytest.raises(rs.PlatformError, match="disk is full"):
+        take_in(index, folder)
+    assert said(index, "tram") == {"The tram is red."}
+
+
+KILLED = """
+import sys
+from pathlib import Path
+from ravestate.modules.skill.genqa.collecting import collect, find
+from ravestate.modules.skill.genqa.index import Index
+index = Index(Path(sys.argv[1]))
+for outcome in collect(find([Path(sys.argv[2])], index), index):
+    print(outcome.path.name, flush=True)
+"""
+
+
+@pytest.mark.parametrize("told", [1, 7])
+def test_killed_in_the_middle_it_goes_on_where_it_was(tmp_path: Path, told: int) -> None:
+    docs = tmp_path / "docs"
+    docs.mkdir()
+    for number in range(40):
+        text = "\n\n".join(f"Passage {n} of file {number} is about rain." for n in range(300))
+        (docs / f"{number:02}.txt").write_text(text, encoding="utf-8")
+    path = tmp_path / "index.sqlite"
+    with subprocess.Popen(
+        [sys.executable, "-c", KILLED, str(path), str(docs)], stdout=subprocess.PIPE, text=True
+    ) as process:
+        assert process.stdout is not None
+        complete = [process.stdout.readline().strip() for _ in range(told)]
+        process.send_signal(signal.SIGKILL)
+    with Index(path) as index:
+        kept = {Path(file.path).name: file.passages for file in index.files()}
+        assert set(complete) <= set(kept), "what was told is there"
+        assert set(kept.values()) == {300}, "and each file is there as a whole"
+        assert index.size() == len(index.search(["rain"], 100_000))
+        outcomes = take_in(index, docs)
+        assert {name: outcomes[name] for name in kept} == dict.fromkeys(kept, "unchanged")
+        assert index.size() == len(index.search(["rain"], 100_000)) == 12_000

@@ -1,0 +1,68 @@
+"""The collection that comes with Ravestate: complete, well-formed, and free to be shipped."""
+
+import re
+from importlib.resources import files
+
+from ravestate.modules.skill.genqa.index import Index
+from ravestate.modules.skill.genqa.shipped import SHIPPED, bring_up, documents
+
+FOLDER = files("ravestate.modules.skill.genqa") / "collection"
+
+
+def sentences() -> dict[str, list[str]]:
+    content = [(FOLDER / name).read_bytes() for name in ("world-factbook.jsonl.gz", "general.yaml")]
+    return {document.title: [p.text for p in document.passages] for document in documents(*content)}
+
+
+def test_each_country_has_what_one_asks_for() -> None:
+    said = sentences()
+    for country in (
+        "Peru",
+        "Kenya",
+        "Japan",
+        "United States",
+        "Democratic Republic of the Congo",
+        "Vatican City",
+    ):
+        for beginning in (
+            "The capital of",
+            "The population of",
+            "The area of",
+            "The currency of",
+            "The form of government of",
+        ):
+            assert any(text.startswith(beginning) for text in said[country]), (country, beginning)
+    assert len(said) > 250
+
+
+def test_sentences_are_short_and_whole() -> None:
+    for title, texts in sentences().items():
+        assert len(texts) == len(set(texts)), title
+        for text in texts:
+            assert 10 < len(text) <= 650, text
+            assert text[0] == text[0].upper() or not text[0].isalpha(), text
+            assert re.search(r"[.!?][)\"”’]*$", text), text
+            assert not re.search(r"<[a-z/]|&\w+;|\s\s|\.\.|[\x00-\x1f]", text), text
+
+
+def test_it_is_small() -> None:
+    assert (
+        sum(len((FOLDER / name).read_bytes()) for name in ("world-factbook.jsonl.gz", "general.yaml"))
+        < 2_000_000
+    )
+
+
+def test_it_is_taken_in_once(index: Index) -> None:
+    assert bring_up(index)
+    assert not bring_up(index)
+    known = index.file(SHIPPED)
+    assert known is not None
+    assert known.passages == index.size() == sum(map(len, sentences().values()))
+
+
+def test_another_version_of_it_replaces_it(index: Index) -> None:
+    bring_up(index)
+    index._base.execute("UPDATE files SET digest = 'old'")  # pyright: ignore[reportPrivateUsage]
+    size = index.size()
+    assert bring_up(index)
+    assert index.size() == size
