@@ -72,3 +72,24 @@ def test_all_pairs_stand_in_declaration_order() -> None:
     for name in "abc":
         m.rule(when=heard, writes=out, name=name)(nothing)
     assert [c.rules for c in rs.compile(m).conflicts()] == [("m:a", "m:b"), ("m:a", "m:c"), ("m:b", "m:c")]
+
+
+def test_a_cause_counts_although_the_rule_looks_at_it_as_well() -> None:
+    """The spike of `question` is in the group of `heard`: what the rule looks at beside it changes nothing."""
+    m, heard, question, out, _ = talk()
+    m.rule(when=heard, emits=question, name="classify")(nothing)
+    m.rule(when=heard, writes=out, name="chat")(nothing)
+    m.rule(when=question & heard.detached(), writes=out, name="answer")(nothing)
+    (conflict,) = rs.compile(m).conflicts()
+    assert (conflict.rules, conflict.causes) == (("m:chat", "m:answer"), ("m:heard",))
+
+
+def test_causes_are_all_that_lies_on_a_pathway_of_both_however_many_there_are() -> None:
+    m, heard, _, out, _ = talk()
+    sources = [m.signal(f"s{number}") for number in range(400)]
+    for source in sources:
+        m.rule(when=source, emits=heard, name=f"from_{source.name[2:]}")(nothing)
+    m.rule(when=heard, writes=out, name="chat")(nothing)
+    m.rule(when=sources[-1], writes=out, name="last")(nothing)
+    (conflict,) = rs.compile(m).conflicts()
+    assert conflict.causes == ("m:s399",)

@@ -141,3 +141,58 @@ def test_findings_come_in_order_of_weight(scene: Scene) -> None:
     scene.rule("loop", mood.changed, writes=mood, detached=True)
     kinds = [kind for kind, _ in scene.findings()]
     assert kinds == ["unreachable", "never-wins", "tie", "unheard"]
+
+
+def test_of_two_rules_at_startup_one_would_only_run_if_the_other_resigned(scene: Scene) -> None:
+    """Startup comes once: neither a further signal nor a cooldown would help the second rule."""
+    scene.rule("listen", rs.startup, writes=scene.out, cooldown=5.0)
+    scene.rule("serve", rs.startup, writes=scene.out)
+    text = scene.findings()["never-wins", "m:serve"]
+    assert text.startswith("never-wins: rule m:serve runs only when m:listen resigns")
+    assert text.endswith("core:startup comes once only: write rs.startup.detached() if both are to run")
+
+
+def test_who_looks_at_startup_detached_competes_with_nobody(scene: Scene) -> None:
+    scene.rule("listen", rs.startup.detached(), writes=scene.out)
+    scene.rule("serve", rs.startup.detached(), writes=scene.out)
+    assert scene.findings() == {}
+
+
+def test_a_rule_has_one_tie_at_most_and_it_is_with_the_first(scene: Scene) -> None:
+    for number in range(300):
+        scene.rule(f"r{number}", scene.heard, writes=scene.out)
+    ties = [text for (kind, _), text in scene.findings().items() if kind == "tie"]
+    assert len(ties) == 299
+    assert all("rules m:r0 and" in text for text in ties)
+
+
+def test_rules_that_payloads_tell_apart_hide_no_tie_behind_them(scene: Scene) -> None:
+    def one(payload: object) -> bool:
+        return payload == 1
+
+    def two(payload: object) -> bool:
+        return payload == 2
+
+    scene.rule("one", scene.heard.where(one), writes=scene.out)
+    scene.rule("two", scene.heard.where(two), writes=scene.out)
+    scene.rule("again", scene.heard.where(two), writes=scene.out)
+    ((kind, subject), text), *others = scene.findings().items()
+    assert (kind, subject, others) == ("tie", "m:again", [])
+    assert "rules m:two and m:again have" in text
+
+
+def test_long_lists_of_names_are_cut(scene: Scene) -> None:
+    lost = scene.module.signal("lost")
+    for number in range(50):
+        scene.rule(f"r{number}", scene.heard, emits=lost)
+    text = scene.findings()["unheard", "m:lost"]
+    assert (
+        "raised by m:r0, m:r1, m:r2, m:r3, m:r4, m:r5, m:r6, m:r7 and 42 more, and no rule hears it" in text
+    )
+
+
+def test_the_winner_that_is_named_is_the_best(scene: Scene) -> None:
+    scene.rule("first", scene.heard, writes=scene.out, weight=2)
+    scene.rule("best", scene.heard, writes=scene.out, weight=3)
+    scene.rule("last", scene.heard, writes=scene.out)
+    assert "runs only when m:best resigns" in scene.findings()["never-wins", "m:last"]

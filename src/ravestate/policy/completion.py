@@ -37,6 +37,7 @@ class Completion:
     """
 
     __slots__ = (
+        "_alike",
         "_signals",
         "alternatives",
         "bare",
@@ -67,6 +68,9 @@ class Completion:
         self.information = [
             round(-math.log(counts[s] / len(rules)) * UNIT) if counts[s] else 0 for s in order
         ]
+        self._alike: dict[int, int] = {}  # the sets of signals that carry the same information
+        for place, information in enumerate(self.information):
+            self._alike[information] = self._alike.get(information, 0) | 1 << place
         self._signals: list[Signal[object]] = [signals[s].signal for s in order]
         self.cycle = [0] * len(signals)
         for members in causes.components.members:
@@ -77,7 +81,9 @@ class Completion:
 
     def weigh(self, bits: int) -> int:
         """The information of a set of signals."""
-        return sum(self.information[place] for place in each(bits))
+        if bits.bit_count() < len(self._alike):
+            return sum(self.information[place] for place in each(bits))
+        return sum(information * (bits & alike).bit_count() for information, alike in self._alike.items())
 
     def signals(self, bits: int) -> frozenset[Signal[object]]:
         """The set itself."""

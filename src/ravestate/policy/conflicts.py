@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from ravestate.policy.plan import Clause, RulePlan
 from ravestate.policy.policy import Policy
 
-__all__ = ["Conflict", "find_conflicts"]
+__all__ = ["Conflict", "Conflicts", "find_conflicts"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,44 +40,92 @@ class Conflict:
 
 def find_conflicts(policy: Policy) -> tuple[Conflict, ...]:
     """All conflicts, in declaration order of the first rule, then of the second."""
-    writers = [rule for rule in policy.rule_plans if rule.slots]
-    names = {clause: _pathway_names(clause) for rule in writers for clause in rule.clauses}
-    of_rule = {rule.index: frozenset[str]().union(*(names[c] for c in rule.clauses)) for rule in writers}
+    conflicts = Conflicts(policy)
+    writers: dict[int, list[RulePlan]] = {}
     found: list[Conflict] = []
-    for position, first in enumerate(writers):
-        for second in writers[position + 1 :]:
-            slots = first.slotset & second.slotset
-            causes = of_rule[first.index] & of_rule[second.index] if slots else frozenset[str]()
-            if causes:
-                a, b = (_best(rule, causes, names) for rule in (first, second))
-                found.append(
-                    Conflict(
-                        first.name,
-                        second.name,
-                        tuple(policy.slot_plans[s].name for s in sorted(slots)),
-                        tuple(s for s in policy.signals if s in causes),
-                        first.name if a.base >= b.base else second.name,
-                        round(abs(a.utility * first.weight - b.utility * second.weight), 12),
-                        a.base == b.base,
-                    )
-                )
+    for rule in policy.rule_plans:
+        for slot in rule.slots:
+            writers.setdefault(slot, []).append(rule)
+    for first in policy.rule_plans:
+        others = {r.index: r for slot in first.slots for r in writers[slot] if r.index > first.index}
+        for index in sorted(others):
+            conflict = conflicts.between(first, others[index])
+            if conflict is not None:
+                found.append(conflict)
     return tuple(found)
 
 
-def _best(rule: RulePlan, causes: frozenset[str], names: dict[Clause, frozenset[str]]) -> Clause:
-    """The best of the clauses that share one of the causes."""
-    return max((c for c in rule.clauses if names[c] & causes), key=lambda clause: clause.base)
+class Conflicts:
+    """Answers for pairs of rules of one policy."""
 
+    __slots__ = ("_names", "_roots", "policy")
 
-def _pathway_names(clause: Clause) -> frozenset[str]:
-    """The signals through which a clause can share a causal group: those of its non-detached needs' pathways."""
-    if not clause.firm_bits:
-        return frozenset()
-    looked_at = {need.signal.name for need in clause.needs if need.detached}
-    taken = {need.signal.name for need in clause.needs if not need.detached}
-    return frozenset(
-        signal.name
-        for pathway in clause.pathways
-        for signal in pathway
-        if signal.name not in looked_at or signal.name in taken
-    )
+    def __init__(self, policy: Policy) -> None:
+        self.policy = policy
+        self._roots: dict[Clause, int] = {}
+        self._names: dict[int, tuple[str, ...]] = {}
+
+    def roots(self, clause: Clause) -> int:
+        """Where the causal groups that the clause joins may begin, as bits (`Causes.roots`)."""
+        found = self._roots.get(clause)
+        if found is None:
+            found = 0
+            for need in clause.needs:
+                if not need.detached:
+                    found |= self.policy.causes.roots(need.signal.index)
+            self._roots[clause] = found
+        return found
+
+    def best(self, first: RulePlan, second: RulePlan) -> tuple[Clause, Clause] | None:
+        """The best clause of each by which they exclude each other, if they do."""
+        if first.slotset.isdisjoint(second.slotset):
+            return None
+        common = self._of_rule(first) & self._of_rule(second)
+        if not common:
+            return None
+        return self._best(first, common), self._best(second, common)
+
+    def between(self, first: RulePlan, second: RulePlan) -> Conflict | None:
+        """The conflict of two rules, the first of which is declared first."""
+        best = self.best(first, second)
+        if best is None:
+            return None
+        a, b = best
+        return Conflict(
+            first.name,
+            second.name,
+            tuple(self.policy.slot_plans[s].name for s in sorted(first.slotset & second.slotset)),
+            self._named(self._closure(first) & self._closure(second)),
+            first.name if a.base >= b.base else second.name,
+            round(abs(a.utility * first.weight - b.utility * second.weight), 12),
+            a.base == b.base,
+        )
+
+    def _of_rule(self, rule: RulePlan) -> int:
+        roots = 0
+        for clause in rule.clauses:
+            roots |= self.roots(clause)
+        return roots
+
+    def _best(self, rule: RulePlan, common: int) -> Clause:
+        return max((c for c in rule.clauses if self.roots(c) & common), key=lambda clause: clause.base)
+
+    def _closure(self, rule: RulePlan) -> int:
+        closure = 0
+        for clause in rule.clauses:
+            for need in clause.needs:
+                if not need.detached:
+                    closure |= self.policy.causes.closure(need.signal.index)
+        return closure
+
+    def _named(self, signals: int) -> tuple[str, ...]:
+        found = self._names.get(signals)
+        if found is None:
+            names: list[str] = []
+            bits = signals
+            while bits:
+                lowest = bits & -bits
+                names.append(self.policy.signal_plans[lowest.bit_length() - 1].name)
+                bits ^= lowest
+            found = self._names[signals] = tuple(names)
+        return found

@@ -4,11 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import islice
 
+from ravestate.declare.core import startup
+from ravestate.policy.completion import each
+from ravestate.policy.conflicts import Conflicts
 from ravestate.policy.plan import Clause, RulePlan
 from ravestate.policy.policy import Policy
+from ravestate.policy.wording import few
 
-__all__ = ["Finding", "find_all"]
+__all__ = ["MAX_PEERS", "Finding", "find_all"]
+
+MAX_PEERS = 64
+"""Other rules with which a rule is compared in search of a tie: the first declared. Without it the time would grow with
+the square of the number of rules; ``policy.conflicts()`` compares them all."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,23 +39,27 @@ class Finding:
 
 
 def find_all(policy: Policy) -> tuple[Finding, ...]:
-    """All findings: unreachable rules first, then rules that never win, ties, unheard signals."""
+    """All findings: unreachable rules first, then rules that never win, ties, unheard signals.
+
+    A rule has one finding of each kind at most, so that there are never more than a few for each rule.
+    """
     return (*_unreachable(policy), *_never_wins(policy), *_ties(policy), *_unheard(policy))
 
 
 def _unreachable(policy: Policy) -> Iterator[Finding]:
     grounded = policy.causes.grounded(s.index for s in policy.signal_plans if s.input)
+    known: dict[tuple[int, frozenset[int]], bool] = {}
     for rule in policy.rule_plans:
         lacking = [n.signal for c in rule.clauses for n in c.needs if n.signal.index not in grounded]
         if not any(all(n.signal.index in grounded for n in c.needs) for c in rule.clauses):
-            names = ", ".join(dict.fromkeys(s.name for s in lacking))
+            names = few(s.name for s in lacking)
             yield Finding(
                 "unreachable",
                 rule.name,
                 f"rule {rule.name} runs only if {names} comes from outside: nothing leads there from an input; declare "
                 "it with input=True if it does",
             )
-        elif rule.slots and all(_starves(policy, clause) for clause in rule.clauses):
+        elif rule.slots and all(_starves(policy, clause, known) for clause in rule.clauses):
             slots = ", ".join(policy.slot_plans[s].name for s in rule.slots)
             yield Finding(
                 "unreachable",
@@ -57,49 +70,77 @@ def _unreachable(policy: Policy) -> Iterator[Finding]:
             )
 
 
-def _starves(policy: Policy, clause: Clause) -> bool:
+def _starves(policy: Policy, clause: Clause, known: dict[tuple[int, frozenset[int]], bool]) -> bool:
     """Whether one of the clause's signals comes only from rules that take a slot the clause writes."""
+    slots = clause.rule.slotset
     for need in clause.needs:
-        raisers = policy.causes.all_causes[need.signal.index]
-        if (
-            not need.detached
-            and not need.signal.input
-            and raisers
-            and all(not r.detached and not r.slotset.isdisjoint(clause.rule.slotset) for r in raisers)
-        ):
+        if need.detached or need.signal.input:
+            continue
+        key = need.signal.index, slots
+        if key not in known:
+            raisers = policy.causes.all_causes[need.signal.index]
+            known[key] = all(not r.detached and not r.slotset.isdisjoint(slots) for r in raisers)
+        if known[key]:
             return True
     return False
 
 
 def _never_wins(policy: Policy) -> Iterator[Finding]:
-    writers: dict[int, list[Clause]] = {}
-    for rule in policy.rule_plans:
-        for slot in rule.slots:
-            writers.setdefault(slot, []).extend(rule.clauses)
+    winners = _winners(policy)
     for rule in policy.rule_plans:
         if not rule.slots or not rule.clauses:
             continue
-        losers = [
-            next((w for s in rule.slots for w in writers[s] if _dominates(w, c)), None) for c in rule.clauses
-        ]
+        losers = [_winner(winners, clause) for clause in rule.clauses]
         if all(losers):
-            names = ", ".join(dict.fromkeys(w.rule.name for w in losers if w is not None))
+            once = all(need.signal.signal is startup for clause in rule.clauses for need in clause.needs)
+            advice = (
+                "core:startup comes once only: write rs.startup.detached() if both are to run"
+                if once
+                else "give it a further signal, a weight, or the other a cooldown"
+            )
             yield Finding(
                 "never-wins",
                 rule.name,
-                f"rule {rule.name} runs only when {names} resigns: whatever triggers it triggers that as well, and it "
-                "has no greater utility; give it a further signal, a weight, or the other a cooldown",
+                f"rule {rule.name} runs only when {few(w.rule.name for w in losers if w is not None)} resigns: whatever "
+                f"triggers it triggers that as well, and it has no greater utility; {advice}",
             )
 
 
-def _dominates(winner: Clause, loser: Clause) -> bool:
-    """Whether `winner` is ready whenever `loser` is, and goes first."""
-    if winner.rule is loser.rule or winner.rule.cooldown or winner.guards:
-        return False
-    if (-winner.base, winner.index) > (-loser.base, loser.index):
-        return False
-    if not winner.firm_bits or any(n.detached or n.predicates for n in winner.needs):
-        return False
+def _winners(policy: Policy) -> dict[tuple[int, int], list[Clause]]:
+    """The clauses that nothing but their signals holds back, by a slot and the signal that the fewest clauses hear; best first."""
+    found: dict[tuple[int, int], list[Clause]] = {}
+    for rule in policy.rule_plans:
+        for clause in rule.clauses:
+            if clause.guards or not clause.needs or any(n.detached or n.predicates for n in clause.needs):
+                continue
+            if rule.cooldown and not all(need.signal.signal is startup for need in clause.needs):
+                continue
+            rarest = min((need.signal for need in clause.needs), key=lambda s: (len(s.listeners), s.index))
+            for slot in rule.slots:
+                found.setdefault((slot, rarest.index), []).append(clause)
+    for clauses in found.values():
+        clauses.sort(key=_order)
+    return found
+
+
+def _winner(winners: dict[tuple[int, int], list[Clause]], loser: Clause) -> Clause | None:
+    """A clause that is ready whenever `loser` is, and goes first."""
+    for slot in loser.rule.slots:
+        for need in loser.needs:
+            for winner in winners.get((slot, need.signal.index), ()):
+                if _order(winner) > _order(loser):
+                    break
+                if winner.rule is not loser.rule and _covers(winner, loser):
+                    return winner
+    return None
+
+
+def _order(clause: Clause) -> tuple[float, int]:
+    return -clause.base, clause.index
+
+
+def _covers(winner: Clause, loser: Clause) -> bool:
+    """Whether whatever makes `loser` ready makes `winner` ready."""
     return all(
         any(
             not theirs.detached
@@ -113,14 +154,31 @@ def _dominates(winner: Clause, loser: Clause) -> bool:
 
 
 def _ties(policy: Policy) -> Iterator[Finding]:
-    for conflict in policy.conflicts():
-        if conflict.tie and not _apart(policy.rule_plan(conflict.first), policy.rule_plan(conflict.second)):
-            yield Finding(
-                "tie",
-                conflict.second,
-                f"rules {conflict.first} and {conflict.second} have the same utility for {', '.join(conflict.slots)}: "
-                f"{conflict.winner} goes first because it is declared first; a weight would say so",
-            )
+    conflicts = Conflicts(policy)
+    # Rules by a slot that they write, a cause (its root), and what a clause is worth there: only these may tie.
+    peers: dict[tuple[int, int, float], list[RulePlan]] = {}
+    for second in policy.rule_plans:
+        keys = {
+            (slot, root, clause.base): None
+            for clause in second.clauses
+            for slot in second.slots
+            for root in islice(each(conflicts.roots(clause)), MAX_PEERS)
+        }
+        others = {rule.index: rule for key in keys for rule in peers.get(key, ())[:MAX_PEERS]}
+        for index in sorted(others)[:MAX_PEERS]:
+            first = others[index]
+            best = conflicts.best(first, second)
+            if best is not None and best[0].base == best[1].base and not _apart(first, second):
+                slots = (policy.slot_plans[s].name for s in sorted(first.slotset & second.slotset))
+                yield Finding(
+                    "tie",
+                    second.name,
+                    f"rules {first.name} and {second.name} have the same utility for {few(slots)}: {first.name} goes "
+                    "first because it is declared first; a weight would say so",
+                )
+                break
+        for key in keys:
+            peers.setdefault(key, []).append(second)
 
 
 def _apart(first: RulePlan, second: RulePlan) -> bool:
@@ -143,5 +201,5 @@ def _unheard(policy: Policy) -> Iterator[Finding]:
                 yield Finding(
                     "unheard",
                     signal.name,
-                    f"signal {signal.name} is raised by {', '.join(r.name for r in raisers)}, and no rule hears it",
+                    f"signal {signal.name} is raised by {few(r.name for r in raisers)}, and no rule hears it",
                 )

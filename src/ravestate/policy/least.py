@@ -16,6 +16,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from ravestate.policy.completion import Completion, each
+from ravestate.policy.components import components
 
 __all__ = ["EFFORT", "Least"]
 
@@ -35,17 +36,18 @@ class Least:
         self.completion = completion
         self._effort = EFFORT
         self._open = 0
-        """The signals of which there is more than one minimal pathway, or may be."""
+        """The signals that have several alternatives: there the choices are."""
         self._whole = [1 << place for place in range(len(completion.bare))]
-        """For each signal its only minimal pathway; itself if it is open."""
+        """For each signal itself and what it cannot do without, as far as the next choices."""
         self._price = completion.information[:]
         """What that costs."""
         self._reach: dict[int, int] = {}
-        """For each open signal what its pathways may consist of."""
+        """For each signal that is open, or that leads to one, what its pathways may consist of."""
         self._masks: dict[int, list[int]] = {}
         """For each open signal its alternatives, as sets."""
         self._known: dict[int, tuple[int, int]] = {}
         """For what may matter still: what its completion costs, and that completion."""
+        self._follow()
         for members in completion.components:
             self._settle([place for place in members if not completion.bare[place]])
 
@@ -60,30 +62,37 @@ class Least:
         cost, found = self._search(firm, free)
         return cost + self.completion.weigh(free), found | free
 
+    def _follow(self) -> None:
+        """Find what signals with a single alternative cannot do without."""
+        graph = self.completion
+        forced = [
+            found[0] if len(found) == 1 and not bare else ()
+            for found, bare in zip(graph.alternatives, graph.bare, strict=True)
+        ]
+        for members in components(forced).members:  # causes first
+            whole = _set(members)
+            price = graph.weigh(whole)
+            for place in members:
+                whole, price = self._joined(whole, price, forced[place], 0)
+            for place in members:
+                self._whole[place], self._price[place] = whole, price
+
     def _settle(self, members: list[int]) -> None:
         """Find the least pathways of signals that lead to each other, all other causes being settled."""
         graph = self.completion
-        within = _set(members)
-        if all(
-            len(graph.alternatives[place]) == 1 and not self._open & _set(graph.alternatives[place][0])
-            for place in members
-        ):
-            whole, price = within, graph.weigh(within)
-            for place in members:
-                whole, price = self._joined(whole, price, graph.alternatives[place][0], 0)
-            for place in members:
-                self._whole[place], self._price[place] = whole, price
+        choices = [place for place in members if len(graph.alternatives[place]) > 1]
+        causes = {cause for place in members for found in graph.alternatives[place] for cause in found}
+        if not choices and causes.isdisjoint(self._reach):
             return
-        reach = within
-        for place in members:
-            for alternative in graph.alternatives[place]:
-                for cause in alternative:
-                    reach |= self._reach.get(cause) or self._whole[cause]
-        self._open |= within
+        reach = _set(members)
+        for cause in causes:
+            reach |= self._reach.get(cause) or self._whole[cause]
         for place in members:
             self._reach[place] = reach
+        for place in choices:
+            self._open |= 1 << place
             self._masks[place] = [_set(alternative) for alternative in graph.alternatives[place]]
-        for place in members:
+        for place in choices:
             cost, found = self._search((place,), 0)
             alone = 1 << place
             self._known[alone] = cost - graph.information[place], found ^ alone

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from ravestate.errors import DeclarationError
 from ravestate.policy.causes import Causes
+from ravestate.policy.wording import few
 
 __all__ = ["check_reachable"]
 
@@ -24,11 +25,11 @@ def check_reachable(causes: Causes, faults: list[DeclarationError]) -> None:
         ]
         if not lacking:
             continue
-        raisers = ", ".join(dict.fromkeys(r.name for s in lacking for r in causes.all_causes[s.index]))
+        raisers = few(r.name for s in lacking for r in causes.all_causes[s.index])
         faults.append(
             DeclarationError(
                 f"rule {rule.name} ({rule.rule.origin}) is unreachable: it waits for "
-                f"{', '.join(dict.fromkeys(s.name for s in lacking))}, raised only by {raisers}, which wait for each "
+                f"{few(s.name for s in lacking)}, raised only by {raisers}, which wait for each "
                 f"other; if it comes from outside, declare it with input=True"
             )
         )

@@ -1,0 +1,23 @@
+"""How messages list names."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+__all__ = ["few"]
+
+SHOWN = 8
+
+
+def few(names: Iterable[str]) -> str:
+    """Names, each once, in a row; of many the first.
+
+    Example:
+        >>> few(["m:a", "m:b", "m:a"]), few(f"m:r{number}" for number in range(100))
+        ('m:a, m:b', 'm:r0, m:r1, m:r2, m:r3, m:r4, m:r5, m:r6, m:r7 and 92 more')
+    """
+    found = list(dict.fromkeys(names))
+    more = len(found) - SHOWN
+    if more <= 1:  # one name is no longer than "and 1 more"
+        return ", ".join(found)
+    return f"{', '.join(found[:SHOWN])} and {more} more"

@@ -1,0 +1,19 @@
+"""Lists of names in messages."""
+
+import pytest
+
+from ravestate.policy.wording import SHOWN, few
+
+
+@pytest.mark.parametrize(
+    ("names", "text"),
+    [
+        ([], ""),
+        (["m:a"], "m:a"),
+        (["m:b", "m:a", "m:b"], "m:b, m:a"),
+        ([str(n) for n in range(SHOWN + 1)], "0, 1, 2, 3, 4, 5, 6, 7, 8"),
+        ([str(n) for n in range(SHOWN + 2)], "0, 1, 2, 3, 4, 5, 6, 7 and 2 more"),
+    ],
+)
+def test_each_name_stands_once_and_of_many_the_first(names: list[str], text: str) -> None:
+    assert few(names) == text
