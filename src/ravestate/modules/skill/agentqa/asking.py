@@ -80,14 +80,15 @@ def _unfit(words: list[str], asks: bool) -> str:
 def _words(sentence: str, names: Iterable[str]) -> list[str]:
     text = sentence.lower().replace("’", "'")
     for name in names:
-        text = re.sub(rf"(?<!\w){re.escape(name.lower())}('s)?(?!\w)", r" \\you\1 ", text)
-    # A name at the beginning or the end calls the agent; elsewhere it stands for "you".
-    text = re.sub(r"^\W*\\you\b(?!')|\\you\W*$", " ", text)
-    text = text.replace("\\you's", "your").replace("\\you", "you")
+        text = re.sub(rf"(?<!\w){re.escape(name.lower())}(?!\w)", _NAME, text)
     words: list[str] = []
-    for word in _WORD.findall(text):
-        words += _WRITTEN_OUT.get(word, word).split()
-    return words
+    for word in re.findall(_WORD, text):
+        written: str = _WRITTEN_OUT.get(word) or word
+        words += written.split()
+    if _YOU.isdisjoint(words):  # a name beside "you" only calls
+        text = " ".join(words).replace(f"{_NAME}'s", "your").replace(_NAME, "you")
+        words = re.sub(r"\b(is|does|has) (?=you\b)", lambda found: _AGREEING[found[1]], text).split()
+    return [word for word in words if not word.startswith(_NAME)]
 
 
 def _unwrapped(words: list[str]) -> tuple[list[str], bool]:
@@ -108,7 +109,11 @@ def _unwrapped(words: list[str]) -> tuple[list[str], bool]:
     end = len(words)
     while end > begin + 1 and words[end - 1] in _AT_THE_END:
         end -= 1
+    if end > begin + 2 and words[end - 2 : end] == ["my", "friend"] and words[end - 3] != "is":
+        end -= 2
     words = words[begin:end]
+    if told and "about" in words[1:3] and words[0] in ("something", "more", "everything", "a"):
+        words = words[words.index("about") :]  # tell me a bit about yourself
     if words[:1] == ["any"]:
         words = ["do", "you", "have", *words]
     elif words[:1] == ["got"]:
@@ -131,17 +136,19 @@ def _phrases(text: str) -> list[tuple[str, ...]]:
 
 _SENTENCE = re.compile(r"[^.!?…\n]+[?]?")
 _WORD = re.compile(r"[^\W_]+(?:['-][^\W_]+)*")
+_NAME = "thename"
+_AGREEING = {"is": "are ", "does": "do ", "has": "have "}
 _YOU = _set("you your yours yourself")
 _USER = _set("i me my mine myself am we us our ours ourselves")
 _ABOUT_BOTH = re.compile(
     r"\b(?:(?:should|shall|can|may|do|must|could|might) i (?:call|address|reach|find) (?=you)|"
-    r"am i (?:\w+ )?(?:talking|speaking|chatting) (?:to|with)|(?:for|help|tell|about) me$|help me$)"
+    r"am i (?:\w+ )?(?:talking|speaking|chatting) (?:to|with)|(?:for|help|tell|about) me\b)"
 )
 """Where the user is mentioned in a question about the agent."""
 _QUESTION_WORDS = _set("who whom whose what which where when why how")
 _FIRST = _QUESTION_WORDS | _set(
-    "do does did are is was were have has had can could will would may should since in from by of to with at on until "
-    "introduce describe"
+    "do does did are is was were have has had can could will would may should since in from by of to with at on until under am "
+    "introduce describe say talk"
 )
 """With these a question or a request begins."""
 _AT_THE_END = _set("please exactly actually anyway though by-the-way then")
@@ -151,7 +158,7 @@ _TELL = _phrases(
     "could you please tell me; please tell me; would you mind telling me; i would like to know; i would love to know; "
     "i want to know; i wonder; i was wondering; i am wondering; i am curious; i am curious to know; may i ask; may i ask you; "
     "may i know; can i ask; can i ask you; could i ask; could i ask you; can i know; let me know; let me ask you; "
-    "i am interested to know; can you say; could you say; i would be interested to know; please say"
+    "i am interested to know; i would be interested to know"
 )
 _WRAPPERS = sorted(
     [
@@ -159,7 +166,7 @@ _WRAPPERS = sorted(
         _KNOW,
         *_phrases(
             "hi; hello; hey; hi there; hello there; hey there; hallo; good morning; good evening; good afternoon; so; and; but; "
-            "well; oh; ok; okay; yes; no; please; now; then; by the way; actually; just; say; um; uh; hm; hmm; my friend; "
+            "well; oh; ok; okay; yes; no; please; now; then; by the way; actually; just; um; uh; hm; hmm; my friend; "
             "dear robot; great; cool; nice; fine; thanks; thank you; sorry; excuse me; one question; tell me please; also"
         ),
     ],

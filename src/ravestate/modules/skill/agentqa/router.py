@@ -12,6 +12,7 @@ from ravestate.modules._sentences import Encoder
 
 from .asking import Asked, about_agent, plain
 from .life import Life
+from .slips import Slips
 
 if TYPE_CHECKING:
     import numpy as np
@@ -19,8 +20,12 @@ if TYPE_CHECKING:
 
 __all__ = ["Match", "Miss", "Router", "router_of"]
 
-SPELLING = 0.5
+SHARPNESS = 4.0
+"""How fast likeness falls off with the distance of two meanings: the vectors of short questions lie close together."""
+SPELLING = 0.1
 """How much it counts that two questions are spelt alike, against 1 for meaning alike. It forgives slips of the pen."""
+COMMON = 0.1
+"""What any two questions have in common: lets the classes differ in size."""
 RIDGE = 0.1
 """How little a single example may say against many."""
 UNADDRESSED = 0.9
@@ -53,9 +58,9 @@ class Miss:
 class Router:
     """Tells topics apart, and from what belongs to none.
 
-    A classifier over the example questions of a life: ridge regression with a kernel, the cosine of what two questions
-    mean (an `Encoder` says) plus that of how they are spelt (their groups of three and four letters). Learnt in less than
-    a second when it is first asked; from any thread.
+    A classifier over the example questions of a life: ridge regression with a kernel, a Gaussian of how far apart two
+    questions are in meaning (an `Encoder` says), plus the cosine of how they are spelt (their groups of three and four
+    letters). Learnt in a second or two when it is first asked; from any thread.
 
     Example:
         ::
@@ -117,16 +122,14 @@ class _Learnt:
         pairs = [(plain(q), topic.name) for topic in life.topics.values() for q in topic.questions]
         pairs += [(plain(q), OTHERS) for q in life.others]
         self._examples = [text for text, _ in pairs]
+        self._slips = Slips({word for text in self._examples for word in text.split()})
         self._classes = [*life.topics, OTHERS]
         self._of = np.array([self._classes.index(name) for _, name in pairs])
-        self._unaddressed = np.array([not asked_of(text) for text in self._examples])
-        meanings = encoder.encode(self._examples)
-        self._mean = meanings.mean(axis=0)
-        self._meanings = meanings - self._mean
-        self._raw = meanings
+        self._unaddressed = np.array([not _addresses(text) for text in self._examples])
+        self._meanings = encoder.encode(self._examples)
         self._spelling = _Spelling(self._examples)
         self._spelt = self._spelling.of(self._examples)
-        kernel = self._kernel(meanings, self._spelt)
+        kernel = self._kernel(self._meanings, self._spelt)
         kernel[np.diag_indices_from(kernel)] += RIDGE
         self._weights = np.linalg.solve(kernel, np.eye(len(self._classes))[self._of])
 
@@ -134,11 +137,14 @@ class _Learnt:
         """The first candidate that belongs to a topic, or why none does."""
         import numpy as np
 
-        meanings = self._encoder.encode([asked.text for asked in candidates])
-        kernel = self._kernel(meanings, self._spelling.of([asked.text for asked in candidates]))
+        texts = [self._slips.mended(asked.text) for asked in candidates]
+        meanings = self._encoder.encode(texts)
+        kernel = self._kernel(meanings, self._spelling.of(texts))
         scores = kernel @ self._weights
         reasons: list[str] = []
-        for asked, row, like, cosines in zip(candidates, scores, kernel, meanings @ self._raw.T, strict=True):
+        cosines = meanings @ self._meanings.T
+        for number, (text, asked) in enumerate(zip(texts, candidates, strict=True)):
+            row, like = scores[number], kernel[number]
             order = np.argsort(-row, kind="stable")
             winner, second = int(order[0]), int(order[1])
             topic = winner if self._classes[winner] != OTHERS else second
@@ -146,23 +152,24 @@ class _Learnt:
             if winner != topic:
                 other = self._nearest(like, winner)
                 reasons.append(
-                    f"{asked.text!r} is nearest to {self._classes[topic]} ({row[topic]:.2f}, {near!r}), but nearer to what "
+                    f"{text!r} is nearest to {self._classes[topic]} ({row[topic]:.2f}, {near!r}), but nearer to what "
                     f"is not about me ({row[winner]:.2f}, {other!r})"
                 )
             elif not asked.addressed and not (
-                cosines[self._unaddressed & (self._of == topic)].max(initial=0.0) >= UNADDRESSED
+                cosines[number, self._unaddressed & (self._of == topic)].max(initial=0.0) >= UNADDRESSED
             ):
-                reasons.append(
-                    f"{asked.text!r} is like {self._classes[topic]} ({row[topic]:.2f}), but asks no you"
-                )
+                reasons.append(f"{text!r} is like {self._classes[topic]} ({row[topic]:.2f}), but asks no you")
             else:
                 margin = float(row[winner] - row[second])
-                return Match(self._classes[topic], asked.text, float(row[topic]), near, margin)
+                return Match(self._classes[topic], text, float(row[topic]), near, margin)
         return Miss("; ".join(reasons))
 
     def _kernel(self, meanings: NDArray[np.float32], spelt: NDArray[np.float64]) -> NDArray[np.float64]:
         """How alike questions (rows) and examples (columns) are."""
-        return (meanings - self._mean) @ self._meanings.T + SPELLING * (spelt @ self._spelt.T) + 0.2
+        import numpy as np
+
+        alike = np.exp(SHARPNESS * (meanings.astype(np.float64) @ self._meanings.T - 1))
+        return alike + SPELLING * (spelt @ self._spelt.T) + COMMON
 
     def _nearest(self, like: NDArray[np.float64], topic: int) -> str:
         import numpy as np
@@ -170,8 +177,8 @@ class _Learnt:
         return self._examples[int(np.where(self._of == topic, like, -np.inf).argmax())]
 
 
-def asked_of(text: str) -> bool:
-    """Whether an example speaks to somebody."""
+def _addresses(text: str) -> bool:
+    """Whether a text has *you*."""
     return not {"you", "your", "yourself"}.isdisjoint(text.split())
 
 

@@ -53,17 +53,13 @@ async def remember(ctx: rs.RuleContext) -> rs.Resign | None:
     return None
 
 
-@module.rule(
-    when=rawio.input.changed & nlp.yesno.changed,  # which nlp writes last
-    reads=(life, nlp.question),
-    emits=asked,
-)
+@module.rule(when=rawio.input.changed & nlp.question.changed, reads=life, emits=asked)
 async def understand(ctx: rs.RuleContext) -> rs.Resign | None:
     """Notice that the user asks something about the agent, and what."""
     told = ctx[life]
     if told is None:
         return rs.Resign("nobody has said who I am")
-    heard, question = ctx.payload(rawio.input.changed), ctx[nlp.question] is not None
+    heard, question = ctx.payload(rawio.input.changed), ctx.payload(nlp.question.changed) is not None
     found = await asyncio.to_thread(router_of(told).route, heard, question=question)
     if isinstance(found, Miss):
         return rs.Resign(found.reason)
@@ -72,7 +68,12 @@ async def understand(ctx: rs.RuleContext) -> rs.Resign | None:
     return None
 
 
-@module.rule(when=asked, reads=(life, mood, today, ontology.memory), writes=verbaliser.intent)
+@module.rule(
+    when=asked,
+    reads=(life, mood, today, ontology.memory),
+    writes=verbaliser.intent,
+    weight=1.5,  # before who finds an answer to the same question elsewhere: nobody knows better
+)
 async def answer(ctx: rs.RuleContext) -> rs.Resign | None:
     """Say what is known about the topic."""
     match, told = ctx.payload(asked), ctx[life]

@@ -1,0 +1,85 @@
+"""What of an utterance asks something about the agent, by pronouns, word order and polite phrases alone."""
+
+from __future__ import annotations
+
+import pytest
+
+from ravestate.modules.skill.agentqa.asking import LONGEST, SENTENCES, about_agent, plain
+
+
+def asked(utterance: str, **more: bool) -> list[str]:
+    return [one.text for one in about_agent(utterance, ("Ravestate",), **more)[0]]
+
+
+@pytest.mark.parametrize(
+    ("said", "plain_form"),
+    [
+        ("What's your name?", "what is your name"),
+        ("whats ur name", "what is your name"),
+        ("Hi there, could you tell me how old r u please", "how old are you"),
+        ("I'd like to know who you are", "who you are"),
+        ("tell me a bit about yourself", "about yourself"),
+        ("any hobbies?", "do you have any hobbies"),
+        ("got siblings?", "have you got siblings"),
+        ("how is it going", "how is it going"),
+        ("what should I call you", "what should i call you"),
+        ("who am I talking to", "who am i talking to"),
+        ("how are you my friend", "how are you"),
+        ("Ravestate, how old are you", "how old are you"),
+        ("how old are you ravestate?", "how old are you"),
+        ("How old is Ravestate?", "how old are you"),
+        ("What are Ravestate's hobbies?", "what are your hobbies"),
+        ("do you know how old you are", "how old you are"),
+        ("do you know how to swim", "do you know how to swim"),
+        ("introduce yourself", "introduce yourself"),
+        ("your name please", "your name"),
+    ],
+)
+def test_a_question_about_the_agent_is_brought_into_one_form(said: str, plain_form: str) -> None:
+    assert asked(said) == [plain_form]
+
+
+@pytest.mark.parametrize(
+    ("said", "why"),
+    [
+        ("what is my name", "about the user"),
+        ("how old am I?", "about the user"),
+        ("do you know my name", "about the user"),
+        ("do you love me", "about the user"),
+        ("My father is a baker.", "no question"),
+        ("you are nice", "no question"),
+        ("your name sounds funny", "no question"),
+        ("", "nothing is said"),
+        ("?!", "nothing is said"),
+        ("🙂 ‏ \x00", "nothing is said"),
+        ("hello", "no question"),
+        ("what do " + "you " * 40, "longer"),
+    ],
+)
+def test_what_is_no_question_about_the_agent_is_left_out_with_a_reason(said: str, why: str) -> None:
+    found, reason = about_agent(said)
+    assert found == [] and why in reason
+
+
+def test_that_it_is_a_question_may_be_known_from_elsewhere() -> None:
+    assert asked("you live where") == []
+    assert asked("you live where", question=True) == ["you live where"]
+
+
+def test_of_several_sentences_the_questions_are_kept() -> None:
+    assert asked("Hello! My father is a baker. Who is your father? I wonder.") == ["who is your father"]
+
+
+def test_whether_somebody_is_addressed_is_told() -> None:
+    [there], [not_there] = about_agent("how are you")[0], about_agent("how is it going")[0]
+    assert there.addressed and not not_there.addressed
+
+
+def test_only_the_beginning_of_a_long_text_is_looked_at() -> None:
+    assert asked("How old are you? " * 10_000) == ["how old are you"] * SENTENCES
+    assert asked("x" * LONGEST + "? How old are you?") == []
+    assert asked("you " * 50_000) == []
+
+
+def test_examples_have_the_same_form() -> None:
+    assert plain("What's your favourite color?") == "what is your favourite colour"

@@ -1,0 +1,125 @@
+"""The file of an agent's life: what it may say, how it changes the one that comes with the module, its mistakes."""
+
+from __future__ import annotations
+
+from datetime import date
+from pathlib import Path
+
+import pytest
+
+import ravestate as rs
+from ravestate.errors import DeclarationError, DeclarationErrors, PlatformError
+from ravestate.modules import agentqa
+from ravestate.modules.skill.agentqa import Life, read_life
+from ravestate.testing import simulate
+
+TOPICS = (
+    "identity name age hobbies likes origin home father siblings friends ambition membership abilities learned how_are_you"
+).split()
+
+
+def life_of(text: str, tmp_path: Path) -> Life:
+    file = tmp_path / "mine.yaml"
+    file.write_text(text, encoding="utf-8")
+    return read_life(file)
+
+
+def test_the_life_that_comes_with_the_module_is_whole() -> None:
+    life = read_life()
+    assert list(life.topics) == TOPICS
+    assert life.born is not None and life.name == "Ravestate"
+    questions = [q for topic in life.topics.values() for q in topic.questions] + list(life.others)
+    assert len(questions) == len(set(questions))
+
+
+def test_a_fact_is_replaced_added_or_taken_away_and_the_rest_stays(tmp_path: Path) -> None:
+    life = life_of(
+        "facts: {name: Robin, born: 2020-02-29, hobbies: [chess], home: ~, wheels: 3, siblings: []}", tmp_path
+    )
+    assert life.name == "Robin" and life.born == date(2020, 2, 29)
+    assert life.facts["hobbies"] == ("chess",) and life.facts["wheels"] == "3" and life.facts["siblings"] == ()
+    assert "home" not in life.facts
+    assert life.facts["friends"] == read_life().facts["friends"]
+    assert life.topics == read_life().topics
+
+
+def test_a_topic_adds_its_questions_and_replaces_its_phrases(tmp_path: Path) -> None:
+    life = life_of(
+        """
+        topics:
+          home: {questions: [which pond do you swim in], phrases: I live in a pond.}
+          age: {phrases: ["{age}!"]}
+          membership: ~
+          wheels: {questions: do you have wheels, phrases: ["No, {name} walks."]}
+        others: [do you have a wheelchair]
+        """,
+        tmp_path,
+    )
+    before = read_life()
+    assert life.topics["home"].questions == (*before.topics["home"].questions, "which pond do you swim in")
+    assert life.topics["home"].phrases == ("I live in a pond.",) and life.topics["home"].otherwise == ()
+    assert life.topics["age"].questions == before.topics["age"].questions
+    assert "membership" not in life.topics
+    assert life.topics["wheels"].phrases == ("No, {name} walks.",)
+    assert life.others[-1] == "do you have a wheelchair"
+
+
+@pytest.mark.parametrize("text", ["", "# nothing\n", "facts: {}"])
+def test_an_empty_file_changes_nothing(text: str, tmp_path: Path) -> None:
+    assert life_of(text, tmp_path) == read_life()
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("- a list", "mine.yaml:1: the file has facts, topics and others"),
+        ("fcts: {}", "mine.yaml:1: 'fcts' means nothing here; did you mean 'facts'"),
+        ("facts: [a]", "mine.yaml:1: facts have names"),
+        ("facts:\n  born: yesterday", "mine.yaml:2: born: 'yesterday' is no date: write for example 2024-03-01"),
+        ("facts:\n  name: ~", "the agent needs a name"),
+        ("facts:\n  age: 3", "mine.yaml:2: age is not told here, but follows from elsewhere: write born:"),
+        ("facts:\n  name: [a, b]", "name is one text"),
+        ("facts:\n  a: 1\n  a: 2", "mine.yaml:3: 'a' is here a second time"),
+        ("facts:\n  my thing!: 1", "is no name"),
+        ("facts:\n  likes: [[a]]", "a text is wanted, and this is a sequence"),
+        ("facts:\n  likes: [a, ~]", "a text is wanted, and this is empty"),
+        ("topics:\n  shoes: {phrases: No.}", "mine.yaml:2: the topic shoes has no questions"),
+        ("topics:\n  shoes: {questions: do you wear shoes}", "the topic shoes has no phrases"),
+        ("topics:\n  shoes: {question: x}", "'question' means nothing here; did you mean 'questions'"),
+        ("topics:\n  home: {questions: []}", "there are no questions"),
+        (
+            "topics:\n  home:\n    phrases:\n      - I live.\n      - 'In {hom}.'",
+            "mine.yaml:5: {hom} in 'In {hom}.' is no fact; did you mean 'home'",
+        ),
+        ("topics:\n  home: {phrases: 'a } b'}", "the braces in 'a } b' name no fact"),
+        ("topics:\n  home: {phrases: '{home!r}'}", "is no fact"),
+        ("topics:\n  likes: {named: {shoes: 'Yes, {it}.'}}", "'shoes' means nothing here"),
+        ("topics:\n  likes: {named: {likes: 'Yes, {what}.'}}", "{what} in 'Yes, {what}.' is no fact"),
+        ("facts: {a: b", "this is no YAML"),
+        ("facts: \x07", "this is no YAML (a control character)"),
+        ("[" * 5000, "nested without end"),
+    ],
+)
+def test_a_mistake_is_told_with_its_line(text: str, told: str, tmp_path: Path) -> None:
+    with pytest.raises(DeclarationError) as caught:
+        life_of(text, tmp_path)
+    assert told in str(caught.value)
+
+
+def test_a_file_that_cannot_be_read_says_why(tmp_path: Path) -> None:
+    (tmp_path / "robin.yaml").write_bytes(b"facts: {name: \xff}")
+    with pytest.raises(DeclarationError, match="no text in UTF-8"):
+        read_life(tmp_path / "robin.yaml")
+    with pytest.raises(PlatformError, match=r"does not exist; did you mean 'robin\.yaml'"):
+        read_life(tmp_path / "robn.yaml")
+    with pytest.raises(PlatformError, match="cannot be read"):
+        read_life(tmp_path)
+
+
+def test_a_mistake_is_told_before_anything_runs(tmp_path: Path) -> None:
+    file = tmp_path / "robin.yaml"
+    file.write_text("facts: {born: soon}")
+    with pytest.raises(DeclarationErrors) as caught, simulate(agentqa, settings={"agentqa": {"life": file}}):
+        pass
+    assert "robin.yaml:1: born: 'soon' is no date" in str(caught.value.exceptions[0])
+    assert isinstance(agentqa.module, rs.Module)
