@@ -259,3 +259,16 @@ def test_what_is_not_installed_is_named(monkeypatch: pytest.MonkeyPatch) -> None
         PlatformError, match=r"needs xllamacpp to run a model: pip install 'ravestate\[wildtalk\]'"
     ):
         checked_model()  # fmt: skip
+
+
+@pytest.mark.model
+def test_who_lets_go_of_it_in_the_middle_of_an_answer_hears_of_no_failure() -> None:
+    async def main() -> None:
+        backend = LlamaBackend(context_tokens=2048)  # a process of its own
+        async with aclosing(backend.stream(HELLO, max_tokens=2000)) as pieces:
+            await anext(pieces)
+            await backend.close()
+            async for _ in pieces:
+                """What was on its way."""
+
+    asyncio.run(main())

@@ -108,6 +108,8 @@ class LlamaBackend:
             async for piece in pieces:
                 yield piece
         except PlatformError as error:
+            if self._process is not process:
+                return  # it was let go of in the middle of an answer
             # A connection that broke is the first sign of an end that takes some milliseconds.
             grace = 0.5 if error.__cause__ is not None else 0.0
             if obituary := await asyncio.to_thread(process.obituary, grace):
