@@ -155,9 +155,9 @@ async def test_a_foreign_origin_is_refused_before_anything_is_said() -> None:
 
 @in_virtual_time
 async def test_a_site_that_may_embed_it_may_connect() -> None:
-    async with page(origins=("https://museum.example",)) as app:
-        async with Visit(app, origin="https://museum.example") as visit:
-            assert (await visit.hello())["type"] == "welcome"
+    site = "https://museum.example"
+    async with page(origins=(site,)) as app, Visit(app, origin=site) as visit:
+        assert (await visit.hello())["type"] == "welcome"
 
 
 @in_virtual_time

@@ -6,6 +6,9 @@ Both build on uvicorn's own protocols, which bound neither.
 from __future__ import annotations
 
 import asyncio
+import contextlib
+import socket
+import struct
 from typing import Any, cast
 
 from uvicorn.protocols.http.h11_impl import H11Protocol
@@ -52,6 +55,7 @@ class Door(H11Protocol):
         return sum(1 for address in addresses if address and address[0] == here)
 
     def _refuse(self, why: str) -> None:
+        self.connections.discard(self)  # it counts no more, though it takes a moment to close
         self.transport.write(FULL % (len(why), why.encode()))
         self.transport.close()
 
@@ -61,7 +65,7 @@ class Door(H11Protocol):
             return
         cycle = cast("Any", self.cycle)  # None until there is a request
         if cycle is None or (not cycle.response_complete and cycle is self._answering):
-            self.transport.abort()
+            _hang_up(self.transport)
             return
         self._answering = cycle
         self.loop.call_later(PATIENCE, self._look)
@@ -75,7 +79,7 @@ class Line(WebSocketsSansIOProtocol):
     def pause_writing(self) -> None:
         """The client leaves much unread: it has some time to make up."""
         super().pause_writing()
-        self._stalled = self.loop.call_later(STALLED, self.transport.abort)
+        self._stalled = self.loop.call_later(STALLED, _hang_up, self.transport)
 
     def resume_writing(self) -> None:
         """The client reads again."""
@@ -92,14 +96,23 @@ class Line(WebSocketsSansIOProtocol):
         if self.writable.is_set():
             super().handle_ping()
         else:
-            self.transport.abort()
+            _hang_up(self.transport)
 
     def keepalive_timeout(self) -> None:
         """It answers no more: what is still meant for it will not be read."""
         super().keepalive_timeout()
-        self.transport.abort()
+        _hang_up(self.transport)
 
     def _forgive(self) -> None:
         if self._stalled is not None:
             self._stalled.cancel()
             self._stalled = None
+
+
+def _hang_up(transport: asyncio.Transport) -> None:
+    """Close at once, and let the system forget what was not read, instead of trying to deliver it."""
+    connected = transport.get_extra_info("socket")
+    if connected is not None:
+        with contextlib.suppress(OSError):
+            connected.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
+    transport.abort()

@@ -31,6 +31,12 @@ __all__ = ["Server"]
 SPARE = 128
 """Files that are left to others, of those that the process may open."""
 
+BACKLOG = 256
+"""Connections that are taken in one go, before any of them is looked at."""
+
+UNREAD = 128 * 1024
+"""Bytes that the system keeps for a client that does not read."""
+
 LAST_WORDS = 2.0
 """Seconds that connections have to close at the end."""
 
@@ -74,6 +80,7 @@ class Server:
                 lifespan="on",
                 ws_max_size=LONGEST,
                 ws_per_message_deflate=False,  # frames are small, and each window would take memory
+                backlog=BACKLOG,
                 timeout_keep_alive=15,
                 timeout_graceful_shutdown=int(LAST_WORDS),
                 log_config=None,
@@ -153,6 +160,7 @@ def _listen(host: str, port: int) -> socket.socket:
         raise PlatformError(f"webio: host {host!r} is no address of this machine: {error.strerror}") from None
     listener = socket.socket(family, kind, protocol)
     try:
+        listener.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, UNREAD)  # whom it accepts inherits it
         if sys.platform != "win32":  # there it would share the port
             listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         listener.bind(address)

@@ -1,0 +1,187 @@
+"""Clients that mean no good, or are broken: what they cost is bounded, and others do not notice."""
+
+import asyncio
+import contextlib
+import json
+import resource
+import select
+import socket
+from collections.abc import AsyncGenerator, Iterator
+
+import pytest
+from websockets.exceptions import ConnectionClosed, ConnectionClosedError, InvalidMessage, InvalidStatus
+
+from modules.platform.webio.served import Served, hello, talk
+from runtime.on_loop import on_loop
+
+MEGABYTE = 1 << 20
+ELSEWHERE = ("127.0.0.2", 0)  # another address of this machine
+
+
+@pytest.fixture(autouse=True)
+def _many_files() -> Iterator[None]:
+    """Those who mean no good may open more than is usual."""
+    soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
+    resource.setrlimit(resource.RLIMIT_NOFILE, (max(soft, min(hard, 4096)), hard))
+    yield
+    resource.setrlimit(resource.RLIMIT_NOFILE, (soft, hard))
+
+
+@contextlib.asynccontextmanager
+async def unharmed(served: Served, megabytes: int) -> AsyncGenerator[None]:
+    """Within, a visitor from elsewhere talks all the time; memory does not grow by more than so much."""
+    async with served.connect(local_addr=ELSEWHERE) as visit:
+        await hello(visit)
+        await talk(visit, ["before"])
+        before = served.peak()
+        over = asyncio.Event()
+
+        async def go_on() -> int:
+            number = 0
+            while not over.is_set():
+                await talk(visit, [f"meanwhile {number}"])
+                number += 1
+            return number
+
+        talking = asyncio.create_task(go_on())
+        yield
+        over.set()
+        assert await talking > 1
+        await talk(visit, ["after"])
+        grown = served.peak() - before
+        assert grown < megabytes * MEGABYTE, f"{grown / MEGABYTE:.1f} MB"
+
+
+@on_loop
+async def test_messages_of_ten_megabytes_are_refused() -> None:
+    with Served() as served:
+        async with unharmed(served, megabytes=8):
+            for _ in range(10):
+                async with served.connect(max_size=None) as visit:
+                    await hello(visit)
+                    with contextlib.suppress(ConnectionClosed):
+                        await visit.send("x" * (10 * MEGABYTE))
+                    with pytest.raises(ConnectionClosedError) as closed:
+                        while True:
+                            await visit.recv()
+                    assert closed.value.rcvd is None or closed.value.rcvd.code == 1009
+
+
+@on_loop
+async def test_a_message_of_ten_megabytes_in_small_pieces_is_refused() -> None:
+    def pieces() -> Iterator[str]:
+        for _ in range(10_000):
+            yield "x" * 1024
+
+    with Served() as served:
+        async with unharmed(served, megabytes=8), served.connect() as visit:
+            await hello(visit)
+            with pytest.raises(ConnectionClosedError) as closed:
+                await visit.send(pieces())
+                while True:
+                    await visit.recv()
+            assert closed.value.rcvd is None or closed.value.rcvd.code == 1009
+
+
+@on_loop
+async def test_a_thousand_connections_that_say_nothing_are_bounded() -> None:
+    with Served(per_address=100) as served:
+        async with unharmed(served, megabytes=16):
+            open_before = served.files()
+            silent = [socket.create_connection(("127.0.0.1", served.port)) for _ in range(1000)]
+            try:
+                refused = 0
+                for one in silent[100:]:
+                    refused += b"too many connections from your address" in await asyncio.to_thread(
+                        everything, one
+                    )
+                assert refused > 850
+                assert served.files() - open_before <= 100
+            finally:
+                for one in silent:
+                    one.close()
+
+
+@on_loop
+async def test_a_thousand_websockets_that_say_no_hello_are_bounded() -> None:
+    with Served(patience=2.0, per_address=100) as served:
+        async with unharmed(served, megabytes=24):
+            sockets = []
+            for _ in range(1000):
+                with contextlib.suppress(InvalidStatus, InvalidMessage, OSError):
+                    sockets.append(await served.connect())
+            assert 50 <= len(sockets) <= 100
+            for one in sockets:
+                assert json.loads(await one.recv())["code"] == "silent"
+                with pytest.raises(ConnectionClosed):
+                    await one.recv()
+                assert one.close_code == 4408
+
+
+@on_loop
+async def test_who_never_sends_a_request_is_not_waited_for() -> None:
+    with Served(patience=0.5) as served:
+        reader, writer = await asyncio.open_connection("127.0.0.1", served.port)
+        writer.write(b"GET / HTTP/1.1\r\nhost: 127.0.0.1\r\n")  # and no end
+        with contextlib.suppress(ConnectionResetError):
+            assert await reader.read() == b""
+        writer.close()
+
+
+@on_loop
+async def test_a_client_that_stops_reading_is_dropped_and_costs_little() -> None:
+    text = "x" * 60_000
+    with Served(patience=0.5) as served:
+        async with unharmed(served, megabytes=16):
+            open_before = served.files()
+            with socket.socket() as deaf:
+                deaf.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
+                deaf.connect(("127.0.0.1", served.port))
+                deaf.sendall(
+                    b"GET /ws HTTP/1.1\r\nhost: 127.0.0.1\r\nconnection: upgrade\r\nupgrade: websocket\r\n"
+                    b"sec-websocket-version: 13\r\nsec-websocket-key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n"
+                )
+                assert b"101 Switching Protocols" in await asyncio.to_thread(deaf.recv, 1000)
+                deaf.sendall(masked('{"type": "hello", "v": 1}'))
+                deaf.setblocking(False)
+                # Each is said again; 40 MB would wait for it.
+                with contextlib.suppress(BlockingIOError, ConnectionError):
+                    for number in range(400):
+                        deaf.sendall(masked(json.dumps({"type": "say", "id": f"{number}", "text": text})))
+                hang_up = select.poll()
+                hang_up.register(deaf, 0)  # nothing is read
+                assert await asyncio.to_thread(hang_up.poll, 15_000)
+            assert served.files() <= open_before
+
+
+def everything(one: socket.socket) -> bytes:
+    """What a socket receives until its other end is closed."""
+    one.settimeout(10)
+    received = b""
+    with contextlib.suppress(ConnectionResetError):
+        while more := one.recv(1000):
+            received += more
+    return received
+
+
+def masked(text: str) -> bytes:
+    """A client's text frame."""
+    data = text.encode()
+    size = bytes([0x80 | len(data)]) if len(data) < 126 else b"\xfe" + len(data).to_bytes(2, "big")
+    return b"\x81" + size + b"\0\0\0\0" + data
+
+
+@on_loop
+async def test_any_bytes_on_the_line_are_survived() -> None:
+    with Served() as served:
+        async with unharmed(served, megabytes=8):
+            for junk in (b"\0" * 1000, b"GET / HTTP/9.9\r\n\r\n", b"A" * 100_000, b"\x81\xff" * 50):
+                reader, writer = await asyncio.open_connection("127.0.0.1", served.port)
+                writer.write(junk)
+                with contextlib.suppress(ConnectionError):
+                    await writer.drain()
+                    writer.write_eof()
+                    await reader.read()
+                writer.close()
+        assert served.end() == 0
+        assert "Traceback" not in served.errors

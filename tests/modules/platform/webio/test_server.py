@@ -1,0 +1,161 @@
+"""The web server: where it listens, what it sends, how it ends."""
+
+import asyncio
+import json
+import signal
+import socket
+
+import httpx
+import pytest
+from websockets.exceptions import ConnectionClosed, InvalidStatus
+
+import ravestate as rs
+from modules.platform.webio.served import Served, hello, talk
+from modules.platform.webio.visit import parrot
+from ravestate.modules import webio
+from ravestate.runtime.agent import Agent
+from runtime.on_loop import on_loop
+
+TOKEN = "open sesame, please"
+
+
+@pytest.fixture(scope="module")
+def served():
+    with Served() as served:
+        yield served
+
+
+def test_the_page_and_its_files_are_there(served: Served) -> None:
+    with httpx.Client(base_url=f"http://{served.host}") as client:
+        page = client.get("/")
+        assert page.status_code == 200
+        assert page.headers["content-type"] == "text/html; charset=utf-8"
+        for name in ("assets/chat.js", "assets/chat.css", "widget.js", "raven.svg"):
+            file = client.get(f"/{name}")
+            assert (file.status_code, file.headers["content-encoding"]) == (200, "gzip")
+            assert client.get(f"/{name}", headers={"if-none-match": file.headers["etag"]}).status_code == 304
+        assert "content-encoding" not in client.get("/", headers={"accept-encoding": "identity"}).headers
+        assert client.head("/").status_code == 200
+
+
+@pytest.mark.parametrize(
+    "path", ["/nothing", "/../pyproject.toml", "/%2e%2e/rules.py", "/assets", "/assets/", "//", "/ws"]
+)
+def test_what_is_not_there_is_not_found(served: Served, path: str) -> None:
+    assert httpx.get(f"http://{served.host}{path}").status_code == 404
+
+
+def test_nothing_may_be_sent_to_the_page(served: Served) -> None:
+    assert httpx.post(f"http://{served.host}/", content=b"x").status_code == 405
+
+
+def test_scripts_and_frames_are_kept_in_bounds(served: Served) -> None:
+    for path in ("/", "/nothing", "/assets/chat.js"):
+        headers = httpx.get(f"http://{served.host}{path}").headers
+        policy = headers["content-security-policy"]
+        assert "default-src 'none'" in policy
+        assert "script-src 'self';" in policy
+        assert "frame-ancestors 'self'" in policy
+        assert "unsafe" not in policy
+        assert headers["x-content-type-options"] == "nosniff"
+
+
+def test_a_name_that_was_made_to_point_here_is_refused(served: Served) -> None:
+    answer = httpx.get(f"http://{served.host}/", headers={"host": "evil.example"})
+    assert answer.status_code == 403
+    assert "this page is not known as 'evil.example'" in answer.text
+
+
+@on_loop
+async def test_a_foreign_origin_is_refused() -> None:
+    with Served() as served:
+        with pytest.raises(InvalidStatus) as refused:
+            async with served.connect(origin="https://evil.example"):
+                pass
+        assert refused.value.response.status_code == 403
+        async with served.connect(origin=f"http://{served.host}") as visit:
+            await hello(visit)
+            await talk(visit, ["hello"])
+
+
+@on_loop
+async def test_when_it_is_ended_the_visitors_are_told_and_nothing_is_complained_of() -> None:
+    with Served() as served:
+        async with served.connect() as visit, served.connect() as silent:
+            await hello(visit)
+            assert json.loads(await visit.recv())["text"] == "Hello!"
+            served.process.send_signal(signal.SIGINT)
+            frames = [json.loads(text) async for text in visit]
+            assert [frame.get("text") for frame in frames] == ["Bye!", "the agent has been switched off"]
+            assert visit.close_code == 1000
+            with pytest.raises(ConnectionClosed):
+                await silent.recv()
+        assert await asyncio.to_thread(served.process.wait) == 0
+        served.errors = served.process.communicate()[1]
+        assert served.errors == ""
+
+
+def test_a_second_signal_ends_it_at_once_and_a_term_in_order() -> None:
+    with Served() as served:
+        assert served.end(signal.SIGTERM) == 0
+        assert served.errors == ""
+
+
+def test_the_link_has_the_token() -> None:
+    with Served(token=TOKEN, host="0.0.0.0") as served:
+        assert (
+            served.line == f"The agent is at http://0.0.0.0:{served.port}/#token={TOKEN} (Ctrl-C ends it)\n"
+        )
+
+
+def test_where_others_can_reach_it_a_token_is_needed() -> None:
+    with pytest.raises(rs.PlatformError, match=r"others can reach host '0\.0\.0\.0', so a token is needed"):
+        rs.run(parrot, webio, settings={"webio": {"host": "0.0.0.0", "port": 0}})
+
+
+def test_a_port_in_use_is_said() -> None:
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        port = taken.getsockname()[1]
+        with pytest.raises(rs.PlatformError, match=f"port {port} is in use: .* --set webio.port=0"):
+            rs.run(parrot, webio, settings={"webio": {"port": port}})
+
+
+@pytest.mark.parametrize("host", ["192.0.2.1", "nowhere.invalid"])
+def test_an_address_that_is_not_ours_is_said(host: str) -> None:
+    with pytest.raises(rs.PlatformError, match=host.replace(".", r"\.")):
+        rs.run(parrot, webio, settings={"webio": {"host": host, "port": 0, "token": TOKEN}})
+
+
+def test_it_can_be_mounted_in_an_application() -> None:
+    from starlette.applications import Starlette
+    from starlette.routing import Mount
+    from starlette.testclient import TestClient
+
+    chat = webio.app(Agent(parrot, webio))
+    whole = Starlette(routes=[Mount("/talk", chat)], lifespan=lambda _: chat.router.lifespan_context(chat))
+    with TestClient(whole, base_url="http://127.0.0.1") as client:
+        assert "<title>" in client.get("/talk/").text
+        assert client.get("/talk/assets/chat.js").status_code == 200
+        with client.websocket_connect("ws://127.0.0.1/talk/ws") as visit:
+            visit.send_json({"type": "hello", "v": 1})
+            assert visit.receive_json()["type"] == "welcome"
+            assert visit.receive_json()["text"] == "Hello!"
+            visit.send_json({"type": "bye"})
+            assert [visit.receive_json()["text"] for _ in range(2)] == ["Bye!", "you left"]
+            assert visit.receive()["type"] == "websocket.close"
+    assert len(chat.state.sessions) == 0
+
+
+def test_others_may_add_routes_behind_the_same_checks() -> None:
+    from starlette.requests import Request
+    from starlette.responses import PlainTextResponse
+    from starlette.routing import Route
+    from starlette.testclient import TestClient
+
+    def look(request: Request) -> PlainTextResponse:
+        return PlainTextResponse(f"{len(request.app.state.sessions)} conversations")
+
+    chat = webio.app(Agent(parrot, webio), [Route("/look", look)])
+    with TestClient(chat, base_url="http://127.0.0.1") as client:
+        assert client.get("/look").text == "0 conversations"
+        assert client.get("/look", headers={"host": "evil.example"}).status_code == 403
