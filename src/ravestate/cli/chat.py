@@ -19,6 +19,7 @@ COMPLETE = (
     "hibye",
     "fillers",
     "agenda",
+    "persqa",
     "agentqa",
     "genqa",
     "wildtalk",

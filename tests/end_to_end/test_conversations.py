@@ -1,0 +1,79 @@
+"""The paper's sample conversations (its appendix), and what must hold in any conversation with the complete agent."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from end_to_end.conversation import WORDS, Conversation, spoken_by
+
+
+def test_example_1_small_talk_and_a_question_of_fact(tmp_path: Path) -> None:
+    with Conversation(tmp_path) as talk:
+        assert spoken_by(talk.say("will it rain today")) == ["wildtalk"]
+        assert spoken_by(talk.say("know if it's gonna rain today")) == ["wildtalk"]
+        (answer,) = talk.say("what is the capital of peru")
+        assert (answer.module, "Lima" in answer.text) == ("genqa", True)
+
+
+def test_example_2_an_answer_is_asked_for_stored_and_known_after_a_restart(tmp_path: Path) -> None:
+    with Conversation(tmp_path) as talk:
+        talk.say("my name is ada")
+        assert spoken_by(talk.say("what is your favorite animal")) in (["genqa"], ["agentqa"])
+        asked = [line for line in talk.silence(60.0) if line.module == "persqa"]
+        assert asked
+        for _ in range(8):  # until it asks for the home
+            if "home" in asked[-1].text or "live" in asked[-1].text or "town" in asked[-1].text:
+                break
+            talk.say("i'd rather not say")
+            asked = [line for line in talk.silence(60.0) if line.module == "persqa"]
+        (reply,) = talk.say("hannover")
+        assert (reply.module, "hannover" in reply.text.lower()) == ("persqa", True)
+    with Conversation(tmp_path) as talk:
+        talk.say("hello")
+        talk.say("i am ada")
+        said = " ".join(line.text for line in [*talk.lines(), *talk.say("where do i live")])
+        assert "Hannover" in said
+
+
+def test_example_3_a_greeting_the_agent_and_its_feelings(tmp_path: Path) -> None:
+    with Conversation(tmp_path, {"emotion": {"shy": 1.0}}) as talk:
+        assert spoken_by(talk.say("Hello")) == ["hibye"]
+        assert spoken_by(talk.say("how are you"))[:1] == ["agentqa"]
+        said = talk.say("What are you up to today", 5.0)
+        assert spoken_by(said)[0] == "wildtalk"
+        assert "emotion" in spoken_by(said)
+        assert "agentqa" in spoken_by(talk.silence(120.0))
+        assert spoken_by(talk.say("How old are you?"))[:1] == ["agentqa"]
+
+
+def test_whatever_is_said_somebody_answers_and_only_one(tmp_path: Path) -> None:
+    said = (
+        "hi",
+        "i like tea",
+        "who are you",
+        "what is the highest mountain of nepal",
+        "no",
+        "thank you",
+        "bye",
+    )
+    with Conversation(tmp_path, {"emotion": {"emoji": False}}, without=["fillers"]) as talk:
+        for text in said:
+            assert len(talk.say(text, 1.0)) == 1, text
+
+
+def test_nothing_odd_stops_the_talk(tmp_path: Path) -> None:
+    odd = (
+        "x" * 100_000,
+        "🦊🦊🦊",
+        "שלום, מה שלומך?",
+        "\x1b[31mred\x00",
+        "Wie geht es dir?",
+        "   ",
+        "?",
+        "'; DROP TABLE--",
+    )
+    with Conversation(tmp_path, {"emotion": {"emoji": False}}) as talk:
+        for text in odd:
+            talk.say(text)
+        (answer,) = talk.say("what are you up to")
+        assert answer.text == WORDS.strip()
