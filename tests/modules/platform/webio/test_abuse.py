@@ -9,6 +9,7 @@ import socket
 from collections.abc import AsyncGenerator, Iterator
 
 import pytest
+from websockets.asyncio.client import ClientConnection
 from websockets.exceptions import ConnectionClosed, ConnectionClosedError, InvalidMessage, InvalidStatus
 
 from modules.platform.webio.served import Served, hello, talk
@@ -106,11 +107,13 @@ async def test_a_thousand_connections_that_say_nothing_are_bounded() -> None:
 async def test_a_thousand_websockets_that_say_no_hello_are_bounded() -> None:
     with Served(patience=2.0, per_address=100) as served:
         async with unharmed(served, megabytes=24):
-            sockets = []
+            open_before = served.files()
+            sockets: list[ClientConnection] = []
             for _ in range(1000):
                 with contextlib.suppress(InvalidStatus, InvalidMessage, OSError):
                     sockets.append(await served.connect())
-            assert 50 <= len(sockets) <= 100
+                assert served.files() - open_before <= 101  # one may be on its way out
+            assert len(sockets) >= 50
             for one in sockets:
                 assert json.loads(await one.recv())["code"] == "silent"
                 with pytest.raises(ConnectionClosed):
