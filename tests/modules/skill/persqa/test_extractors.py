@@ -1,6 +1,7 @@
 """What is understood of sentences, without a linguistic pipeline: sentences.py has them."""
 
 import pytest
+
 from modules.skill.persqa.sentences import (
     ANSWERED,
     CORRECTED,
@@ -17,7 +18,6 @@ from modules.skill.persqa.sentences import (
     STATED,
     UNCORRECTED,
 )
-
 from ravestate.modules.skill.persqa.answers import answer, correction, has_none, refuses
 from ravestate.modules.skill.persqa.inquiries import inquiry, wants_to_be_forgotten
 from ravestate.modules.skill.persqa.phrase import plain

@@ -10,7 +10,7 @@ from ravestate.modules import ontology
 from . import records
 from .profile import Facts, merged, told_apart
 from .talk import Talk
-from .topics import NAME
+from .topics import NAME, TOPICS
 
 __all__ = ["Acquaintance"]
 
@@ -69,7 +69,9 @@ class Acquaintance:
             return self
         now = await self.recall(memory)
         assert memory is not None and now.who is not None  # else recall had raised
-        await records.note(memory, now.who, {topic: now.facts.get(topic, ()) for topic in now.talk.told})
+        new = {topic for topic, values in now.facts.items() if values != now.talk.remembered.get(topic)}
+        topics = [topic for topic in TOPICS if topic in new | now.talk.told]
+        await records.note(memory, now.who, {topic: now.facts.get(topic, ()) for topic in topics})
         return now
 
     async def renamed(self, memory: ontology.Memory | None, name: str) -> Acquaintance:

@@ -79,7 +79,7 @@ async def listen(ctx: rs.RuleContext) -> None:
     answer, after = await respond_to(meaning, before, ctx[ontology.memory], ctx.now, ctx.random)
     if after.talk.trouble and after.talk.trouble != before.talk.trouble:
         ctx.log.error("%s", after.talk.trouble)
-    keep(ctx, after)
+    keep(ctx, before, after)
     name = after.name
     users = ctx[interloc.users]
     if name and name != before.name and len(users) == 1:
@@ -114,19 +114,16 @@ async def welcome(ctx: rs.RuleContext) -> rs.Resign | None:
     if len(ctx[interloc.users]) > 1:
         return rs.Resign("somebody is there already")
     before = acquaintance_of(ctx)
-    before = replace(before, talk=replace(before.talk, quiet=False))
+    after = replace(before, talk=replace(before.talk, quiet=False))
     if isinstance(item, ontology.Node) and item.get(NAME):
-        after = replace(before, who=item)
+        after = replace(after, who=item)
     elif isinstance(item, str) and item.strip():
-        after = replace(before, who=ontology.Node("Person", {NAME: item.strip()}))
-    else:
-        keep(ctx, before)
-        return None
+        after = replace(after, who=ontology.Node("Person", {NAME: item.strip()}))
     try:
-        keep(ctx, await after.recall(ctx[ontology.memory]))
+        after = await after.recall(ctx[ontology.memory])
     except RavestateError as error:
         ctx.log.error("%s", error)
-        keep(ctx, after)
+    keep(ctx, before, after)
     return None
 
 
@@ -140,7 +137,7 @@ async def part(ctx: rs.RuleContext) -> rs.Resign | None:
     """Nobody is left: the next talk is another one, and may be with somebody else."""
     if ctx[interloc.users]:
         return rs.Resign("somebody is still there")
-    keep(ctx, Acquaintance(None, {}, Talk(quiet=True)))
+    keep(ctx, acquaintance_of(ctx), Acquaintance(None, {}, Talk(quiet=True)))
     return None
 
 
@@ -154,8 +151,15 @@ def acquaintance_of(ctx: rs.RuleContext) -> Acquaintance:
     return Acquaintance(ctx[who], dict(ctx[facts]), ctx[talk])
 
 
-def keep(ctx: rs.RuleContext, now: Acquaintance) -> None:
-    """Put the user back into the slots."""
-    ctx[who], ctx[talk] = now.who, now.talk
-    if dict(ctx[facts]) != dict(now.facts):
-        ctx[facts] = now.facts  # type: ignore[assignment]  # a collection takes any mapping
+def keep(ctx: rs.RuleContext, before: Acquaintance, after: Acquaintance) -> None:
+    """Put into the slots what is different: two utterances may be listened to at once while memory is slow."""
+    if after.who != before.who:
+        ctx[who] = after.who
+    if after.talk != before.talk:
+        ctx[talk] = after.talk
+    items = ctx[facts]
+    for topic in [topic for topic in before.facts if topic not in after.facts]:
+        items.remove(topic)
+    for topic, values in after.facts.items():
+        if before.facts.get(topic) != values:
+            items.add(topic, values)

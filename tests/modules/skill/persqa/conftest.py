@@ -1,0 +1,47 @@
+"""What the tests share: one pipeline, and a memory of their own for each."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from ravestate.modules import ontology
+from ravestate.modules.meta.nlp.pipeline import pipeline
+from ravestate.modules.meta.ontology.places import open_memory
+
+Look = Callable[[], dict[str, Any]]
+
+
+@pytest.fixture(scope="session")
+def reader() -> None:
+    """The pipeline is loaded once for all tests."""
+    pipeline("").load()
+
+
+@pytest.fixture
+def file(tmp_path: Path) -> Path:
+    return tmp_path / "memory.lbug"
+
+
+@pytest.fixture
+def look(file: Path) -> Look:
+    """Who is in memory when no agent runs: relations by name, and the names at their ends."""
+
+    def people() -> dict[str, Any]:
+        memory = open_memory(ontology.Settings(path=file))
+        try:
+            found: dict[str, Any] = {}
+            for person in memory.find("Person").result(20):
+                relations = memory.relations(person).result(20)
+                own = [relation for relation in relations if relation.source.id == person.id]
+                found.setdefault(person["name"], {})
+                for relation in own:
+                    found[person["name"]].setdefault(relation.name, []).append(relation.target["name"])
+            return found
+        finally:
+            memory.close().result(20)
+
+    return people

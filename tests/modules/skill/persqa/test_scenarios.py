@@ -1,0 +1,669 @@
+"""Whole talks, in virtual time, over a real memory in a file."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import ravestate as rs
+from modules.skill.persqa.conftest import Look
+from ravestate.errors import PlatformError
+from ravestate.modules import hibye, idle, interloc, nlp, ontology, persqa, rawio, verbaliser
+from ravestate.modules.meta.verbaliser.phrases import PhraseBook
+from ravestate.testing import Simulation, simulate
+
+pytestmark = pytest.mark.usefixtures("reader")
+
+PHRASES = Path(persqa.__file__).with_name("phrases.yaml")
+BOOK = PhraseBook.load([PHRASES])
+
+
+def chatter(seconds: float = 0.0) -> rs.Module:
+    """Small talk, as a language model would make it."""
+    talk = rs.Module("chatter", requires=[rawio])
+
+    @talk.rule(when=rawio.input.changed, writes=rawio.output, until=rawio.input.changed)
+    async def chat(ctx: rs.RuleContext) -> None:
+        if seconds:
+            await ctx.sleep(seconds)
+        ctx[rawio.output] = "I see."
+
+    return talk
+
+
+def knower() -> rs.Module:
+    """Answers questions."""
+    module = rs.Module("knower", requires=[rawio, nlp])
+
+    @module.rule(when=nlp.is_question, writes=rawio.output)
+    async def answer(ctx: rs.RuleContext) -> None:
+        ctx[rawio.output] = "I know it."
+
+    return module
+
+
+def agent(file: Path | None, *others: Any, **settings: Any) -> Simulation:
+    where: dict[str, Any] = {"path": file} if file is not None else {"path": "/dev/null/no/memory.lbug"}
+    return simulate(persqa, chatter(), *others, settings={"ontology": where, "persqa": settings})
+
+
+def meant(text: str, intent: str) -> bool:
+    """Whether `text` words `intent`, whatever stands for its parameters."""
+    for template in BOOK.templates(intent):
+        pieces = [
+            piece.partition("}")[2] if index else piece
+            for index, piece in enumerate(template.text.split("{"))
+        ]
+        at = 0
+        for piece in pieces:
+            at = text.find(piece, at)
+            if at < 0:
+                break
+            at += len(piece)
+        else:
+            if text.startswith(pieces[0]) and text.endswith(pieces[-1]):
+                return True
+    return False
+
+
+def asked(sim: Simulation) -> str:
+    """What the agent asks about when it is silent."""
+    before = len(sim.said)
+    sim.advance(6.0)
+    question = sim.read(persqa.talk).question
+    assert len(sim.said) == before + 1 and question is not None, sim.said[before:]
+    assert meant(sim.said[-1], f"ask_{question.topic}"), sim.said[-1]
+    return question.topic
+
+
+def answers(sim: Simulation, text: str) -> str:
+    """What the agent says to a text."""
+    before = len(sim.said)
+    sim.say(text)
+    assert len(sim.said) == before + 1, (text, sim.said[before:])
+    return sim.said[-1]
+
+
+ANSWERS = {
+    "name": "ada",
+    "home": "hannover",
+    "origin": "i was born in new york",
+    "hobby": "chess, and a bit of football",
+    "occupation": "i'm a baker",
+    "employer": "at siemens",
+    "subject": "physics",
+    "university": "the TU",
+    "friend": "tom and anna",
+    "club": "the chess club",
+}
+STORED = {
+    "lives_in": ["Hannover"],
+    "comes_from": ["New York"],
+    "has_hobby": ["chess", "football"],
+    "works_as": ["baker"],
+    "works_for": ["Siemens"],
+    "studies": ["physics"],
+    "studies_at": ["the TU"],
+    "friend_of": ["Tom", "Anna"],
+    "member_of": ["the chess club"],
+}
+
+
+def test_a_whole_first_talk(file: Path, look: Look) -> None:
+    topics: list[str] = []
+    with agent(file) as sim:
+        for _ in ANSWERS:
+            topic = asked(sim)
+            topics.append(topic)
+            assert meant(answers(sim, ANSWERS[topic]), f"learned_{topic}")
+        before = len(sim.said)
+        sim.advance(300.0)
+        assert len(sim.said) == before  # there is nothing left to ask
+        assert sim.failures == []
+    assert topics == list(ANSWERS)
+    assert look() == {"Ada": STORED, "Tom": {}, "Anna": {}}
+
+
+def test_another_session_remembers(file: Path) -> None:
+    with agent(file) as sim:
+        sim.say("my name is ada and i live in hannover")
+    with agent(file) as sim:
+        assert asked(sim) == "name"
+        said = answers(sim, "it's ada")
+        assert meant(said, "welcome_back")
+        assert said.endswith("ou told me that you live in Hannover.")
+        assert "Ada" in said
+        assert asked(sim) == "origin"  # what it knows it does not ask
+        assert answers(sim, "where do i live").endswith("you live in Hannover.")
+
+
+def test_another_process_remembers(file: Path) -> None:
+    code = """
+import sys
+from ravestate.modules import persqa
+from ravestate.testing import simulate
+with simulate(persqa, settings={"ontology": {"path": sys.argv[1]}}) as sim:
+    for text in sys.argv[2:]:
+        sim.say(text)
+    print(sim.said[-1])
+"""
+
+    def run(*texts: str) -> str:
+        command = [sys.executable, "-c", code, str(file), *texts]
+        return subprocess.run(command, capture_output=True, text=True, check=True).stdout.strip()
+
+    run("i'm called Ada", "i live in hannover")
+    assert meant(said := run("i'm called ada"), "welcome_back") and "you live in Hannover" in said
+
+
+def test_the_papers_sample_conversation(file: Path, look: Look) -> None:
+    with agent(file, knower(), topics=["home"]) as sim:
+        assert answers(sim, "what is your favorite animal") == "I know it."
+        assert asked(sim) == "home"
+        said = answers(sim, "hannover")
+        assert meant(said, "learned_home") and "persqa:respond" in sim.fired
+        sim.say("my name is ada")
+    assert look() == {"Ada": {"lives_in": ["Hannover"]}}  # also what he told before his name
+
+
+@pytest.mark.parametrize("phrase", ["Which town do you call your home?", "Oh, I should visit {home}."])
+def test_the_papers_own_words_are_among_the_phrases(phrase: str) -> None:
+    texts = [template.text for intent in ("ask_home", "learned_home") for template in BOOK.templates(intent)]
+    assert phrase in texts
+
+
+def test_each_intent_has_three_phrases_and_one_that_needs_nothing_unusual() -> None:
+    for intent in BOOK.intents:
+        assert len(BOOK.templates(intent)) >= 3, intent
+    for topic in persqa.Settings().topics:
+        needs = [template.parameters for template in BOOK.templates(f"ask_{topic}")]
+        assert not min(needs, key=len) or topic == "university"
+        assert min([t.parameters for t in BOOK.templates(f"learned_{topic}")], key=len) <= {topic}
+
+
+# ------------------------------------------------------------------------------------ manners
+
+
+@pytest.mark.parametrize("text", ["I'd rather not say", "none of your business", "no"])
+def test_who_would_rather_not_say_is_not_asked_again(file: Path, text: str) -> None:
+    with agent(file) as sim:
+        assert asked(sim) == "name"
+        assert meant(answers(sim, text), "declined")
+        topics = [asked(sim)]
+        for _ in range(12):
+            sim.say("hm, well.")
+            before = len(sim.said)
+            sim.advance(6.0)
+            if len(sim.said) > before:
+                topics.append(sim.read(persqa.talk).question.topic)  # pyright: ignore[reportOptionalMemberAccess]
+        assert "name" not in topics and "home" in topics
+        assert meant(answers(sim, "what is my name?"), "recall_declined")
+
+
+def test_no_means_that_there_is_none_and_dont_know_is_fine(file: Path, look: Look) -> None:
+    with agent(file, topics=["hobby", "occupation", "friend", "employer"]) as sim:
+        sim.say("my name is ada")
+        assert asked(sim) == "hobby"
+        assert meant(answers(sim, "no"), "none")
+        assert asked(sim) == "occupation"
+        assert meant(answers(sim, "i don't know"), "unsure")
+        assert asked(sim) == "friend"
+        assert meant(answers(sim, "nobody"), "none")
+        before = len(sim.said)
+        sim.advance(100.0)
+        assert len(sim.said) == before
+        assert sim.read(persqa.facts) == {"hobby": (), "friend": ()}
+        assert meant(answers(sim, "what is my hobby"), "recall_none")
+    assert look() == {"Ada": {}}
+
+
+def test_a_mere_yes_is_asked_on(file: Path) -> None:
+    with agent(file, topics=["hobby"]) as sim:
+        assert asked(sim) == "hobby"
+        assert meant(answers(sim, "yes"), "which")
+        assert meant(answers(sim, "chess"), "learned_hobby")
+
+
+def test_after_two_questions_left_without_a_word_it_waits(file: Path) -> None:
+    with agent(file) as sim:
+        sim.advance(600.0)
+        assert len(sim.said) == 2
+        sim.say("sorry, I was away.")
+        sim.advance(6.0)
+        assert len(sim.said) == 4  # small talk, and a third question
+
+
+def test_a_question_has_time(file: Path) -> None:
+    with agent(file, gap=30.0) as sim:
+        assert asked(sim) == "name"
+        sim.advance(25.0)
+        assert len(sim.said) == 1
+        assert meant(answers(sim, "ada"), "learned_name")
+
+
+def test_after_goodbye_nothing_is_asked(file: Path) -> None:
+    with agent(file, hibye) as sim:
+        assert asked(sim) == "name"
+        sim.say("bye")
+        assert "hibye:answer_goodbye" in sim.fired
+        before = len(sim.said)
+        sim.advance(300.0)
+        assert len(sim.said) == before
+
+
+def test_a_question_lapses(file: Path) -> None:
+    with agent(file, topics=["home"], within=40.0, gap=1000.0) as sim:
+        assert asked(sim) == "home"
+        sim.advance(60.0)
+        assert answers(sim, "hannover") == "I see."
+        assert dict(sim.read(persqa.facts)) == {}
+
+
+def test_a_no_to_what_another_module_asked_is_not_taken_for_an_answer(file: Path) -> None:
+    host = rs.Module("host", requires=[rawio])
+    offer = host.signal("offer")
+
+    @host.rule(when=offer, writes=rawio.output)
+    async def speak(ctx: rs.RuleContext) -> None:
+        ctx[rawio.output] = "Shall we play a game?"
+
+    with agent(file, host, topics=["hobby"]) as sim:
+        assert asked(sim) == "hobby"
+        sim.emit(offer)
+        assert answers(sim, "no") == "I see."
+        assert meant(answers(sim, "chess"), "learned_hobby")
+
+
+def test_it_takes_turns_with_others(file: Path) -> None:
+    host = rs.Module("host", requires=[verbaliser, idle])
+
+    @host.rule(when=idle.bored, writes=verbaliser.intent, cooldown=20.0)
+    async def speak(ctx: rs.RuleContext) -> None:
+        ctx[verbaliser.intent] = "bored"
+
+    with agent(file, host) as sim:
+        for _ in range(4):
+            sim.advance(6.0)
+            sim.say("hm, well.")
+        by = [name for name in sim.fired if name in ("persqa:ask", "host:speak")]
+    assert {by.count("persqa:ask"), by.count("host:speak")} == {2}
+
+
+# ------------------------------------------------------------------------------------ the user goes first
+
+
+def test_the_users_own_question_goes_first_and_the_answer_may_follow(file: Path) -> None:
+    with agent(file, knower()) as sim:
+        assert asked(sim) == "name"
+        assert answers(sim, "why do you ask?") == "I know it."
+        assert meant(answers(sim, "ada"), "learned_name")
+
+
+def test_what_is_told_beside_a_question_is_learnt_in_silence(file: Path, look: Look) -> None:
+    with agent(file, knower()) as sim:
+        sim.say("my name is ada")
+        assert asked(sim) == "home"
+        assert answers(sim, "hannover, and you?") == "I know it."
+        assert answers(sim, "i work as a baker. what do you do?") == "I know it."
+    assert look() == {"Ada": {"lives_in": ["Hannover"], "works_as": ["baker"]}}
+
+
+@pytest.mark.parametrize(
+    "text", ["what a nice day", "fine thanks", "i like trains", "", "...", "let's play a game"]
+)
+def test_small_talk_is_left_to_others_at_once(file: Path, text: str) -> None:
+    with agent(file) as sim:
+        assert asked(sim) == "name"
+        began = sim.now
+        assert answers(sim, text) == "I see."
+        assert sim.now == began
+        assert sim.read(persqa.who) is None
+
+
+def test_a_greeting_is_answered_by_who_greets_but_a_name_in_it_is_heard(file: Path) -> None:
+    with agent(file, hibye) as sim:
+        assert asked(sim) == "name"
+        answers(sim, "hello")
+        assert "hibye:answer_hello" in sim.fired
+        assert meant(answers(sim, "hello, i'm called ada"), "learned_name")
+
+
+def test_it_interrupts_small_talk_and_is_interrupted_by_the_user(file: Path) -> None:
+    with simulate(persqa, chatter(10.0), settings={"ontology": {"path": file}}) as sim:
+        sim.say("it is quiet here")
+        sim.advance(3.0)
+        assert meant(answers(sim, "my name is ada"), "learned_name")
+        sim.context.put(rawio.input, "i live in bremen")
+        sim.context.put(rawio.input, "i work as a baker")
+        sim.settle()
+        assert dict(sim.read(persqa.facts)) == {"home": ("Bremen",), "occupation": ("baker",)}
+        sim.advance(30.0)
+        assert "I see." not in sim.said
+
+
+def test_boredom_and_the_users_words_at_once(file: Path) -> None:
+    with agent(file) as sim:
+        sim.advance(4.999)
+        sim.context.put(rawio.input, "my name is ada")
+        sim.context.emit(idle.bored)
+        sim.settle()
+        assert sim.read(persqa.who)["name"] == "Ada"  # pyright: ignore[reportOptionalSubscript]
+
+
+# ------------------------------------------------------------------------------------ corrections
+
+
+def test_a_newcomer_is_renamed(file: Path, look: Look) -> None:
+    with agent(file) as sim:
+        sim.say("my name is ada and i live in ulm")
+        first = sim.read(persqa.who)
+        assert meant(answers(sim, "no, my name is bob"), "renamed")
+        second = sim.read(persqa.who)
+        assert first is not None and second is not None and first.id == second.id
+    assert look() == {"Bob": {"lives_in": ["Ulm"]}}
+
+
+def test_who_was_taken_for_another_is_not_made_of_him(file: Path, look: Look) -> None:
+    with agent(file) as sim:
+        sim.say("my name is ada and i live in hannover")
+    with agent(file) as sim:
+        assert meant(answers(sim, "my name is ada"), "welcome_back")
+        sim.say("i live in bremen")
+        assert meant(answers(sim, "no, my name is bob"), "renamed")
+        assert dict(sim.read(persqa.facts)) == {"home": ("Bremen",)}
+    assert look() == {"Ada": {"lives_in": ["Hannover"]}, "Bob": {"lives_in": ["Bremen"]}}
+
+
+def test_a_newcomer_who_turns_out_to_be_known(file: Path, look: Look) -> None:
+    with agent(file) as sim:
+        sim.say("my name is bob and i live in hannover")
+    with agent(file) as sim:
+        sim.say("my name is rob and i work as a baker")
+        said = answers(sim, "no, it's bob")
+        assert meant(said, "welcome_back") and "Hannover" in said
+    assert look() == {"Bob": {"lives_in": ["Hannover"], "works_as": ["baker"]}}
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "no, bremen",
+        "actually i live in bremen",
+        "bremen, not hannover",
+        "i moved to bremen",
+        "sorry, i meant bremen",
+    ],
+)
+def test_a_home_is_corrected(file: Path, look: Look, text: str) -> None:
+    with agent(file) as sim:
+        sim.say("my name is ada")
+        assert asked(sim) == "home"
+        sim.say("hannover")
+        assert meant(said := answers(sim, text), "corrected") and "you live in Bremen" in said
+    assert look() == {"Ada": {"lives_in": ["Bremen"]}}
+
+
+def test_what_is_no_longer_so_is_struck_and_asked_again(file: Path, look: Look) -> None:
+    with agent(file) as sim:
+        sim.say("my name is ada")
+        sim.say("i live in hannover")
+        assert meant(answers(sim, "i don't live there any more"), "struck")
+        assert asked(sim) == "home"
+    assert look() == {"Ada": {}}
+
+
+def test_a_second_hobby_is_added_and_a_correction_replaces_the_last(file: Path, look: Look) -> None:
+    with agent(file) as sim:
+        sim.say("my name is ada")
+        sim.say("my hobby is chess")
+        sim.say("my hobby is judo")
+        assert meant(answers(sim, "no, ludo"), "corrected")
+        assert meant(answers(sim, "my hobby is chess"), "known_already")
+    assert look() == {"Ada": {"has_hobby": ["chess", "ludo"]}}
+
+
+# ------------------------------------------------------------------------------------ who is who
+
+
+def test_of_two_of_one_name_the_better_known_is_meant(file: Path) -> None:
+    with agent(file) as sim:
+        memory = sim.read(ontology.memory)
+        assert memory is not None
+        memory.create("Person", name="Ada").result(20)
+        second = memory.create("Person", name="Ada").result(20)
+        memory.relate(second, "lives_in", memory.create("City", name="Ulm").result(20)).result(20)
+        memory.create("Person", name="Ada").result(20)
+        assert "you live in Ulm" in answers(sim, "i'm called ada")
+        assert sim.read(persqa.who) == second
+
+
+def test_who_was_only_told_about_is_new_when_he_comes(file: Path, look: Look) -> None:
+    with agent(file) as sim:
+        sim.say("my name is ada")
+        sim.say("my friends are called tom and anna")
+    with agent(file) as sim:
+        assert meant(answers(sim, "my name is tom"), "learned_name")
+        sim.say("i live in ulm")
+    assert look() == {"Ada": {"friend_of": ["Tom", "Anna"]}, "Tom": {"lives_in": ["Ulm"]}, "Anna": {}}
+
+
+def test_a_friend_of_ones_own_name_is_somebody_else(file: Path, look: Look) -> None:
+    with agent(file) as sim:
+        sim.say("my name is ada")
+        sim.say("my friend is called ada")
+        memory, who = sim.read(ontology.memory), sim.read(persqa.who)
+        assert memory is not None and who is not None
+        [friend] = memory.related(who, "friend_of").result(20)
+        assert friend.id != who.id
+
+
+@pytest.mark.parametrize(
+    ("text", "name"),
+    [
+        ("my name is 🦊", "🦊"),
+        ('my name is "; DROP', "Drop"),
+        ("my name is Robert'); MATCH (n) DETACH DELETE n;--", "Robert"),
+        ("my name is o'brien", "O'Brien"),
+        ("my name is `}) x", None),
+        ("my name is مريم", "مريم"),
+        ("my name is {name}", "Name"),
+        ("my name is ada\x00\x1b[31m", "Ada"),
+    ],
+)
+def test_unusual_names(file: Path, look: Look, text: str, name: str | None) -> None:
+    with agent(file) as sim:
+        sim.say("my friend is called kim")
+        said = answers(sim, text)
+        assert sim.failures == []
+        if name is not None:
+            assert meant(said, "learned_name")
+            assert answers(sim, "i live in ulm") != "I see."
+    people = look()
+    if name is not None:
+        assert people == {name: {"lives_in": ["Ulm"], "friend_of": ["Kim"]}, "Kim": {}}
+    else:
+        assert people == {} or "Kim" in people
+
+
+@pytest.mark.parametrize("text", ["ada " * 25_000, "a" * 100_000, "my name is " + "x" * 100_000])
+def test_100_kb_at_once(file: Path, look: Look, text: str) -> None:
+    with agent(file) as sim:
+        assert asked(sim) == "name"
+        assert answers(sim, text) == "I see."
+        assert meant(answers(sim, "ada"), "learned_name")
+        assert sim.failures == []
+    assert look() == {"Ada": {}}
+
+
+# ------------------------------------------------------------------------------------ questions about himself
+
+
+def test_questions_about_oneself(file: Path) -> None:
+    with agent(file, knower()) as sim:
+        assert meant(answers(sim, "do you know my name?"), "recall_stranger")
+        assert meant(answers(sim, "ada"), "learned_name")
+        assert meant(answers(sim, "do you remember me"), "recall_name")
+        assert meant(answers(sim, "where do i live?"), "recall_unknown")
+        assert meant(answers(sim, "in ulm"), "learned_home")
+        assert answers(sim, "do i live in ulm").endswith("you live in Ulm.")
+        assert meant(said := answers(sim, "do i live in bremen?"), "deny") and "Ulm" in said
+        sim.say("i work as an engineer at bosch")
+        said = answers(sim, "what do you know about me")
+        assert said.endswith("your name is Ada, you live in Ulm, you are an engineer and you work for Bosch.")
+        assert answers(sim, "where is the station?") == "I know it."
+        assert answers(sim, "where can i buy bread?") == "I know it."
+
+
+def test_nothing_is_known_yet(file: Path) -> None:
+    with agent(file) as sim:
+        assert meant(answers(sim, "what do you know about me?"), "recall_nothing")
+
+
+# ------------------------------------------------------------------------------------ to forget
+
+
+def test_forget_me(file: Path, look: Look) -> None:
+    with agent(file) as sim:
+        sim.say("my name is ada and i live in hannover")
+        assert meant(answers(sim, "please forget me"), "forget_ask")
+        assert meant(answers(sim, "no"), "forget_not")
+        assert sim.read(persqa.who) is not None
+        assert meant(answers(sim, "can you forget me?"), "forget_ask")
+        assert meant(answers(sim, "yes"), "forgotten")
+        assert sim.read(persqa.who) is None and dict(sim.read(persqa.facts)) == {}
+        before = len(sim.said)
+        sim.advance(300.0)
+        assert len(sim.said) == before
+        assert meant(answers(sim, "forget me"), "forget_nobody")
+    assert look() == {}
+
+
+def test_forgetting_is_not_done_by_the_way(file: Path, look: Look) -> None:
+    with agent(file, knower()) as sim:
+        sim.say("my name is ada")
+        assert meant(answers(sim, "forget me"), "forget_ask")
+        assert answers(sim, "what time is it?") == "I know it."
+        assert answers(sim, "i see") == "I see."
+        assert answers(sim, "yes") == "I see."
+    assert look() == {"Ada": {}}
+
+
+# ------------------------------------------------------------------------------------ without memory
+
+
+class Broken:
+    """Memory that fails."""
+
+    def __getattr__(self, name: str) -> Any:
+        async def fail(*_: object, **__: object) -> None:
+            raise PlatformError("the disk is full")
+
+        return fail
+
+
+def test_without_memory_the_talk_goes_on_and_the_user_is_told_once() -> None:
+    with agent(None) as sim:
+        assert sim.read(ontology.memory) is None
+        assert meant(answers(sim, "my name is ada"), "unsaved_name")
+        assert meant(answers(sim, "i live in ulm"), "learned_home")
+        assert answers(sim, "where do i live").endswith("you live in Ulm.")
+        assert meant(answers(sim, "no, my name is bob"), "renamed")
+        assert [rule for rule, _ in sim.failures] == ["ontology:open_up"]
+
+
+def test_what_could_not_be_written_is_written_later(
+    file: Path, look: Look, caplog: pytest.LogCaptureFixture
+) -> None:
+    with agent(file) as sim:
+        memory = sim.read(ontology.memory)
+        sim.put(ontology.memory, Broken())  # pyright: ignore[reportArgumentType]
+        assert meant(answers(sim, "my name is ada"), "unsaved_name")
+        assert meant(answers(sim, "i live in ulm"), "learned_home")
+        assert [
+            record.getMessage() for record in caplog.records if record.name == "ravestate.persqa.listen"
+        ] == ["the disk is full"]
+        assert meant(answers(sim, "forget me"), "forget_ask")
+        assert meant(answers(sim, "yes"), "forget_failed")
+        assert sim.read(persqa.who) is not None
+        sim.put(ontology.memory, memory)
+        assert meant(answers(sim, "i work as a baker"), "learned_occupation")
+        assert sim.failures == []
+    assert look() == {"Ada": {"lives_in": ["Ulm"], "works_as": ["baker"]}}
+
+
+def test_memory_that_fails_when_he_comes_knows_him_later(file: Path, look: Look) -> None:
+    with agent(file) as sim:
+        sim.say("my name is ada and i live in ulm")
+    with agent(file) as sim:
+        memory = sim.read(ontology.memory)
+        sim.put(ontology.memory, Broken())  # pyright: ignore[reportArgumentType]
+        sim.say("my name is ada")
+        sim.put(ontology.memory, memory)
+        sim.say("my hobby is chess")
+        assert answers(sim, "where do i live").endswith("you live in Ulm.")
+    assert look() == {"Ada": {"lives_in": ["Ulm"], "has_hobby": ["chess"]}}
+
+
+def test_without_nlp_it_leaves_the_talk_to_others(file: Path) -> None:
+    with simulate(
+        persqa, chatter(), settings={"ontology": {"path": file}, "nlp": {"pipeline": "nonsense"}}
+    ) as sim:
+        assert asked(sim) == "name"
+        assert answers(sim, "ada") == "I see."
+        assert [rule for rule, _ in sim.failures] == ["nlp:understand"]
+
+
+# ------------------------------------------------------------------------------------ users who come and go
+
+
+def test_a_user_who_comes_with_a_name_is_reminded(file: Path) -> None:
+    with agent(file) as sim:
+        sim.say("my name is ada and i live in ulm")
+    with agent(file) as sim:
+        sim.put(interloc.users, {"console": "Ada"})
+        sim.advance(6.0)
+        assert meant(sim.said[-1], "remind") and "you live in Ulm" in sim.said[-1]
+        assert asked(sim) == "origin"
+        assert answers(sim, "peru") != "I see."
+
+
+def test_a_user_without_a_name_gets_it_and_when_he_leaves_the_next_is_another(file: Path) -> None:
+    with agent(file) as sim:
+        sim.put(interloc.users, {"console": None})
+        sim.say("my name is ada")
+        assert dict(sim.read(interloc.users)) == {"console": "Ada"}
+        sim.say("no, my name is bob")
+        assert dict(sim.read(interloc.users)) == {"console": "Bob"}
+        sim.put(interloc.users, {})
+        assert sim.read(persqa.who) is None and dict(sim.read(persqa.facts)) == {}
+        before = len(sim.said)
+        sim.advance(60.0)
+        assert len(sim.said) == before  # nobody is there
+        sim.put(interloc.users, {"console": None})
+        assert asked(sim) == "name"
+
+
+# ------------------------------------------------------------------------------------ what it is
+
+
+def test_a_topic_that_is_none_is_refused() -> None:
+    with pytest.raises(rs.DeclarationErrors) as refused:
+        simulate(persqa, settings={"persqa": {"topics": ["hobbies"]}})
+    assert "there is no topic 'hobbies'" in str(refused.value.exceptions[0])
+
+
+def test_its_answer_outbids_greetings_and_small_talk() -> None:
+    policy = rs.compile(persqa, hibye, chatter(), knower())
+    mine = policy.utility("persqa:respond")
+    for other in ("hibye:answer_hello", "hibye:answer_goodbye", "chatter:chat", "knower:answer"):
+        assert mine > policy.utility(other)
+
+
+def test_nothing_heavy_is_imported_with_the_module() -> None:
+    code = "import sys; from ravestate.modules import persqa; persqa.module; print('spacy' in sys.modules, 'ladybug' in sys.modules)"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout == "False False\n"
