@@ -87,7 +87,7 @@ def test_constraints_are_annotated() -> None:
         "any age",
         "≥ wait s",
         "≤ 0.5 s, where is_short",
-        "where …",
+        "where",
         "holds is_short",
     }
 

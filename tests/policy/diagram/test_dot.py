@@ -38,3 +38,9 @@ def test_a_loop_as_text() -> None:
     assert 'digraph "Signal-Rule-Slot diagram" {' in text
     assert "style=dotted, penwidth=2, arrowhead=empty" in text
     assert 'label=" ≥ 10 s "' in text
+
+
+def test_its_comments_explain_what_is_in_the_picture_and_nothing_else() -> None:
+    text = dot(Diagram((Node("a", "signal", "a"), Node("b", "rule", "b")), (Edge("a", "b", "condition"),)))
+    comments = [line.split(":")[0].strip() for line in text.splitlines() if line.startswith("  //")]
+    assert comments == ["// signal", "// rule", "// condition"]

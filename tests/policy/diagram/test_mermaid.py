@@ -45,3 +45,11 @@ def test_the_worked_example_as_text() -> None:
 def test_too_many_edges_for_mermaids_default_are_mentioned() -> None:
     assert "maxEdges" in mermaid(build(many_rules(250).rules))
     assert "maxEdges" not in mermaid(build(games().rules))
+
+
+def test_its_comments_explain_what_is_in_the_picture_and_nothing_else() -> None:
+    text = mermaid(
+        Diagram((Node("a", "signal", "a"), Node("b", "rule", "b")), (Edge("a", "b", "condition"),))
+    )
+    comments = [line.split()[1] for line in text.splitlines() if line.startswith("  %%")]
+    assert comments == ["signal", "rule", "condition"]

@@ -7,7 +7,8 @@ from xml.etree import ElementTree
 import pytest
 from hypothesis import given
 
-from policy.diagram.examples import diagrams, games, many_rules, prompting
+from policy.diagram.examples import diagrams, games, many_rules, prompting, rule
+from ravestate.declare.module import Module
 from ravestate.policy.diagram.build import build
 from ravestate.policy.diagram.graph import Diagram, Edge, Node
 from ravestate.policy.diagram.notation import EDGES, NODES
@@ -65,9 +66,27 @@ def test_the_edges_are_told_in_words() -> None:
     assert "prompt:prompted is condition of a conjunction (any age)" in titles
 
 
-def test_the_legend_has_the_whole_notation() -> None:
-    shown = texts(parsed(Diagram((), ())), "text")
-    assert sorted(shown) == sorted([*NODES.values(), *EDGES.values()])
+def legend(diagram: Diagram) -> list[str]:
+    (key,) = (group for group in parsed(diagram).iter(f"{SVG}g") if group.get("class") == "srs-legend")
+    return [text.text or "" for text in key.iter(f"{SVG}text")]
+
+
+def test_the_legend_has_the_whole_notation_where_all_of_it_is_used() -> None:
+    nodes = tuple(Node(kind, kind) for kind in NODES)
+    diagram = Diagram(nodes, tuple(Edge("slot", "rule", kind) for kind in EDGES))
+    plain, junctions = list(NODES.values())[:3], list(NODES.values())[3:]
+    assert legend(diagram) == [*plain, *EDGES.values(), *junctions]
+
+
+def test_the_legend_explains_what_is_in_the_picture_and_nothing_else() -> None:
+    assert legend(Diagram((), ())) == []
+    module = Module("m")
+    rule(module, "r", module.signal("a"))
+    assert legend(build(module.rules)) == ["signal", "rule", "condition"]
+    rule(module, "s", module.signal("b") & module.signal("c").detached(), emits=module.signal("d"))
+    assert legend(build(module.rules)) == [
+        "signal", "rule", "emits", "condition", "detached condition", "conjunction",
+    ]  # fmt: skip
 
 
 def test_it_is_light_and_dark_and_loads_nothing() -> None:

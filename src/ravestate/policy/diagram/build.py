@@ -113,10 +113,10 @@ def _note(rule: Rule[Any, Any]) -> str:
 
 def _label(term: Constraint | Holds) -> str:
     if isinstance(term, Holds):
-        return f"holds {_title(term.predicate)}"
+        return _predicate("holds", term.predicate)
     words = [
         _ages(term.min_age_, term.max_age_),
-        *(f"where {_title(predicate)}" for predicate in term.predicates),
+        *(_predicate("where", predicate) for predicate in term.predicates),
     ]
     return ", ".join(word for word in words if word)
 
@@ -134,6 +134,7 @@ def _number(number: Number) -> str:
     return number.name if isinstance(number, SettingRef) else f"{number:g}"
 
 
-def _title(predicate: Callable[[Any], object]) -> str:
+def _predicate(what: str, predicate: Callable[[Any], object]) -> str:
+    """A predicate by its name, if it has one."""
     name = getattr(predicate, "__name__", type(predicate).__name__)
-    return "…" if name == "<lambda>" else name
+    return what if name == "<lambda>" else f"{what} {name}"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ravestate.policy.diagram.graph import Diagram, EdgeKind, Node, NodeKind
-from ravestate.policy.diagram.notation import EDGES, JUNCTIONS, NODES, describe
+from ravestate.policy.diagram.notation import EDGES, JUNCTIONS, NODES, describe, used
 from ravestate.policy.diagram.style import EDGE_STYLES, NODE_COLOURS, TEXT
 from ravestate.policy.diagram.text import clean
 
@@ -29,7 +29,7 @@ _LINES: dict[EdgeKind, str] = {
 def dot(diagram: Diagram) -> str:
     """Write a diagram in the DOT language. Names may hold any characters."""
     ids = {node.id: f"n{i}" for i, node in enumerate(diagram.nodes)}
-    lines = ['digraph "Signal-Rule-Slot diagram" {', *_legend()]
+    lines = ['digraph "Signal-Rule-Slot diagram" {', *_legend(diagram)]
     lines.append('  graph [rankdir=LR, charset="UTF-8", fontname="Helvetica", nodesep=0.25, ranksep=0.45];')
     lines.append(f'  node [fontname="Helvetica", fontsize=12, fontcolor="{TEXT.light}"];')
     lines.append(f'  edge [fontname="Helvetica", fontsize=9, fontcolor="{TEXT.light}", arrowsize=0.8];')
@@ -49,9 +49,12 @@ def dot(diagram: Diagram) -> str:
     return "\n".join(lines) + "\n"
 
 
-def _legend() -> list[str]:
-    nodes = [f"  // {NODES[kind]}: {shape}" for kind, shape in _SHAPES.items()]
-    return [*nodes, *(f"  // {EDGES[kind]}: {line}" for kind, line in _LINES.items())]
+def _legend(diagram: Diagram) -> list[str]:
+    nodes, edges = used(diagram)
+    return [
+        *(f"  // {NODES[kind]}: {_SHAPES[kind]}" for kind in nodes),
+        *(f"  // {EDGES[kind]}: {_LINES[kind]}" for kind in edges),
+    ]
 
 
 def _label(node: Node) -> str:

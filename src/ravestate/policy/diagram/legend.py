@@ -1,4 +1,4 @@
-"""The legend below the picture: the whole notation, in the order of the paper's table."""
+"""The legend below the picture: what of the notation is in it, in the order of the paper's table."""
 
 from __future__ import annotations
 
@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
 
-from ravestate.policy.diagram.graph import EdgeKind, NodeKind
+from ravestate.policy.diagram.graph import Diagram, EdgeKind, NodeKind
 from ravestate.policy.diagram.layout import Box
-from ravestate.policy.diagram.notation import EDGES, JUNCTIONS, NODES
+from ravestate.policy.diagram.notation import EDGES, JUNCTIONS, NODES, used
 from ravestate.policy.diagram.shapes import line, number, outline
 from ravestate.policy.diagram.sizes import SMALL
 from ravestate.policy.diagram.text import width
@@ -35,15 +35,18 @@ class Legend:
     height: float
 
 
-def legend(x: float, y: float, room: float, prefix: str) -> Legend:
-    """Draw the legend from (x, y) on, in rows of at most `room` pixels."""
-    plain: list[NodeKind] = [kind for kind in NODES if kind not in JUNCTIONS]
-    junctions: list[NodeKind] = [kind for kind in NODES if kind in JUNCTIONS]
+def legend(diagram: Diagram, x: float, y: float, room: float, prefix: str) -> Legend:
+    """Draw the legend of a diagram from (x, y) on, in rows of at most `room` pixels."""
+    nodes, edges = used(diagram)
+    plain: list[NodeKind] = [kind for kind in nodes if kind not in JUNCTIONS]
+    junctions: list[NodeKind] = [kind for kind in nodes if kind in JUNCTIONS]
     entries = [
         *((NODES[kind], _SAMPLE[kind], partial(_node, kind)) for kind in plain),
-        *((words, _EDGE, partial(_edge, kind, prefix)) for kind, words in EDGES.items()),
+        *((EDGES[kind], _EDGE, partial(_edge, kind, prefix)) for kind in edges),
         *((NODES[kind], _SAMPLE[kind], partial(_node, kind)) for kind in junctions),
     ]
+    if not entries:
+        return Legend("", 0.0, 0.0)
     wide = [sample + _TEXT + width(words, SMALL) for words, sample, _ in entries]
     places = _rows(wide, room)
     found: list[str] = []

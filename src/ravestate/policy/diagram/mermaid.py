@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ravestate.policy.diagram.graph import Diagram, Edge, EdgeKind, Node, NodeKind
-from ravestate.policy.diagram.notation import EDGES, JUNCTIONS, NODES
+from ravestate.policy.diagram.notation import EDGES, JUNCTIONS, NODES, used
 from ravestate.policy.diagram.style import EDGE_STYLES, NODE_COLOURS, TEXT
 from ravestate.policy.diagram.text import clean
 
@@ -38,7 +38,7 @@ _PLAIN = " _:,×≥≤–…"  # beside letters and digits
 def mermaid(diagram: Diagram) -> str:
     """Write a diagram as a Mermaid flowchart. Names may hold any characters."""
     ids = {node.id: f"n{i}" for i, node in enumerate(diagram.nodes)}
-    lines = ["flowchart LR", *_legend()]
+    lines = ["flowchart LR", *_legend(diagram)]
     if len(diagram.edges) > _MOST_EDGES:
         lines.append(
             f"  %% {len(diagram.edges)} edges: Mermaid draws {_MOST_EDGES} unless initialised with a greater maxEdges"
@@ -61,10 +61,12 @@ def mermaid(diagram: Diagram) -> str:
     return "\n".join(lines) + "\n"
 
 
-def _legend() -> list[str]:
-    nodes = [f"  %% {NODES[kind]} {before} {after}" for kind, (before, after) in _SHAPES.items()]
-    edges = [f"  %% {EDGES[kind]} {arrow} {EDGE_STYLES[kind].paint.light}" for kind, arrow in _ARROWS.items()]
-    return [*nodes, *edges]
+def _legend(diagram: Diagram) -> list[str]:
+    nodes, edges = used(diagram)
+    return [
+        *(f"  %% {NODES[kind]} {' '.join(_SHAPES[kind])}" for kind in nodes),
+        *(f"  %% {EDGES[kind]} {_ARROWS[kind]} {EDGE_STYLES[kind].paint.light}" for kind in edges),
+    ]
 
 
 def _class(kind: NodeKind) -> str:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from ravestate.policy.diagram.graph import EdgeKind, Node, NodeKind
+from ravestate.policy.diagram.graph import Diagram, EdgeKind, Node, NodeKind
 
-__all__ = ["EDGES", "JUNCTIONS", "NODES", "describe"]
+__all__ = ["EDGES", "JUNCTIONS", "NODES", "describe", "used"]
 
 NODES: dict[NodeKind, str] = {
     "slot": "slot",
@@ -35,3 +35,10 @@ def describe(node: Node) -> str:
     if node.name:
         words += f" {node.name}"
     return f"{words} ({node.note})" if node.note else words
+
+
+def used(diagram: Diagram) -> tuple[list[NodeKind], list[EdgeKind]]:
+    """The kinds of nodes and of edges that a diagram has, in the order of the table: what its legend explains."""
+    nodes = {node.kind for node in diagram.nodes}
+    edges = {edge.kind for edge in diagram.edges}
+    return [kind for kind in NODES if kind in nodes], [kind for kind in EDGES if kind in edges]

@@ -39,7 +39,7 @@ def svg(diagram: Diagram) -> str:
     prefix = "srs-" + hashlib.sha256(repr(diagram).encode("utf-8", "backslashreplace")).hexdigest()[:8]
     nodes = {node.id: node for node in diagram.nodes}
     top = _MARGIN + layout.height + (28.0 if diagram.nodes else 0.0)
-    key = legend(_MARGIN, top, max(layout.width, NARROWEST), prefix)
+    key = legend(diagram, _MARGIN, top, max(layout.width, NARROWEST), prefix)
     width = max(layout.width, key.width) + 2 * _MARGIN
     height = top + key.height + _MARGIN
     drawn = [
