@@ -114,3 +114,9 @@ def test_each_intent_that_comes_with_it_is_in_both_languages() -> None:
         assert english is not german
         assert {t.parameters for t in english} == {t.parameters for t in german}
         assert min(len(english), len(german)) > 1
+
+
+def test_an_intent_may_bring_its_own_phrases() -> None:
+    own = Intent("greet", {"name": "Ada"}, phrases={"en": ["Ahoy {name}!", "Oh, {name}."], "de": ["Moin!"]})
+    assert set(said(own, own)) == {"Ahoy Ada!", "Oh, Ada."}  # not those of the files, and not twice running
+    assert said(own, language="de-AT") == ["Moin!"]

@@ -66,6 +66,12 @@ def test_that_it_is_a_question_may_be_known_from_elsewhere() -> None:
     assert asked("you live where", question=True) == ["you live where"]
 
 
+def test_what_is_known_as_a_question_counts_whatever_it_looks_like() -> None:
+    known = {"with whom do i have the pleasure"}
+    assert about_agent("With whom do I have the pleasure?", (), known)[0]
+    assert not about_agent("With whom do I have the pleasure?")[0]
+
+
 def test_of_several_sentences_the_questions_are_kept() -> None:
     assert asked("Hello! My father is a baker. Who is your father? I wonder.") == ["who is your father"]
 

@@ -13,9 +13,23 @@ from ravestate.modules import agentqa
 from ravestate.modules.skill.agentqa import Life, read_life
 from ravestate.testing import simulate
 
-TOPICS = (
-    "identity name age hobbies likes origin home father siblings friends ambition membership abilities learned how_are_you"
-).split()
+TOPICS = [
+    "identity",
+    "name",
+    "age",
+    "hobbies",
+    "likes",
+    "origin",
+    "home",
+    "father",
+    "siblings",
+    "friends",
+    "ambition",
+    "membership",
+    "abilities",
+    "learned",
+    "how_are_you",
+]
 
 
 def life_of(text: str, tmp_path: Path) -> Life:
@@ -37,7 +51,9 @@ def test_a_fact_is_replaced_added_or_taken_away_and_the_rest_stays(tmp_path: Pat
         "facts: {name: Robin, born: 2020-02-29, hobbies: [chess], home: ~, wheels: 3, siblings: []}", tmp_path
     )
     assert life.name == "Robin" and life.born == date(2020, 2, 29)
-    assert life.facts["hobbies"] == ("chess",) and life.facts["wheels"] == "3" and life.facts["siblings"] == ()
+    assert (
+        life.facts["hobbies"] == ("chess",) and life.facts["wheels"] == "3" and life.facts["siblings"] == ()
+    )
     assert "home" not in life.facts
     assert life.facts["friends"] == read_life().facts["friends"]
     assert life.topics == read_life().topics
@@ -75,7 +91,10 @@ def test_an_empty_file_changes_nothing(text: str, tmp_path: Path) -> None:
         ("- a list", "mine.yaml:1: the file has facts, topics and others"),
         ("fcts: {}", "mine.yaml:1: 'fcts' means nothing here; did you mean 'facts'"),
         ("facts: [a]", "mine.yaml:1: facts have names"),
-        ("facts:\n  born: yesterday", "mine.yaml:2: born: 'yesterday' is no date: write for example 2024-03-01"),
+        (
+            "facts:\n  born: yesterday",
+            "mine.yaml:2: born: 'yesterday' is no date: write for example 2024-03-01",
+        ),
         ("facts:\n  name: ~", "the agent needs a name"),
         ("facts:\n  age: 3", "mine.yaml:2: age is not told here, but follows from elsewhere: write born:"),
         ("facts:\n  name: [a, b]", "name is one text"),

@@ -24,6 +24,8 @@ def test_a_slip_is_mended(written: str, meant: str) -> None:
     assert KNOWN.mended(written) == meant
 
 
-@pytest.mark.parametrize("written", ["friends", "nme", "sixter", "iblings", "fiend", "hobby", "quite other", ""])
+@pytest.mark.parametrize(
+    "written", ["friends", "nme", "sixter", "iblings", "fiend", "hobby", "quite other", ""]
+)
 def test_what_is_known_short_ambiguous_or_something_else_stays(written: str) -> None:
     assert KNOWN.mended(written) == written

@@ -31,13 +31,18 @@ class Asked:
 
 
 def about_agent(
-    utterance: str, names: Collection[str] = (), *, question: bool = False
+    utterance: str,
+    names: Collection[str] = (),
+    known: Collection[str] = frozenset(),
+    *,
+    question: bool = False,
 ) -> tuple[list[Asked], str]:
     """Return the questions that may be about the agent, and why the last sentence that holds none does not.
 
     Args:
         utterance: What the user said.
         names: What the agent is called; it stands for *you*.
+        known: Questions about the agent in the plain form, which count as such whatever they look like.
         question: Whether it is known already to ask something.
 
     Example:
@@ -51,11 +56,16 @@ def about_agent(
     sentences = [s for s in _SENTENCE.findall(utterance[:LONGEST]) if any(c.isalpha() for c in s)]
     for sentence in sentences[: 2 * SENTENCES]:
         words, told = _unwrapped(_words(sentence, names))
-        reason = _unfit(words, told or sentence.endswith("?") or (question and len(sentences) == 1))
+        text = " ".join(words)
+        reason = (
+            ""
+            if text in known
+            else _unfit(words, told or sentence.endswith("?") or (question and len(sentences) == 1))
+        )
         if reason:
             why = reason
         else:
-            found.append(Asked(" ".join(words), not _YOU.isdisjoint(words)))
+            found.append(Asked(text, not _YOU.isdisjoint(words)))
     return found[:SENTENCES], why
 
 

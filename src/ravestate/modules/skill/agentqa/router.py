@@ -74,6 +74,7 @@ class Router:
         """`life`: its topics, and what belongs to none; `encoder`: by default the bundled one."""
         self.life = life
         self._encoder = encoder or Encoder()
+        self._known = frozenset(plain(q) for topic in life.topics.values() for q in topic.questions)
         self._lock = threading.Lock()
         self._learnt: _Learnt | None = None
 
@@ -98,7 +99,7 @@ class Router:
         Raises:
             PlatformError: See `load`.
         """
-        candidates, why = about_agent(utterance, (self.life.name, *names), question=question)
+        candidates, why = about_agent(utterance, (self.life.name, *names), self._known, question=question)
         if not candidates:
             return Miss(why)
         self.load()

@@ -1,0 +1,234 @@
+"""The agent speaks of itself when it is asked to, before anybody else answers, and leaves the rest to others."""
+
+from __future__ import annotations
+
+import itertools
+import logging
+from datetime import date
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import ravestate as rs
+from ravestate.modules import agentqa, idle, nlp, ontology, rawio, verbaliser
+from ravestate.modules.meta.verbaliser.intents import Intent
+from ravestate.modules.skill.agentqa import Router
+from ravestate.testing import Simulation, simulate
+
+pytestmark = pytest.mark.usefixtures("router")  # the model is loaded, and the topics are learnt
+
+chatter = rs.Module("chatter", requires=[rawio])
+encyclopaedia = rs.Module("encyclopaedia", requires=[nlp, verbaliser])
+asker = rs.Module("asker", requires=[idle, verbaliser])
+found = encyclopaedia.signal("found")
+
+
+@chatter.rule(when=rawio.input.changed, writes=rawio.output)
+async def talk(ctx: rs.RuleContext) -> None:
+    ctx[rawio.output] = "chatter"
+
+
+@encyclopaedia.rule(when=rawio.input.changed & nlp.is_question, emits=found)
+async def find(ctx: rs.RuleContext) -> None:
+    ctx.emit(found)
+
+
+@encyclopaedia.rule(when=found, writes=verbaliser.intent)
+async def explain(ctx: rs.RuleContext) -> None:
+    ctx[verbaliser.intent] = Intent("explain", phrases={"en": ["encyclopaedia"]})
+
+
+@asker.rule(when=idle.bored, writes=verbaliser.intent, weight=1.1, cooldown=60.0)
+async def ask(ctx: rs.RuleContext) -> None:
+    ctx[verbaliser.intent] = Intent("ask", phrases={"en": ["What is your name?"]})
+
+
+def start(tmp_path: Path, *modules: Any, own: str = "", bored: float = 1e6, **more: Any) -> Any:
+    settings: dict[str, Any] = {
+        "ontology": {"path": tmp_path / "memory.lbug"},
+        "idle": {"bored_after": bored},
+        "agentqa": {},
+    }
+    if own:
+        (tmp_path / "own.yaml").write_text(own)
+        settings["agentqa"]["life"] = tmp_path / "own.yaml"
+    settings["agentqa"] |= more
+    return simulate(agentqa, *modules, settings=settings)
+
+
+def say(sim: Simulation, text: str) -> str:
+    before = len(sim.said)
+    sim.say(text)
+    [said] = sim.said[before:]
+    return said
+
+
+def phrases(sim: Simulation, topic: str) -> tuple[str, ...]:
+    life = sim.read(agentqa.life)
+    assert life is not None
+    return (*life.topics[topic].phrases, *life.topics[topic].otherwise)
+
+
+def test_questions_about_the_agent_are_answered_and_nobody_else_speaks(tmp_path: Path) -> None:
+    own = """
+    facts: {name: Robin, hobbies: [chess], friends: [Ada, Bob]}
+    topics:
+      hobbies: {phrases: "I play {hobbies}."}
+      friends: {phrases: "{friends}, of course."}
+      name: {phrases: "{name}."}
+    """
+    with start(tmp_path, chatter, encyclopaedia, own=own) as sim:
+        assert say(sim, "What are your hobbies?") == "I play chess."
+        assert say(sim, "tell me about your friends") == "Ada and Bob, of course."
+        assert say(sim, "hi, whats ur name") == "Robin."
+        assert say(sim, "what is Robin called?") == "Robin."
+        assert sim.failures == []
+
+
+@pytest.mark.parametrize(
+    ("text", "who"),
+    [
+        ("What is my name?", "encyclopaedia"),
+        ("how old is the queen", "encyclopaedia"),
+        ("will it rain today", "encyclopaedia"),
+        ("what are you up to today", "encyclopaedia"),
+        ("My father is a baker.", "chatter"),
+        ("you are nice", "chatter"),
+        ("open the door please", "chatter"),
+        ("", "chatter"),
+        ("x" * 100_000, "chatter"),
+        ("how old are " * 9_000, "chatter"),
+        ("🙂\x00\x1b[2J مرحبا", "chatter"),
+    ],
+)
+def test_everything_else_is_left_to_others(text: str, who: str, tmp_path: Path) -> None:
+    with start(tmp_path, chatter, encyclopaedia) as sim:
+        assert say(sim, text) == who
+        assert sim.failures == []
+
+
+def test_it_wins_over_whoever_else_found_an_answer_however_they_are_declared() -> None:
+    for modules in ((agentqa, encyclopaedia), (encyclopaedia, agentqa)):
+        pair = {"agentqa:answer", "encyclopaedia:explain"}
+        [conflict] = [one for one in rs.compile(*modules).conflicts() if {one.first, one.second} == pair]
+        assert conflict.winner == "agentqa:answer" and conflict.margin > 1.0 and not conflict.tie
+
+
+def test_a_question_that_is_said_for_ever_is_answered_once(tmp_path: Path) -> None:
+    with start(tmp_path, chatter) as sim:
+        sim.put(agentqa.today, date(2026, 3, 1))
+        assert "2 years" in say(sim, "How old are you? " * 6_000)
+
+
+def test_how_are_you_is_answered_with_the_mood(tmp_path: Path) -> None:
+    own = "topics: {how_are_you: {phrases: 'I am {mood}. And you?'}}"
+    with start(tmp_path, own=own) as sim:
+        assert say(sim, "how are you") == "I am fine. And you?"
+        sim.put(agentqa.mood, "a little shy")
+        assert say(sim, "Hello, how are you today?") == "I am a little shy. And you?"
+
+
+def test_the_age_is_counted_from_the_day_of_the_context_and_goes_on(tmp_path: Path) -> None:
+    own = "{facts: {born: 2020-03-02}, topics: {age: {phrases: '{age}'}}}"
+    with start(tmp_path, own=own) as sim:
+        sim.put(agentqa.today, date(2026, 3, 1))
+        assert say(sim, "how old are you") == "5 years"
+        sim.advance(86_400)
+        assert say(sim, "how old are you") == "6 years"
+
+
+def test_it_does_not_say_the_same_twice_running(tmp_path: Path) -> None:
+    with start(tmp_path) as sim:
+        said = [say(sim, "where do you live") for _ in range(8)]
+        assert all(first != second for first, second in itertools.pairwise(said))
+
+
+def test_what_it_knows_nothing_of_is_left_to_others(tmp_path: Path) -> None:
+    own = "{facts: {home: ~}, topics: {home: {phrases: 'In {home}.'}}}"
+    with start(tmp_path, chatter, own=own) as sim:
+        assert say(sim, "where do you live") == "chatter"
+        assert "its phrases lack a fact" in str(sim.explain("agentqa:answer"))
+
+
+def test_why_it_did_not_answer_is_explained(tmp_path: Path) -> None:
+    with start(tmp_path, chatter) as sim:
+        say(sim, "what are you up to today")
+        assert "nearer to what is not about me" in str(sim.explain("agentqa:understand"))
+
+
+def test_answers_come_from_memory_and_follow_the_file(tmp_path: Path) -> None:
+    own = "{facts: {friends: [Ada]}, topics: {friends: {phrases: '{friends}', otherwise: Nobody.}}}"
+    with start(tmp_path, own=own) as sim:
+        memory = sim.read(ontology.memory)
+        assert memory is not None
+        [node] = memory.find("Robot").result()
+        assert [friend["name"] for friend in memory.related(node, "friend_of").result()] == ["Ada"]
+        memory.relate(node, "friend_of", memory.create("Person", name="Bob").result()).result()
+        assert say(sim, "who are your friends") == "Ada and Bob"
+    with start(tmp_path, own=own.replace("Ada", "Cy")) as sim:
+        assert say(sim, "who are your friends") == "Cy"
+
+
+def test_without_memory_the_file_counts(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
+    (tmp_path / "memory.lbug").write_text("this is no memory")
+    own = "{facts: {friends: [Ada]}, topics: {friends: {phrases: '{friends}'}}}"
+    with caplog.at_level(logging.CRITICAL, "ravestate"), start(tmp_path, own=own) as sim:
+        assert say(sim, "who are your friends") == "Ada"
+        [failure] = sim.failures
+        assert "ontology" in str(failure)  # which tells it, once
+
+
+def test_memory_that_fails_meanwhile_does_not_silence_it(tmp_path: Path) -> None:
+    own = "{facts: {friends: [Ada]}, topics: {friends: {phrases: '{friends}'}}}"
+    with start(tmp_path, own=own) as sim:
+        memory = sim.read(ontology.memory)
+        assert memory is not None
+        memory.close().result()
+        assert say(sim, "who are your friends") == "Ada"
+
+
+def test_without_the_sentence_model_others_answer_and_it_says_what_to_install(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from ravestate.modules.skill.agentqa import rules
+
+    class Without:
+        def __init__(self, folder: Path) -> None:
+            self.folder = folder
+
+        def __call__(self, life: Any) -> Router:
+            from ravestate.modules._sentences import Encoder
+
+            return Router(life, Encoder(self.folder))
+
+    monkeypatch.setattr(rules, "router_of", Without(tmp_path))
+    with start(tmp_path, chatter) as sim:
+        assert say(sim, "how old are you") == "chatter"
+        assert "model.onnx" in str(sim.failures)
+
+
+def test_silence_makes_it_offer_to_be_asked_now_and_then(tmp_path: Path) -> None:
+    with start(tmp_path, chatter, bored=5.0, prompt_every=100.0) as sim:
+        sim.say("hm")
+        sim.advance(90.0)
+        assert len(sim.said) == 2  # chatter, and one offer
+        sim.advance(20.0)
+        assert len(sim.said) == 3
+        assert sim.said[1] != sim.said[2]
+        assert say(sim, "How old are you?") not in ("chatter", *sim.said[:3])
+
+
+def test_it_takes_turns_with_others_who_use_the_silence(tmp_path: Path) -> None:
+    with start(tmp_path, asker, bored=5.0) as sim:
+        sim.advance(11.0)
+        assert len(sim.said) == 2 and sim.said[0] == "What is your name?" != sim.said[1]
+
+
+def test_answers_are_phrases_of_the_topic(tmp_path: Path) -> None:
+    with start(tmp_path) as sim:
+        assert say(sim, "do you have siblings") in phrases(sim, "siblings")
+        assert say(sim, "what is your favorite animal") in (
+            "My favourite animal is the octopus.",
+            "My favourite animal? That is the octopus.",
+        )

@@ -1,0 +1,91 @@
+"""Facts in words, and the phrases that they allow."""
+
+from __future__ import annotations
+
+from datetime import date
+
+import pytest
+
+from ravestate.modules.skill.agentqa import Topic
+from ravestate.modules.skill.agentqa.life import Fact
+from ravestate.modules.skill.agentqa.telling import age, listed, telling
+
+DAY = date(2026, 3, 1)
+
+
+def told(topic: Topic, question: str = "", **facts: Fact) -> tuple[str, ...] | None:
+    return telling(topic, question, facts, mood="fine", today=DAY)
+
+
+@pytest.mark.parametrize(
+    ("items", "text"),
+    [(["a"], "a"), (["a", "b"], "a and b"), (["a", "b", "c"], "a, b and c")],
+)
+def test_lists_are_joined_as_one_says_them(items: list[str], text: str) -> None:
+    assert listed(items) == text
+
+
+@pytest.mark.parametrize(
+    ("born", "words"),
+    [
+        (date(2026, 3, 1), "0 days"),
+        (date(2026, 2, 28), "1 day"),
+        (date(2026, 3, 5), "0 days"),  # not born yet
+        (date(2026, 1, 2), "58 days"),
+        (date(2026, 1, 1), "2 months"),
+        (date(2025, 3, 2), "11 months"),
+        (date(2025, 3, 1), "1 year"),
+        (date(2024, 3, 2), "1 year"),
+        (date(2024, 2, 29), "2 years"),
+        (date(1926, 3, 1), "100 years"),
+    ],
+)
+def test_age_is_counted_in_the_unit_that_fits(born: date, words: str) -> None:
+    assert age(born, DAY) == words
+
+
+def test_phrases_whose_facts_are_known_may_be_said() -> None:
+    topic = Topic("home", (), ("I live in {home}.", "I live in {home} with {cat}."), ("Nowhere.",))
+    assert told(topic, home="Rome") == ("I live in Rome.",)
+    assert told(topic, home="Rome", cat=("Tom", "Ann")) == (
+        "I live in Rome.",
+        "I live in Rome with Tom and Ann.",
+    )
+    assert told(topic) == told(topic, home=()) == ("Nowhere.",)
+    assert told(Topic("home", (), ("I live in {home}.",))) is None
+
+
+def test_age_mood_and_birthday_are_facts_too() -> None:
+    topic = Topic("age", (), ("{age} since {born}, and {mood}.",))
+    assert told(topic, born="2024-02-29") == ("2 years since 29 February 2024, and fine.",)
+
+
+def test_what_the_question_names_is_what_the_answer_is_about() -> None:
+    topic = Topic(
+        "likes",
+        (),
+        ("I like {likes}.",),
+        named=(
+            ("favourites", ("My {it} is {that}.",)),
+            ("likes", ("Yes, {it}.",)),
+            ("enemy", ("Not {it}.",)),
+        ),
+    )
+    facts: dict[str, Fact] = {
+        "likes": ("tea", "ice cream"),
+        "favourites": (("colour", "blue"),),
+        "enemy": "rust",
+    }
+    assert told(topic, "what is your favourite colour", **facts) == ("My colour is blue.",)
+    assert told(topic, "do you like ice cream", **facts) == ("Yes, ice cream.",)
+    assert told(topic, "do you like rust", **facts) == ("Not rust.",)
+    assert told(topic, "do you like steam", **facts) == ("I like tea and ice cream.",)  # not tea
+
+
+def test_a_fact_that_begins_a_sentence_has_a_capital() -> None:
+    topic = Topic("hobbies", (), ("{hobbies}. My hobbies? {hobbies}: {hobbies}, {hobbies}",))
+    assert told(topic, hobbies="chess") == ("Chess. My hobbies? Chess: Chess, chess",)
+
+
+def test_braces_in_a_fact_are_text() -> None:
+    assert told(Topic("x", (), ("I like {likes}.",)), likes="{curly} things") == ("I like {curly} things.",)
