@@ -54,6 +54,8 @@ STATED: list[tuple[str, Told]] = [
     ("I reside in Rome", {"home": ("Rome",)}),
     ("i live in stoke-on-trent", {"home": ("Stoke-on-Trent",)}),
     ("i live in münchen", {"home": ("München",)}),
+    ("i live in ulm and work as a baker", {"home": ("Ulm",), "occupation": ("baker",)}),
+    ("i'm called ada and come from peru but now live in ulm", {"name": ("Ada",), "origin": ("Peru",), "home": ("Ulm",)}),
     # origin
     ("i come from poland", {"origin": ("Poland",)}),
     ("i'm from peru", {"origin": ("Peru",)}),
@@ -128,6 +130,8 @@ NOT_STATED: list[str] = [
     "i wish i live in paris",
     "he lives in paris",
     "my sister lives in paris",
+    "tom and anna live in paris",
+    "my sister and her husband live in paris and work as bakers",
     "my brother's name is tom",
     "my cat is called tom",
     "i live in fear",

@@ -123,6 +123,12 @@ _DENIED = tuple((topic, re.compile(_BEFORE + words, re.IGNORECASE)) for topic, w
 _I_AM = re.compile(rf"{_BEFORE}(?:{AM}|this is )(.+)", re.IGNORECASE)
 _A = re.compile(r"(?:an? )(.+)", re.IGNORECASE)
 _STUDENT = re.compile(r"(?:an? )?((?!an? )(?:[\w-]+ ){1,3}?)student\b", re.IGNORECASE)
+_SPEAKER = re.compile(r"(?<![\w'])(?:i|i'm|im|i've|my (?:\w+ )?name)(?![\w'])", re.IGNORECASE)
+_JOINED = re.compile(
+    rf"(?<=\w )(and|but) (?={ADVERBS}(?:live|work|study|come from|moved to|grew up|was born|am|belong to|joined)\b)",
+    re.IGNORECASE,
+)
+"""A second verb that shares its subject: *I live in Ulm and work as a baker*."""
 _UNREAL = re.compile(
     r"\b(?:if|when|whenever|wish|unless|until|once|suppose|imagine|pretend|say|says|said|whether|where|before|while|after|"
     r"dreamt|dreamed|thought|think|thinks|hope|because)(?: that)? $",
@@ -145,6 +151,8 @@ def statements(text: str, *, persons: Collection[str] = (), asked: str = "") -> 
         >>> statements("My name is Ada and I live in new york.")
         [Fact(topic='name', values=('Ada',), gone=False), Fact(topic='home', values=('New York',), gone=False)]
     """
+    if speaker := _SPEAKER.search(text):
+        text = text[: speaker.end()] + _JOINED.sub(r"\1 i ", text[speaker.end() :])
     found: dict[str, Fact] = {}
     for fact in (*_stated(text, persons, asked), *_denied(text), *_being(text, persons, asked)):
         if fact.topic not in found or (
