@@ -70,12 +70,14 @@ class Names:
         return plan
 
     def twice(self, what: str, name: str, first: str, second: str) -> None:
+        """Put down that two things (`what`: signal, slot, rule) share a name; and where they were declared."""
         if self._modules[name.split(":")[0]] < 2:  # else the modules' names are the fault
             self.faults.append(
                 DeclarationError(f"two {what}s are named {name!r}: {first} and {second}; rename one")
             )
 
     def signal(self, signal: Signal[Any], where: str) -> SignalPlan | None:
+        """The numbered form of a signal that is named at `where`; None, and a fault, if no module declares it."""
         plan = self._signal_of.get(signal.name)
         if plan is not None and plan.signal is signal:
             return plan
@@ -83,6 +85,7 @@ class Names:
         return None
 
     def slot(self, slot: Slot[Any], where: str) -> SlotPlan | None:
+        """The numbered form of a slot, likewise."""
         plan = self._slot_of.get(slot.name)
         if plan is not None and plan.slot is slot:
             return plan

@@ -95,26 +95,54 @@ class Policy:
     def utility(self, rule: str | Rule[Any, Any]) -> float:
         """The utility of a rule in nats: the greatest over its clauses (L9). Weight and cooldown apart.
 
+        It is exact unless dozens of signals on a clause's pathways each have several causes which have causes in common
+        in turn; then it may be somewhat too great (``policy/least.py``).
+
         Args:
             rule: The rule, or its qualified name.
 
         Raises:
             DeclarationError: The policy has no such rule.
+
+        Example:
+            >>> import ravestate as rs
+            >>> demo = rs.Module("demo")
+            >>> heard, seen = demo.signal("heard"), demo.signal("seen")
+            >>> @demo.rule(when=heard)
+            ... async def listen(ctx): ...
+            >>> @demo.rule(when=heard & seen)
+            ... async def fuse(ctx): ...
+            >>> policy = rs.compile(demo)
+            >>> policy.utility(listen), round(policy.utility("demo:fuse"), 6)
+            (0.0, 0.693147)
         """
         return max((clause.utility for clause in self.rule_plan(rule).clauses), default=0.0)
 
     def clauses(self, rule: str | Rule[Any, Any]) -> tuple[Clause, ...]:
-        """The clauses of a rule: each with ``.signals`` (declared), ``.pathways`` (completed), ``.utility`` (nats)."""
+        """The clauses of a rule: each with ``.signals`` (declared), ``.pathways`` (completed), ``.utility`` (nats).
+
+        There may be exponentially many pathways. They are worked out when they are asked for: the one with the least
+        information first, then the cheapest, 256 at most; only the first where cycles are too entangled for that.
+
+        Raises:
+            DeclarationError: The policy has no such rule.
+        """
         return self.rule_plan(rule).clauses
 
     def conflicts(self) -> tuple[Conflict, ...]:
-        """The pairs of rules that exclude each other for a common cause (L10): who wins, by how many nats."""
+        """The pairs of rules that exclude each other for a common cause (L10): who wins, by how many nats.
+
+        A thousand rules on one slot are half a million pairs.
+        """
         from ravestate.policy.conflicts import find_conflicts
 
         return find_conflicts(self)
 
     def findings(self) -> tuple[Finding, ...]:
-        """What is allowed but probably not meant: rules that cannot run or win, ties, signals nobody hears."""
+        """What is allowed but probably not meant: rules that cannot run or win, ties, signals nobody hears.
+
+        A rule has one finding of a kind at most; of several ties that with the rule declared first.
+        """
         from ravestate.policy.findings import find_all
 
         return find_all(self)

@@ -40,6 +40,7 @@ class Rules:
         self._count = 0  # of clauses
 
     def add(self, rule: Rule[Any, Any]) -> None:
+        """Number a rule; its faults are put down."""
         other = self._named.setdefault(rule.name, rule)
         if other is not rule:
             self.names.twice("rule", rule.name, other.origin, rule.origin)
