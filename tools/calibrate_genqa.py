@@ -3,8 +3,8 @@
     python tools/calibrate_genqa.py
 
 Each question of tests/modules/skill/genqa/questions.yaml is answered; an answer is right if it matches. A logistic
-regression then tells from the score of the passage, the gap to the next one and how much of the question it covers how
-probable it is that an answer is right. The constants that it prints belong into genqa/confidence.py. Half of the
+regression then tells from the score of the passage and how much of the question it covers how probable it is that an
+answer is right. The constants that it prints belong into genqa/confidence.py. Half of the
 questions, taken alternately, is fitted and the other half measured, and the other way round, before all are fitted.
 """
 
@@ -17,8 +17,8 @@ from pathlib import Path
 import numpy as np
 import yaml
 
+from ravestate.modules.skill.genqa import Settings
 from ravestate.modules.skill.genqa.answering import Answer, Answerer
-from ravestate.modules.skill.genqa.confidence import features
 
 QUESTIONS = Path(__file__).resolve().parents[1] / "tests/modules/skill/genqa/questions.yaml"
 PRIOR = 0.05
@@ -57,15 +57,17 @@ def table(p: np.ndarray, y: np.ndarray) -> None:
 def main() -> None:
     """Answer, fit, print."""
     asked = yaml.safe_load(QUESTIONS.read_text(encoding="utf-8"))
-    rows, right, missed = [], [], []
+    rows, right, missed, wrong = [], [], [], []
     with tempfile.TemporaryDirectory() as folder:
         answerer = Answerer(Path(folder) / "index.sqlite")
         for text, wanted in asked.items():
             answer = answerer.answer(text)
             if answer.text:
-                best, *rest = answer.candidates
-                rows.append((1.0, *features(best.score, [c.score for c in rest], best.covered)))
+                best = answer.candidates[0]
+                rows.append((1.0, best.score, best.covered))
                 right.append(is_right(answer, wanted))
+                if not right[-1] and answer.confidence >= Settings().sure:
+                    wrong.append(f"{answer.confidence:.2f} {text} -> {answer.text}")
             if wanted is not None and not is_right(answer, wanted):
                 missed.append(f"{text} -> {answer.text or answer.reason}")
         answerer.close()
@@ -82,8 +84,9 @@ def main() -> None:
     w = fit(x, y)
     print("\nAll:")
     table(1 / (1 + np.exp(-x @ w)), y)
-    print(f"\nINTERCEPT, SCORE, GAP, COVERED = {', '.join(f'{value:.3f}' for value in w)}")
+    print(f"\nINTERCEPT, SCORE, COVERED = {', '.join(f'{value:.3f}' for value in w)}")
     print("\nNot found:", *missed, sep="\n  ")
+    print("\nWrong, and not doubted:", *wrong, sep="\n  ")
 
 
 if __name__ == "__main__":

@@ -41,7 +41,7 @@ ALSO = {
     "ae": "UAE Emirates", "bm": "Burma", "cg": "DRC Congo Kinshasa", "cf": "Congo Brazzaville", "ct": "CAR",
     "cv": "Cape Verde", "ee": "EU", "ez": "Czech Republic", "iv": "Cote d'Ivoire", "nl": "Holland", "tt": "East Timor",
     "uk": "UK Britain Great Britain England", "us": "US USA America U.S.A. American", "vt": "Holy See", "wz": "Swaziland",
-    "mk": "Macedonia", "tu": "Turkiye Türkiye", "ks": "Republic of Korea", "kn": "DPRK", "ch": "PRC", 
+    "mk": "Macedonia", "tu": "Turkiye Türkiye", "ks": "Republic of Korea", "kn": "DPRK", "ch": "PRC",
 }  # fmt: skip
 CURRENCIES = {
     "us": "US dollar (USD)", "ec": "US dollar (USD)", "es": "US dollar (USD)", "pe": "sol (PEN)", "br": "real (BRL)",
@@ -198,7 +198,8 @@ def semicolons(text: str) -> str:
 
 def sentences_of(entry: Entry) -> Iterator[Sentence]:
     """All that is said about a country."""
-    for part in (_government, _geography, _people, _economy, _background):
+    parts = (_government, _geography, _people, _economy, _background)
+    for part in parts[1:] if entry.code == "xx" else parts:  # the world has no government
         yield from part(entry)
 
 
@@ -344,6 +345,12 @@ def _government(entry: Entry) -> Iterator[Sentence]:
                 "membership belong organisation organization",
             )
 
+        for short_name, full in (("EU", "the European Union"), ("NATO", "NATO")):
+            near = (entry.region == "europe" and entry.code != "ee") or entry.code in ("tu", "rs")
+            near = near and bool(independence) and not independence.startswith("none")
+            if near and short_name not in groups.split(", "):
+                yield f"{upper(name)} is not a member of {full}.", "membership belong join joined"
+
 
 def _geography(entry: Entry) -> Iterator[Sentence]:
     name, first = entry.name, entry.first
@@ -393,7 +400,7 @@ def _geography(entry: Entry) -> Iterator[Sentence]:
             "highest mountain tallest peak elevation how high",
         )
     if low := first("Geography", "Elevation", "lowest point"):
-        yield f"The lowest point of {name} is {short(metres(low))}.", "deepest elevation"
+        yield f"The lowest point of {name} is {short(metres(low))}.", "elevation"
     if mean := first("Geography", "Elevation", "mean elevation"):
         yield f"The mean elevation of {name} is {metres(mean)}.", "average height altitude"
     if resources := first("Geography", "Natural resources"):
@@ -488,7 +495,6 @@ def _people(entry: Entry) -> Iterator[Sentence]:
         ("Obesity - adult prevalence rate", "text", "obesity rate", "overweight adults share"),
         ("Tobacco use", "total", "share of people who use tobacco", "smoke smokers"),
         ("Alcohol consumption per capita", "total", "alcohol consumption per head", "drink capita"),
-        ("Physician density", "text", "density of physicians", "doctors how many"),
     ):  # fmt: skip
         value = (
             first("People and Society", field) if key == "text" else first("People and Society", field, key)
@@ -498,9 +504,18 @@ def _people(entry: Entry) -> Iterator[Sentence]:
                 f"The {what} of {name} is {short(value.replace('children born/woman', 'children per woman'))}.",
                 asked,
             )
+    if doctors := first("People and Society", "Physician density"):
+        doctors = doctors.replace("physicians/1,000 population", "doctors for each 1,000 people")
+        yield f"{upper(name)} has {doctors}.", "physicians how many"
+    people, land = number(population), number(area_of(entry))
+    if people and land:
+        yield (
+            f"The population density of {name} is about {people / land:,.1f} people per square kilometre.",
+            "dense crowded",
+        )
     cities = first("People and Society", "Major urban areas - population")
     found = re.findall(
-        r"([\d.,]+(?: million)?) ([^\d,][^,]*?)(?: \((?:capital)[^)]*\))?(?=,|\s\(\d{4}\)|$|;)", cities
+        r"([\d.,]+(?: million)?) ([^\W\d][^,]*?)(?: \((?:capital)[^)]*\))?(?=,|\s\(\d{4}\)|$|;)", cities
     )
     if found:
         towns = [f"{person(town).strip()} ({count})" for count, town in found]
@@ -522,9 +537,9 @@ def _economy(entry: Entry) -> Iterator[Sentence]:
     if overview := first("Economy", "Economic overview"):
         yield f"The economy of {name}: {short(overview, 320)}.", "rich poor economic overview"
     for value, what, asked in (
-        (entry.latest("Real GDP (purchasing power parity)"), "gross domestic product (at purchasing power parity)", "gdp size economy"),
-        (first("Economy", "GDP (official exchange rate)"), "gross domestic product (at the official exchange rate)", "gdp nominal"),
-        (entry.latest("Real GDP per capita"), "gross domestic product per head", "gdp capita income rich person"),
+        (entry.latest("Real GDP (purchasing power parity)"), "gross domestic product at purchasing power parity", "gdp size economy"),
+        (first("Economy", "GDP (official exchange rate)"), "gross domestic product (GDP)", "nominal official exchange rate"),
+        (entry.latest("Real GDP per capita"), "gross domestic product (GDP) per head", "capita income rich person"),
         (entry.latest("Real GDP growth rate"), "economic growth rate", "gdp growth"),
         (entry.latest("Inflation rate (consumer prices)"), "inflation rate", "prices"),
         (entry.latest("Unemployment rate"), "unemployment rate", "jobless out of work unemployed"),
@@ -583,7 +598,8 @@ def _economy(entry: Entry) -> Iterator[Sentence]:
 def official_in(languages: str) -> list[str]:
     """The languages that are official in a whole country."""
     found = re.findall(
-        r"([A-Z][\w’'-]*(?: [A-Z(][\w)’'-]*)*)(?: only)?(?: \d[\d.]*%)? ?\(official\)", languages
+        r"([A-Z][\w’'-]*(?: [A-Z(][\w)’'-]*)*)(?: only)?(?: \d[\d.]*%)? ?\(official(?: nationwide)?\)",
+        languages,
     )
     return list(dict.fromkeys(re.sub(r"\s*\(.*", "", item) for item in found))
 
@@ -671,6 +687,15 @@ def across(entries: list[Entry]) -> Iterator[tuple[str, list[Sentence]]]:
             (f"The five largest countries in {where} by area are {listed([e.name for _, e in by_area[:5]])}.", "biggest size"),
             (f"The five countries in {where} with the most people are {listed([e.name for _, e in by_people[:5]])}.", "population populous largest biggest"),
         ]  # fmt: skip
+        ranks = zip(("second", "third", "fourth", "fifth"), by_area[1:], by_people[1:], strict=False)
+        for rank, (_, large), (_, populous) in ranks:
+            said.append((f"The {rank} largest country in {where} by area is {large.name}.", "biggest size"))
+            said.append(
+                (
+                    f"The country with the {rank} largest population in {where} is {populous.name}.",
+                    "populous inhabitants",
+                )
+            )
         if where == "the world":
             coast = ranked(states, lambda e: number(e.first("Geography", "Coastline")))
             said.append(
@@ -766,6 +791,8 @@ def world(entry: Entry) -> Iterator[Sentence]:
         "Mount Everest is the highest mountain in the world (8,849 metres).",
         "tallest highest point earth peak how high",
     )
+    people = entry.first("People and Society", "Population", "total")
+    yield f"The Earth has a population of {people}: so many people live in the world.", "how many are there"
     mountains = re.search(r"measured from sea level\): ([^¦]*)", notes)
     if mountains:
         items = [item.strip() for item in mountains[1].split(";") if item.strip()]
@@ -823,10 +850,11 @@ def world(entry: Entry) -> Iterator[Sentence]:
             yield f"The {kind} place on Earth is {places[0]}.", "world where most rain temperature"
     spoken = entry.get("People and Society", "Languages")
     if found := re.search(r"most-spoken language: ?([^¦]*)", spoken):
-        yield f"The most spoken languages in the world are {found[1].strip()}.", "language speakers people"
+        most = ", ".join(found[1].split(", ")[:5])
+        yield f"The most spoken languages in the world are {most}.", "language speakers people"
     if found := re.search(r"most-spoken first language: ?([^¦]*)", spoken):
         yield (
-            f"The most spoken first languages in the world are {found[1].strip()}.",
+            f"The most spoken first languages in the world are {', '.join(found[1].split(', ')[:5])}.",
             "native mother tongue speakers",
         )
 

@@ -32,6 +32,20 @@ def test_what_shares_most_and_rarest_words_comes_first(index: Index) -> None:
     assert found(index, "submarine") == []
 
 
+def test_passages_that_have_a_word_of_each_group(index: Index) -> None:
+    index.put(file(), notes("The tram is red.", "The bus is red.", "The bus is blue."))
+    assert {each.text for each in index.search_all([["tram", "bus"], ["red"]], 9)} == {
+        "The tram is red.",
+        "The bus is red.",
+    }
+    assert (
+        index.search_all([["ship"], ["red"]], 9)
+        == index.search_all([], 9)
+        == index.search_all([['"'], []], 9)
+        == []
+    )
+
+
 def test_titles_and_hints_are_searched_and_stems_are_one(index: Index) -> None:
     index.put(file(), [Document("Trams", "t", [Passage("Number 7 goes there.", hints="beaches")])])
     assert found(index, "tram") == found(index, "beach") == ["Number 7 goes there."]

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ravestate.modules.skill.genqa.passages import LONGEST, passages_of
+from ravestate.modules.skill.genqa.passages import LONGEST, SHORTEST, passages_of
 
 
 def texts(text: str) -> list[str]:
@@ -61,12 +61,12 @@ def test_controls_and_escapes_are_not_kept() -> None:
 
 def test_a_sentence_without_end_is_cut_where_it_may_be() -> None:
     parts = texts("rain, snow, hail, " * 200)
-    assert all(len(part) <= LONGEST and part.endswith(",") for part in parts[:-1])
+    assert all(len(part) <= LONGEST + SHORTEST and part.endswith(",") for part in parts[:-1])
     assert sum(part.count("snow") for part in parts) == 200
 
 
 @given(st.text(max_size=2000))
 def test_any_text_gives_short_passages_of_its_own_characters(text: str) -> None:
     for passage in passages_of(text):
-        assert 0 < len(passage.text) <= LONGEST + 1
+        assert 0 < len(passage.text) <= LONGEST + SHORTEST
         assert passage.text.encode("utf-8")

@@ -13,6 +13,7 @@ from ravestate.modules._sentences import Reranker
 
 from .confidence import confidence
 from .index import Found, Index
+from .passages import LONGEST
 from .question import Question, as_question
 from .shipped import bring_up
 from .stems import Stems
@@ -20,18 +21,21 @@ from .variants import variants_of
 
 __all__ = ["Answer", "Answerer", "Candidate"]
 
-RETRIEVED = 20
-"""So many passages are looked at word by word..."""
-READ = (2, 2, 4)
+RETRIEVED = 16
+"""So many passages that have some word of a question, and so many that have all, are looked at word by word..."""
+READ = (1, 1, 2, 4)
 """... and so many of these are read: the first few, and the others only if none of them is it."""
-GOOD, HOPELESS = 6.0, -4.0
-"""With the first score a passage is it; where the first few have no more than the second, the others are not it either."""
+GOOD, VERY_GOOD, HOPELESS = 7.5, 9.0, -4.0
+"""With the first score a passage is it, alone with the second; where the first few have no more than the third, the others
+are not it either."""
 ENOUGH = 0.4
 """A passage that mentions less of what is asked for (0 to 1) is not even read."""
 LEVEL = 0.8
 """Scores that differ by less are about as good."""
 COMMON = 20_000
 """A word that stands in more passages finds nothing, and takes long; it is searched if there is no other."""
+COMMON_KIND = 2_000
+"""The same for words that only say what kind of answer is wanted."""
 WORDS = 24
 """A question has no more words to search for."""
 
@@ -125,8 +129,8 @@ class Answerer:
         if not retrieved:
             return Answer(question.text, reason="no document has anything of it")
         read = self._read(question, retrieved)
-        best, *others = read
-        sure = confidence(best.score, [other.score for other in others], best.covered)
+        best = read[0]
+        sure = confidence(best.score, best.covered)
         return Answer(question.text, best.text, index.source(best.row), best.title, sure, tuple(read))
 
     # ---------------------------------------------------------------------------------- internals
@@ -160,8 +164,12 @@ class Answerer:
             """In how many passages a word stands, at most."""
             return min(known.get(stem, 0) for stem in stem_of[word])
 
-        rare = [word for word in stem_of if standing(word) <= COMMON]
+        rare = [
+            word for word in stem_of if standing(word) <= (COMMON_KIND if word in question.kinds else COMMON)
+        ]
         found = index.search(rare or list(stem_of), RETRIEVED)
+        # What has them all may be hidden behind many that have the rarest one twice.
+        found += [each for each in index.search_all(asked, RETRIEVED) if each not in found]
 
         # What each word that is asked for weighs, and the forms in which it may stand in a passage.
         size = index.size()
@@ -177,6 +185,10 @@ class Answerer:
         covered = [
             sum(weight for weight, forms in wanted if any(form <= have for form in forms)) / total
             for have in map(set, self._stems(*(f"{each.title} {each.text} {each.hints}" for each in found)))
+        ]
+        covered = [
+            share / 2 if _ranks_otherwise(question.text, each.text) else share
+            for share, each in zip(covered, found, strict=True)
         ]
         # The sort is stable: BM25 decides between equals.
         order = sorted(
@@ -199,7 +211,7 @@ class Answerer:
                 for (covered, found), score in zip(batch, scores, strict=True)
             ]
             best = max(candidate.score for candidate in read)
-            if best >= GOOD or (best <= HOPELESS and start > READ[0]):
+            if best >= (GOOD if len(read) > 1 else VERY_GOOD) or (best <= HOPELESS and len(read) > 2):
                 break
         read.sort(key=lambda candidate: -candidate.score)
         # Of those that are about as good, take what says least besides: the life expectancy, not that of women.
@@ -211,9 +223,20 @@ class Answerer:
 
 def _readable(found: Found) -> str:
     """A passage as the reader sees it: under its title, if it does not name that itself."""
-    if found.title.lower() in found.text.lower():
-        return found.text
-    return f"{found.title}: {found.text}"
+    text = found.text if found.title.lower() in found.text.lower() else f"{found.title}: {found.text}"
+    return text[:LONGEST]
+
+
+_SUPERLATIVE = re.compile(r"\b(?:\w{3,}est|most|least)\b", re.IGNORECASE)
+_RANK = re.compile(r"\b(?:second|third|fourth|fifth|sixth|seventh|eighth|ninth|tenth)\b", re.IGNORECASE)
+
+
+def _ranks_otherwise(question: str, text: str) -> bool:
+    """Whether the question is for the largest, and the passage is about the second largest; or the other way round."""
+    if not _SUPERLATIVE.search(question) or not _SUPERLATIVE.search(text):
+        return False
+    asked, said = ({rank.lower() for rank in _RANK.findall(where)} for where in (question, text))
+    return asked != said
 
 
 def _besides(text: str, asked: set[str]) -> int:

@@ -169,17 +169,12 @@ class Index:
             words: Any text; what could be taken for an operator of the query language is not.
             limit: So many passages at most.
         """
-        terms = [
-            f'"{clean}"' for word in words if (clean := word.replace('"', " ").replace("\0", " ").strip())
-        ]
-        if not terms:
-            return []
-        with self._lock, self._told():
-            rows = self._base.execute(
-                f"SELECT rowid, title, text, hints FROM passages WHERE passages MATCH ? ORDER BY {_RANK} LIMIT ?",
-                (" OR ".join(terms), limit),
-            ).fetchall()
-        return [Found(*row) for row in rows]
+        return self._matching(_any_of(words), limit)
+
+    def search_all(self, groups: Sequence[Sequence[str]], limit: int) -> list[Found]:
+        """Like `search`, but only passages that have a word of each group."""
+        each = [any_of for group in groups if (any_of := _any_of(group))]
+        return self._matching(" AND ".join(f"({any_of})" for any_of in each), limit)
 
     # ------------------------------------------------------------------------------------ writing
 
@@ -226,6 +221,16 @@ class Index:
             return self._forget(path)
 
     # ---------------------------------------------------------------------------------- internals
+
+    def _matching(self, query: str, limit: int) -> list[Found]:
+        if not query:
+            return []
+        with self._lock, self._told():
+            rows = self._base.execute(
+                f"SELECT rowid, title, text, hints FROM passages WHERE passages MATCH ? ORDER BY {_RANK} LIMIT ?",
+                (query, limit),
+            ).fetchall()
+        return [Found(*row) for row in rows]
 
     def _forget(self, path: str) -> bool:
         ranges = self._base.execute("SELECT first, last FROM documents WHERE path = ?", (path,)).fetchall()
@@ -292,3 +297,9 @@ class Index:
 
 
 _OTHER = "name another file: --set genqa.index=/path/to/index.sqlite"
+
+
+def _any_of(words: Sequence[str]) -> str:
+    """A query for any of these words; none of them is an operator."""
+    terms = [clean for word in words if (clean := word.replace('"', " ").replace("\0", " ").strip())]
+    return " OR ".join(f'"{term}"' for term in terms)

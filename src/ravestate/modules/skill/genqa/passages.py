@@ -11,8 +11,8 @@ from .document import Passage
 
 __all__ = ["LONGEST", "passages_of"]
 
-LONGEST = 400
-"""Characters of a passage: what is longer is cut, at the best place there is."""
+LONGEST = 280
+"""Characters of a passage: what is longer is cut, at the best place there is. Reading takes time."""
 SHORTEST = 12
 """What is shorter is no answer: page numbers, captions, crumbs."""
 
@@ -61,7 +61,7 @@ def _sentences(paragraph: str) -> Iterator[str]:
 
 def _fitting(paragraph: str, start: int, end: int) -> Iterator[str]:
     """The sentence from `start` to `end` in parts that are short enough; nothing if it has no letter."""
-    while end - start > LONGEST:
+    while end - start > LONGEST + SHORTEST:  # or the rest would be a crumb
         window = paragraph[start : start + LONGEST]
         cut = max(window.rfind(mark, LONGEST // 3) for mark in ("; ", ": ", ", ")) + 1
         cut = cut or window.rfind(" ", LONGEST // 3) + 1 or LONGEST

@@ -28,8 +28,9 @@ _ASKS = re.compile(
 )
 # Where "you" and "I" are everybody: "how do you make ice cream", "how often must I descale the machine".
 _ANYBODY = re.compile(
-    r"\b(?:how|where|when|why|what) (?:do|can|could|would|should) you (?=make|cook|bake|build|say|find|get to\b|see|call)|"
+    r"\b(?:how|where|when|why|what) (?:do|can|could|would|should) you (?=make|cook|bake|build|say|find|get\b|see|call)|"
     r"\b(?:how(?: \w+)?|where) (?:can|could|must|should|do) i (?!live|look|feel|sound|know|work|like|come|seem|do\b|sleep|eat)|"
+    r"\b(?:when|if) you (?=mix|add|heat|cool|divide|multiply|put|cut|freeze|boil)|"
     r"^(?:can|may|must|do) i (?=use|have to|need to|get|find|put|open|take|bring|park|pay)"
 )
 _PERSONAL = re.compile(r"\b(?:you|your|yours|yourself|u|ur|i|i'm|im|me|my|mine|myself|we both|between us)\b")
@@ -52,13 +53,13 @@ _EMPTY_WORDS = """
     s re ve ll d t m it its he she they them his her their there here we us our
     not no so too very really also just only ever exactly actually currently please again still yet now
     say mean kind kinds type types sort thing things something anything someone somebody one ones give get got go goes going come comes
-    came make makes made like look looks use used
+    came make makes made like look looks
 """
 # ... and those that say what kind of answer is wanted: they help to find it, but it need not have them.
 _KIND_WORDS = """
     who whom whose what which when where why how many much old long far name names named call called tell know
     before become became gain gained live lives believe there time year day place way happen happens cause causes average
-    total current national main major
+    total current national main major use used
 """
 _QUESTION_WORDS = frozenset(
     ("who", "whom", "whose", "what", "which", "when", "where", "why", "how", "many", "much", "tell", "know")

@@ -11,7 +11,7 @@ fall fell fallen | feel felt | fight fought | find found | flee fled | fly flew 
 grow grew grown | hold held | keep kept | leave left | lose lost | meet met | rise rose risen | run ran | see saw seen
 sell sold | send sent | shine shone | sing sang sung | sink sank sunk | sleep slept | speak spoke spoken | spend spent
 stand stood stands | steal stole stolen | swim swam swum | take took taken | teach taught | think thought | throw threw thrown
-win won | write wrote written author | lead led | lay laid | sea seas ocean | end ended finish last lasted
+win won | write wrote written author | lead leads led leader governs | pay money currency | world earth globe | place point spot | lay laid | sea seas ocean | end ended finish last lasted
 man men | woman women | person people persons | child children | foot feet | tooth teeth | mouse mice | leaf leaves | wolf wolves
 life lives | city cities town | country countries | half halves
 big large | bigger larger | biggest largest greatest | small little tiny | smallest littlest tiniest | tall high | tallest highest
