@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Annotated
 
 from pydantic import Field, field_validator
+from pydantic_core import PydanticCustomError
 
 import ravestate as rs
 from ravestate.errors import RavestateError
@@ -47,7 +48,7 @@ class Settings(rs.Settings):
         try:
             read_life(path)
         except RavestateError as error:
-            raise ValueError(str(error)) from None
+            raise PydanticCustomError("life", "{why}", {"why": str(error)}) from None
         return path
 
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 import threading
+from collections import Counter
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
@@ -129,8 +131,7 @@ class _Learnt:
         self._unaddressed = np.array([not _addresses(text) for text in self._examples])
         self._meanings = encoder.encode(self._examples)
         self._spelling = _Spelling(self._examples)
-        self._spelt = self._spelling.of(self._examples)
-        kernel = self._kernel(self._meanings, self._spelt)
+        kernel = self._kernel(self._examples, self._meanings)
         kernel[np.diag_indices_from(kernel)] += RIDGE
         self._weights = np.linalg.solve(kernel, np.eye(len(self._classes))[self._of])
 
@@ -140,7 +141,7 @@ class _Learnt:
 
         texts = [self._slips.mended(asked.text) for asked in candidates]
         meanings = self._encoder.encode(texts)
-        kernel = self._kernel(meanings, self._spelling.of(texts))
+        kernel = self._kernel(texts, meanings)
         scores = kernel @ self._weights
         reasons: list[str] = []
         cosines = meanings @ self._meanings.T
@@ -165,12 +166,13 @@ class _Learnt:
                 return Match(self._classes[topic], text, float(row[topic]), near, margin)
         return Miss("; ".join(reasons))
 
-    def _kernel(self, meanings: NDArray[np.float32], spelt: NDArray[np.float64]) -> NDArray[np.float64]:
+    def _kernel(self, texts: Sequence[str], meanings: NDArray[np.float32]) -> NDArray[np.float64]:
         """How alike questions (rows) and examples (columns) are."""
         import numpy as np
 
-        alike = np.exp(SHARPNESS * (meanings.astype(np.float64) @ self._meanings.T - 1))
-        return alike + SPELLING * (spelt @ self._spelt.T) + COMMON
+        kernel = np.exp(SHARPNESS * (meanings.astype(np.float64) @ self._meanings.T - 1))
+        kernel += SPELLING * self._spelling.likeness(texts) + COMMON
+        return kernel
 
     def _nearest(self, like: NDArray[np.float64], topic: int) -> str:
         import numpy as np
@@ -184,35 +186,37 @@ def _addresses(text: str) -> bool:
 
 
 class _Spelling:
-    """Texts as vectors of their letter groups; rare groups count more."""
+    """Examples as vectors of their letter groups; rare groups count more."""
 
-    def __init__(self, texts: Sequence[str]) -> None:
+    def __init__(self, examples: Sequence[str]) -> None:
         import numpy as np
 
-        self._columns: dict[str, int] = {}
-        for text in texts:
-            for group in _groups(text):
-                self._columns.setdefault(group, len(self._columns))
-        self._weights = np.ones(len(self._columns))
-        counts = self._counted(texts)
-        self._weights = 1 + np.log(len(texts) / (1 + (counts > 0).sum(axis=0)))
+        counted = [Counter(_groups(text)) for text in examples]
+        spread = Counter(group for groups in counted for group in groups)
+        self._rows = {group: row for row, group in enumerate(spread)}
+        self._rarity = {group: 1 + math.log(len(examples) / (1 + count)) for group, count in spread.items()}
+        # A row for each group: a question has some dozens of them, and only their rows are looked at.
+        self._table = np.zeros((len(spread), len(examples)), dtype=np.float32)
+        for column, groups in enumerate(counted):
+            for group, value in self._vector(groups).items():
+                self._table[self._rows[group], column] = value
 
-    def of(self, texts: Sequence[str]) -> NDArray[np.float64]:
-        """A row of length 1 for each text, or of zeros if nothing of it is known."""
+    def likeness(self, texts: Sequence[str]) -> NDArray[np.float32]:
+        """The cosine of each text (rows) with each example (columns); 0 where nothing of a text is known."""
         import numpy as np
 
-        rows = self._counted(texts) * self._weights
-        return rows / np.maximum(np.linalg.norm(rows, axis=1, keepdims=True), 1e-12)
+        found = np.zeros((len(texts), self._table.shape[1]), dtype=np.float32)
+        for number, text in enumerate(texts):
+            vector = self._vector(Counter(group for group in _groups(text) if group in self._rows))
+            if vector:
+                rows = [self._rows[group] for group in vector]
+                found[number] = np.array([*vector.values()], dtype=np.float32) @ self._table[rows]
+        return found
 
-    def _counted(self, texts: Sequence[str]) -> NDArray[np.float64]:
-        import numpy as np
-
-        rows = np.zeros((len(texts), len(self._columns)))
-        for row, text in enumerate(texts):
-            for group in _groups(text):
-                if (column := self._columns.get(group)) is not None:
-                    rows[row, column] += 1
-        return rows
+    def _vector(self, groups: Counter[str]) -> dict[str, float]:
+        weighted = {group: count * self._rarity[group] for group, count in groups.items()}
+        length = math.hypot(*weighted.values())
+        return {group: value / length for group, value in weighted.items()}
 
 
 def _groups(text: str) -> list[str]:

@@ -47,6 +47,10 @@ async def remember(ctx: rs.RuleContext) -> rs.Resign | None:
     if told is None or memory is None:
         return rs.Resign("there is no memory, or no life")
     try:
+        await memory.opened()
+    except RavestateError:
+        return rs.Resign("memory cannot be opened, of which it tells itself")
+    try:
         await settle(told, memory)
     except RavestateError as error:
         ctx.log.warning("what memory has of the agent may be old: %s", error)
