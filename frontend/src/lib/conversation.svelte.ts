@@ -54,6 +54,7 @@ export class Conversation {
   }
 
   start(): void {
+    this.status = "connecting";
     this.#connection.start();
   }
 

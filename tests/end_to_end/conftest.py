@@ -1,0 +1,15 @@
+"""What the tests in a browser share: the browser."""
+
+from collections.abc import Iterator
+
+import pytest
+
+from end_to_end.stage import Stage
+
+
+@pytest.fixture(scope="session")
+def stage() -> Iterator[Stage]:
+    """One browser for all tests; each opens windows of its own."""
+    stage = Stage()
+    yield stage
+    stage.close()

@@ -1,0 +1,48 @@
+"""Somebody to talk with, for the tests in a browser."""
+
+import asyncio
+
+import ravestate as rs
+from ravestate.modules import interloc, rawio
+
+host = rs.Module("host", requires=(rawio, interloc))
+
+
+@host.rule(when=interloc.users.added, writes=rawio.output)
+async def greet(ctx: rs.RuleContext) -> None:
+    ctx[rawio.output] = "Good evening."
+
+
+@host.rule(when=interloc.users.removed, writes=rawio.output)
+async def bid_farewell(ctx: rs.RuleContext) -> None:
+    ctx[rawio.output] = "Until next time!"
+
+
+@host.rule(when=rawio.input.changed, writes=rawio.output)
+async def repeat(ctx: rs.RuleContext) -> None:
+    ctx[rawio.output] = f"You said: {ctx.payload(rawio.input.changed)}"
+
+
+storyteller = rs.Module("storyteller", requires=(rawio,))
+
+
+class Cue:
+    """Two gates through which the story goes; the test opens them, on the same loop."""
+
+    thought = asyncio.Event()
+    told = asyncio.Event()
+
+
+@storyteller.rule(
+    when=rawio.input.changed.where(lambda text: "story" in text),
+    writes=(rawio.output, rawio.speaking),
+    emits=rawio.piece,
+)
+async def tell(ctx: rs.RuleContext) -> None:
+    """Think, then tell it in two pieces; the test says when to go on."""
+    await Cue.thought.wait()
+    ctx[rawio.speaking] = True
+    ctx.emit(rawio.piece, "Once upon a time ")
+    await Cue.told.wait()
+    ctx[rawio.output] = "Once upon a time there was a raven."
+    ctx[rawio.speaking] = False

@@ -1,0 +1,151 @@
+"""A stage for tests in a browser: one loop in a thread of its own, on which servers and Chromium run.
+
+Playwright marks the thread that it runs in as one with a running loop; the other tests want theirs without.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import functools
+import os
+import shutil
+import threading
+from collections.abc import AsyncGenerator, Callable, Coroutine, Iterator
+from typing import Any
+
+from playwright.async_api import Browser, Page, async_playwright
+
+from ravestate.modules import webio
+from ravestate.modules.platform.webio.server import Server
+from ravestate.runtime.agent import Agent
+
+__all__ = ["PHONE", "Host", "Stage", "on_stage"]
+
+LIMIT = 60
+"""Seconds after which a test that waits for what never comes is ended."""
+
+PHONE = {"viewport": {"width": 360, "height": 640}, "has_touch": True, "is_mobile": True}
+FLAGS = [
+    "--no-sandbox",  # for whoever runs the tests as root, in a container
+    "--disable-gpu",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+]
+"""So that Chromium asks for nothing from elsewhere."""
+
+
+class Host:
+    """A page that is served. The network to it may fail."""
+
+    def __init__(self, server: Server) -> None:
+        self.server = server
+        self.address = server.address
+
+    @property
+    def app(self) -> Any:
+        """The application, with its conversations in ``app.state.sessions``."""
+        return self.server._app
+
+    @property
+    def sessions(self) -> list[Any]:
+        """The conversations that are going on."""
+        return list(self.app.state.sessions._tasks)
+
+    def drop(self) -> None:
+        """Lose all connections, as when the network fails."""
+        uvicorn = self.server._uvicorn
+        assert uvicorn is not None
+        for connection in list(uvicorn.server_state.connections):
+            connection.transport.abort()
+
+    @contextlib.contextmanager
+    def away(self) -> Iterator[None]:
+        """Lose all connections, and take no new ones within."""
+        gate = self.app.state.gate
+        gate.refusal = lambda headers: "away"
+        self.drop()
+        try:
+            yield
+        finally:
+            del gate.refusal
+
+
+class Stage:
+    """Chromium, and a loop to do things with it; to be closed."""
+
+    def __init__(self) -> None:
+        self._loop = asyncio.new_event_loop()
+        self._thread = threading.Thread(target=self._loop.run_forever, name="stage")
+        self._thread.start()
+        self._over = contextlib.AsyncExitStack()
+        self.browser: Browser = self.run(self._launch())
+
+    async def _launch(self) -> Browser:
+        found = os.environ.get("CHROMIUM") or shutil.which("chromium") or shutil.which("chromium-browser")
+        if found is None:
+            raise AssertionError(
+                "the browser tests need Chromium: apt-get install chromium, or say where it is: CHROMIUM=/path/to/it"
+            )
+        playwright = await self._over.enter_async_context(async_playwright())
+        browser = await playwright.chromium.launch(executable_path=found, args=FLAGS)
+        self._over.push_async_callback(browser.close)
+        return browser
+
+    def run(self, work: Coroutine[Any, Any, Any]) -> Any:
+        """Do something on the loop, and wait for it."""
+
+        async def limited() -> Any:
+            async with asyncio.timeout(LIMIT):
+                return await work
+
+        return asyncio.run_coroutine_threadsafe(limited(), self._loop).result()
+
+    def close(self) -> None:
+        """End everything."""
+        self.run(self._over.aclose())
+        self._loop.call_soon_threadsafe(self._loop.stop)
+        self._thread.join()
+        self._loop.close()
+
+    @contextlib.asynccontextmanager
+    async def serve(self, *modules: Any, **settings: Any) -> AsyncGenerator[Host]:
+        """Serve the page of an agent."""
+        agent = Agent(*modules, webio, settings={"webio": {"port": 0, **settings}})
+        async with Server(agent) as server:
+            yield Host(server)
+
+    @contextlib.asynccontextmanager
+    async def open(self, address: str, *, complaints: bool = False, **options: Any) -> AsyncGenerator[Page]:
+        """Open a page in a window of its own, which shares nothing with others.
+
+        Args:
+            address: Of the page.
+            complaints: Whether the browser may complain (of a lost connection); otherwise that is a failure.
+            options: Of the window, e.g. `PHONE`.
+        """
+        window = await self.browser.new_context(reduced_motion="reduce", **options)
+        heard: list[str] = []
+        try:
+            page = await window.new_page()
+            page.set_default_timeout(15_000)
+            page.on("pageerror", lambda error: heard.append(f"{error}"))
+            page.on("console", lambda said: heard.append(said.text) if said.type == "error" else None)
+            await page.goto(address)
+            yield page
+        finally:
+            await window.close()
+        assert complaints or not heard, heard
+
+
+def on_stage(test: Callable[..., Coroutine[Any, Any, None]]) -> Callable[..., None]:
+    """Run an async test function on the stage, which is its first argument."""
+
+    @functools.wraps(test)
+    def run(stage: Stage, **fixtures: Any) -> None:
+        stage.run(test(stage, **fixtures))
+
+    return run

@@ -1,0 +1,276 @@
+"""The page in a real browser: a conversation, and what may happen to one."""
+
+import asyncio
+from typing import Any
+
+from playwright.async_api import Page, expect
+
+from end_to_end.host import Cue, host, storyteller
+from end_to_end.stage import PHONE, Stage, on_stage
+
+TOKEN = "open sesame, please"
+
+
+def log(page: Page) -> Any:
+    return page.get_by_role("log")
+
+
+def lines(page: Page) -> Any:
+    return page.locator(".line")
+
+
+async def say(page: Page, text: str) -> None:
+    field = page.get_by_label("What you say to")
+    await field.fill(text)
+    await field.press("Enter")
+
+
+async def said(page: Page, *texts: str) -> None:
+    """Wait until exactly this was said."""
+    await expect(lines(page)).to_have_text([f"{who} {text}" for who, text in map(spoken, texts)])
+
+
+def spoken(text: str) -> tuple[str, str]:
+    mine = text.startswith("> ")
+    return ("You:", text[2:]) if mine else ("Elske:", text)
+
+
+@on_stage
+async def test_a_conversation(stage: Stage) -> None:
+    async with stage.serve(host, title="Elske") as served, stage.open(served.address) as page:
+        await expect(page).to_have_title("Elske")
+        await said(page, "Good evening.")
+        await expect(page.get_by_label("What you say to Elske")).to_be_focused()
+        await say(page, "It is quiet here. 🙂")
+        await said(page, "Good evening.", "> It is quiet here. 🙂", "You said: It is quiet here. 🙂")
+        await expect(page.get_by_label("What you say to Elske")).to_have_value("")
+
+
+@on_stage
+async def test_it_is_seen_thinking_and_then_speaking(stage: Stage) -> None:
+    Cue.thought, Cue.told = asyncio.Event(), asyncio.Event()
+    async with stage.serve(host, storyteller, title="Elske") as served, stage.open(served.address) as page:
+        await said(page, "Good evening.")
+        await say(page, "Tell me a story.")
+        await expect(log(page)).to_contain_text("Elske is thinking.")
+        Cue.thought.set()
+        growing = page.locator(".partial")
+        await expect(growing).to_have_text("Once upon a time")
+        await expect(growing).to_have_attribute("aria-hidden", "true")  # read out once it is whole
+        await expect(log(page)).not_to_contain_text("is thinking")
+        Cue.told.set()
+        await said(page, "Good evening.", "> Tell me a story.", "Once upon a time there was a raven.")
+
+
+@on_stage
+async def test_a_reload_in_the_middle(stage: Stage) -> None:
+    Cue.thought, Cue.told = asyncio.Event(), asyncio.Event()
+    async with stage.serve(host, storyteller, title="Elske") as served, stage.open(served.address) as page:
+        await said(page, "Good evening.")
+        await say(page, "Tell me a story.")
+        Cue.thought.set()
+        await expect(page.locator(".partial")).to_have_text("Once upon a time")
+        await page.reload()
+        await expect(page.locator(".partial")).to_have_text("Once upon a time")
+        Cue.told.set()
+        whole = ("Good evening.", "> Tell me a story.", "Once upon a time there was a raven.")
+        await said(page, *whole)
+        await page.reload()
+        await said(page, *whole)
+        assert len(served.sessions) == 1
+
+
+@on_stage
+async def test_two_users_are_apart(stage: Stage) -> None:
+    async with (
+        stage.serve(host, title="Elske") as served,
+        stage.open(served.address) as ada,
+        stage.open(served.address) as bob,
+    ):
+        await asyncio.gather(say(ada, "I am Ada."), say(bob, "I am Bob."))
+        await expect(log(ada)).to_contain_text("You said: I am Ada.")
+        await expect(log(bob)).to_contain_text("You said: I am Bob.")
+        await expect(log(ada)).not_to_contain_text("Bob")
+        await expect(log(bob)).not_to_contain_text("Ada")
+
+
+@on_stage
+async def test_a_lost_connection_loses_nothing(stage: Stage) -> None:
+    async with (
+        stage.serve(host, title="Elske") as served,
+        stage.open(served.address, complaints=True) as page,
+    ):
+        await said(page, "Good evening.")
+        with served.away():
+            await expect(page.get_by_text("The connection is lost.")).to_be_visible()
+            await say(page, "Are you there?")
+            await expect(page.locator(".pending")).to_have_text("You: Are you there? (not sent yet)")
+            served.sessions[0].say("I was gone for a while.")
+        await said(
+            page, "Good evening.", "I was gone for a while.", "> Are you there?", "You said: Are you there?"
+        )
+        await expect(page.get_by_text("The connection is lost.")).to_be_hidden()
+        await expect(page.locator(".pending")).to_have_count(0)
+
+
+@on_stage
+async def test_connections_that_break_all_the_time_lose_nothing(stage: Stage) -> None:
+    async with (
+        stage.serve(host, title="Elske") as served,
+        stage.open(served.address, complaints=True) as page,
+    ):
+        await said(page, "Good evening.")
+        for number in range(5):
+            await say(page, f"{number}")
+            served.drop()
+        await expect(page.locator(".pending")).to_have_count(0)
+        await expect(page.locator(".user")).to_have_text([f"You: {number}" for number in range(5)])
+        await expect(page.locator(".agent")).to_have_text(
+            ["Elske: Good evening.", *(f"Elske: You said: {number}" for number in range(5))]
+        )
+
+
+@on_stage
+async def test_after_a_restart_a_new_conversation_follows(stage: Stage) -> None:
+    async with (
+        stage.serve(host, title="Elske") as first,
+        stage.open(first.address, complaints=True) as page,
+    ):
+        await said(page, "Good evening.")
+        with first.away():
+            await expect(page.get_by_text("The connection is lost.")).to_be_visible()
+            sessions = first.app.state.sessions
+            sessions.leave(first.sessions[0], "forgotten")
+        await expect(page.get_by_text("A new conversation")).to_be_visible()
+        await said(page, "Good evening.", "Good evening.")
+
+
+@on_stage
+async def test_when_the_agent_is_switched_off_the_page_says_so(stage: Stage) -> None:
+    async with stage.serve(host, title="Elske") as served, stage.open(served.address) as page:
+        await said(page, "Good evening.")
+        await served.app.state.sessions.close("the agent has been switched off")
+        await said(page, "Good evening.", "Until next time!")
+        await expect(page.get_by_text("The agent has been switched off.")).to_be_visible()
+
+
+@on_stage
+async def test_a_script_is_shown_and_not_run(stage: Stage) -> None:
+    script = "<img src=x onerror='hacked=1'><script>hacked=1</script><svg onload=hacked=1>{@html 1}"
+    async with stage.serve(host, title=script) as served, stage.open(served.address) as page:
+        await say(page, script)
+        await expect(log(page)).to_contain_text(f"You said: {script}")
+        await expect(page).to_have_title(script)
+        await expect(page.get_by_role("heading", level=1)).to_have_text(script)
+        assert await page.evaluate("typeof hacked") == "undefined"
+        assert await page.locator(".line img, .line script, .line svg, h1 img").count() == 0
+
+
+@on_stage
+async def test_a_script_that_got_in_would_not_run(stage: Stage) -> None:
+    async with stage.serve(host) as served, stage.open(served.address, complaints=True) as page:
+        await page.evaluate(
+            "() => { const s = document.createElement('script'); s.textContent = 'window.hacked = 1';"
+            " document.body.append(s); document.body.insertAdjacentHTML('beforeend',"
+            " '<img src=x onerror=\"window.hacked = 1\">'); }"
+        )
+        await page.wait_for_function("[...document.images].every((image) => image.complete)")
+        assert await page.evaluate("typeof hacked") == "undefined"
+
+
+@on_stage
+async def test_on_a_phone_everything_fits(stage: Stage) -> None:
+    async with stage.serve(host, title="Elske") as served, stage.open(served.address, **PHONE) as page:
+        await said(page, "Good evening.")
+        for text in ("w" * 300, "a long sentence, such as one has to read on a small screen, " * 5):
+            await say(page, text)
+            await expect(log(page)).to_contain_text(f"You said: {text.strip()}")
+        assert await page.evaluate("document.documentElement.scrollWidth <= innerWidth")
+        assert await page.evaluate(
+            "[...document.querySelectorAll('.line')].every((line) => line.scrollWidth <= line.clientWidth + 1)"
+        )
+        await expect(lines(page).last).to_be_in_viewport()
+        await expect(page.get_by_label("What you say to Elske")).to_be_in_viewport(ratio=1)
+        for button in await page.get_by_role("button").all():
+            box = await button.bounding_box()
+            assert box is not None
+            assert min(box["width"], box["height"]) >= 36
+
+
+@on_stage
+async def test_with_the_keyboard_alone(stage: Stage) -> None:
+    async with stage.serve(host, title="Elske") as served, stage.open(served.address) as page:
+        await said(page, "Good evening.")
+        keys = page.keyboard
+        await keys.type("one")
+        await keys.press("Shift+Enter")
+        await keys.type("two")
+        await keys.press("Tab")
+        await expect(page.get_by_role("button", name="Send")).to_be_focused()
+        await keys.press("Space")
+        await expect(page.locator(".user")).to_have_text("You: one\ntwo", use_inner_text=False)
+        await expect(page.get_by_label("What you say to Elske")).to_be_focused()
+        await keys.press("Shift+Tab")
+        await expect(log(page)).to_be_focused()
+        await keys.press("Shift+Tab")
+        await expect(page.get_by_role("button", name="Leave")).to_be_focused()
+        await keys.press("Enter")
+        dialog = page.get_by_role("dialog", name="Leave the conversation?")
+        await expect(dialog.get_by_role("button", name="Stay")).to_be_focused()
+        await keys.press("Escape")
+        await expect(dialog).to_be_hidden()
+        await expect(page.get_by_role("button", name="Leave")).to_be_focused()
+        await keys.press("Enter")
+        await keys.press("Tab")
+        await keys.press("Enter")
+        await expect(log(page)).to_contain_text("Until next time!")
+        await expect(page.get_by_role("button", name="Begin a new conversation")).to_be_focused()
+        await keys.press("Enter")
+        await said(page, "Good evening.")
+        await expect(page.get_by_label("What you say to Elske")).to_be_focused()
+
+
+@on_stage
+async def test_who_reads_further_up_is_not_torn_away(stage: Stage) -> None:
+    async with stage.serve(host, title="Elske") as served, stage.open(served.address, **PHONE) as page:
+        await said(page, "Good evening.")
+        for number in range(12):
+            await say(page, f"{number}")
+            await expect(lines(page)).to_have_count(2 * number + 3)
+        await expect(lines(page).last).to_be_in_viewport()
+        await log(page).evaluate("(log) => { log.scrollTop = 0; }")
+        newest = page.get_by_role("button", name="Newest")
+        await expect(newest).to_be_visible()
+        served.sessions[0].say("Something new.")
+        await expect(lines(page)).to_have_count(26)
+        await expect(lines(page).first).to_be_in_viewport()
+        await newest.click()
+        await expect(lines(page).last).to_be_in_viewport()
+        await expect(newest).to_be_hidden()
+
+
+@on_stage
+async def test_a_link_with_the_token_lets_in_and_does_not_show_it(stage: Stage) -> None:
+    async with (
+        stage.serve(host, title="Elske", token=TOKEN) as served,
+        stage.open(f"{served.address}#token={TOKEN.replace(' ', '%20')}") as page,
+    ):
+        await said(page, "Good evening.")
+        assert TOKEN.split()[0] not in page.url
+        await page.reload()
+        await said(page, "Good evening.")
+
+
+@on_stage
+async def test_without_the_token_it_is_asked_for(stage: Stage) -> None:
+    async with (
+        stage.serve(host, title="Elske", token=TOKEN) as served,
+        stage.open(served.address) as page,
+    ):
+        await expect(page.get_by_text("A token is needed.")).to_be_visible()
+        await page.get_by_label("Token").fill("a guess")
+        await page.get_by_label("Token").press("Enter")
+        await expect(page.get_by_text("The token is wrong.")).to_be_visible()
+        await page.get_by_label("Token").fill(TOKEN)
+        await page.get_by_label("Token").press("Enter")
+        await said(page, "Good evening.")
