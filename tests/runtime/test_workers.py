@@ -86,7 +86,7 @@ def test_an_idle_thread_is_used_again() -> None:
 
 def test_the_end_of_the_process_waits_for_a_function_at_work_but_not_for_one_that_hangs() -> None:
     program = """
-import sys, threading, time
+import threading
 from ravestate.runtime import workers
 
 workers.LAST_GRACE = 1.0
@@ -94,7 +94,7 @@ at_work = threading.Event()
 
 def work():
     at_work.set()
-    time.sleep({seconds})
+    threading.Event().wait({seconds})
     print("done", flush=True)
 
 workers.Workers().submit(work)
