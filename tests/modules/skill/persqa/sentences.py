@@ -30,7 +30,9 @@ STATED: list[tuple[str, Told]] = [
     ("my name is محمد", {"name": ("محمد",)}),
     ('my name is "; DROP', {"name": ("Drop",)}),
     ("my name is Robert'); DROP TABLE students;--", {"name": ("Robert",)}),
-    ("my name is ADA", {"name": ("ADA",)}),
+    ("my name is ADA", {"name": ("Ada",)}),
+    ("my name is JP", {"name": ("JP",)}),
+    ("i live in the USA", {"home": ("the USA",)}),
     ("MY NAME IS MARGARET", {"name": ("Margaret",)}),
     ("I’m called Ada", {"name": ("Ada",)}),
     # home

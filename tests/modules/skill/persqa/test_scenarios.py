@@ -407,6 +407,42 @@ def test_a_home_is_corrected(file: Path, look: Look, text: str) -> None:
     assert look() == {"Ada": {"lives_in": ["Bremen"]}}
 
 
+def test_what_is_recalled_wrongly_is_put_right(file: Path, look: Look) -> None:
+    with agent(file) as sim:
+        sim.say("my name is ada")
+        sim.say("i live in hannover")
+        for _ in range(4):
+            sim.say("hm, well.")
+        assert meant(answers(sim, "where do i live?"), "recall")
+        assert meant(answers(sim, "no, in bremen"), "corrected")
+        assert meant(answers(sim, "do i live in hannover?"), "deny")
+    assert look() == {"Ada": {"lives_in": ["Bremen"]}}
+
+
+def test_who_denies_his_name_is_asked_again(file: Path, look: Look) -> None:
+    with agent(file) as sim:
+        sim.say("my name is ada")
+        sim.advance(200.0)
+        assert meant(answers(sim, "my name is not ada"), "ask_name")
+        assert meant(answers(sim, "bob"), "renamed")
+    assert look() == {"Bob": {}}
+
+
+@pytest.mark.parametrize("text", ["Hi, I'm Bob.", "I'm Bob", "i'm ada"])
+def test_who_introduces_himself_unasked(file: Path, text: str) -> None:
+    with agent(file, hibye) as sim:
+        assert meant(answers(sim, text), "learned_name")
+
+
+@pytest.mark.parametrize(
+    "text", ["I'm Excited!", "I'm German", "I'm Exhausted", "i'm bored", "I'm Overwhelmed"]
+)
+def test_a_state_is_no_name(file: Path, text: str) -> None:
+    with agent(file) as sim:
+        assert answers(sim, text) == "I see."
+        assert sim.read(persqa.who) is None
+
+
 def test_what_is_no_longer_so_is_struck_and_asked_again(file: Path, look: Look) -> None:
     with agent(file) as sim:
         sim.say("my name is ada")
@@ -528,6 +564,7 @@ def test_nothing_is_known_yet(file: Path) -> None:
 
 def test_forget_me(file: Path, look: Look) -> None:
     with agent(file) as sim:
+        sim.put(interloc.users, {"console": None})
         sim.say("my name is ada and i live in hannover")
         assert meant(answers(sim, "please forget me"), "forget_ask")
         assert meant(answers(sim, "no"), "forget_not")
@@ -539,6 +576,7 @@ def test_forget_me(file: Path, look: Look) -> None:
         sim.advance(300.0)
         assert len(sim.said) == before
         assert meant(answers(sim, "forget me"), "forget_nobody")
+        assert dict(sim.read(interloc.users)) == {"console": None}
     assert look() == {}
 
 

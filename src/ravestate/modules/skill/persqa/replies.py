@@ -8,10 +8,10 @@ from collections.abc import Iterable
 from ravestate.modules.meta.verbaliser.intents import Intent
 
 from .profile import Facts
-from .topics import NAME, TOPICS
+from .topics import TOPICS
 from .wording import clause, joined, spoken
 
-__all__ = ["asking", "learned", "reminder", "say", "stating", "summary"]
+__all__ = ["asking", "learned", "memorable", "say", "stating", "summary"]
 
 PACKAGE = __name__.rpartition(".")[0]
 """Where the phrases are."""
@@ -38,10 +38,9 @@ def stating(intent: str, topic: str, values: tuple[str, ...], known: Facts) -> I
     return say(intent, known, fact=clause(topic, values))
 
 
-def reminder(known: Facts, remembered: Facts, chance: random.Random, intent: str = "remind") -> Intent:
-    """Remind the user of something that he told in another talk."""
-    topic = chance.choice([topic for topic, values in remembered.items() if values] or [NAME])
-    return stating(intent, topic, remembered.get(topic) or known[topic], known)
+def memorable(remembered: Facts, chance: random.Random) -> str:
+    """One of the topics about which something is remembered."""
+    return chance.choice([topic for topic, values in remembered.items() if values])
 
 
 def summary(known: Facts) -> Intent:

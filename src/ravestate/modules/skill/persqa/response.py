@@ -13,7 +13,7 @@ from ravestate.modules.meta.verbaliser.intents import Intent
 from .acquaintance import Acquaintance
 from .inquiries import EVERYTHING
 from .profile import News, learn
-from .replies import asking, learned, reminder, say, stating, summary
+from .replies import asking, learned, memorable, say, stating, summary
 from .talk import FORGET, Talk
 from .topics import NAME, TOPICS, Fact
 from .understanding import Meaning
@@ -47,13 +47,13 @@ async def respond_to(
         case "nothing":
             return None, listening
         case "told" | "corrected":
-            return await _told(meaning, listening, memory, chance)
+            return await _told(meaning, listening, memory, now, chance)
         case "declined" | "unsure":
             return _closed(meaning.kind, meaning.topic, listening)
         case "none":
             _, closed = _closed("none", meaning.topic, listening)
             none = Meaning("told", (Fact(meaning.topic, (), gone=True),), meaning.topic)
-            _, after = await _told(none, closed, memory, chance)
+            _, after = await _told(none, closed, memory, now, chance)
             return say("none", after.known), after
         case "which":
             talk = replace(user.talk, ignored=0)  # the question stands
@@ -78,12 +78,16 @@ def _closed(intent: str, topic: str, user: Acquaintance) -> Response:
 
 
 async def _told(
-    meaning: Meaning, user: Acquaintance, memory: ontology.Memory | None, chance: random.Random
+    meaning: Meaning,
+    user: Acquaintance,
+    memory: ontology.Memory | None,
+    now: float,
+    chance: random.Random,
 ) -> Response:
     names = [fact for fact in meaning.facts if fact.topic == NAME]
     name = next((fact.values[0] for fact in names if not fact.gone), None)
     if names and name is None:  # my name is not Ada
-        return asking(NAME, {}), replace(user, talk=user.talk.asking(NAME, 0.0))
+        return asking(NAME, {}), replace(user, talk=user.talk.asking(NAME, now))
     before = user
     instead_of = user.talk.latest if meaning.kind == "corrected" else ()
     news = learn(user.facts, meaning.facts, instead_of)
@@ -131,8 +135,9 @@ def _of_name(
         return stating("known_already", NAME, (name,), known), user
     remembered = {topic: values for topic, values in user.talk.remembered.items() if values}
     if remembered:
+        topic = memorable(remembered, chance)
         return (
-            reminder(known, remembered, chance, "welcome_back"),
+            stating("welcome_back", topic, remembered[topic], known),
             replace(user, talk=replace(user.talk, reminded=True)),
         )
     return say("renamed" if again else "learned_name", known), user
@@ -168,11 +173,12 @@ def _asked(fact: Fact, user: Acquaintance, now: float) -> Response:
         if any(known.values()):
             return summary(known), replace(user, talk=replace(user.talk, reminded=True))
         return say("recall_nothing", known), user
+    mentioned = replace(user, talk=user.talk.mentioning(topic, known.get(topic, ())))
     if fact.values and known.get(topic):
         right = all(any(same(asked, value) for value in known[topic]) for asked in fact.values)
-        return stating("confirm" if right else "deny", topic, known[topic], known), user
+        return stating("confirm" if right else "deny", topic, known[topic], known), mentioned
     if known.get(topic):
-        return stating("recall_name" if topic == NAME else "recall", topic, known[topic], known), user
+        return stating("recall_name" if topic == NAME else "recall", topic, known[topic], known), mentioned
     if topic in known:
         return say("recall_none", known), user
     if topic in user.talk.closed:

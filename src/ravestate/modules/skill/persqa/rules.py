@@ -11,7 +11,7 @@ from ravestate.modules import idle, interloc, nlp, ontology, rawio, verbaliser
 from . import Settings, facts, module, reply, talk, who
 from .acquaintance import Acquaintance
 from .profile import Facts
-from .replies import asking, reminder
+from .replies import asking, memorable, stating
 from .response import respond_to
 from .talk import Talk
 from .topics import NAME, due
@@ -48,8 +48,10 @@ async def ask(ctx: rs.RuleContext) -> rs.Resign | None:
         return rs.Resign(f"the user left {now.ignored} questions without a word")
     known = known_of(ctx)
     if now.remembered and not now.reminded:
-        ctx[talk] = replace(now, reminded=True, question=None)
-        ctx[verbaliser.intent] = reminder(known, now.remembered, ctx.random)
+        topic = memorable(now.remembered, ctx.random)
+        values = now.remembered[topic]
+        ctx[talk] = replace(now, reminded=True, question=None).mentioning(topic, values)
+        ctx[verbaliser.intent] = stating("remind", topic, values, known)
         return None
     topic = due(settings.topics, known, now.closed, now.tries, last=now.last, limit=TRIES)
     if not topic:
@@ -60,7 +62,12 @@ async def ask(ctx: rs.RuleContext) -> rs.Resign | None:
 
 
 @module.rule(
-    when=rawio.input.changed & nlp.entities.changed & nlp.question.changed & nlp.yesno.changed,
+    when=rawio.input.changed
+    & nlp.tokens.changed
+    & nlp.pos.changed
+    & nlp.entities.changed
+    & nlp.question.changed
+    & nlp.yesno.changed,
     reads=ontology.memory,
     writes=(talk, who, facts, interloc.users),
     emits=reply,
@@ -73,6 +80,8 @@ async def listen(ctx: rs.RuleContext) -> None:
         ctx.payload(nlp.yesno.changed),
         ctx.payload(nlp.question.changed),
         ctx.payload(nlp.entities.changed),
+        ctx.payload(nlp.tokens.changed),
+        ctx.payload(nlp.pos.changed),
     )
     meaning = understand(heard, ctx[talk], known_of(ctx), ctx.now, settings.within)
     before = acquaintance_of(ctx)
@@ -82,7 +91,7 @@ async def listen(ctx: rs.RuleContext) -> None:
     keep(ctx, before, after)
     name = after.name
     users = ctx[interloc.users]
-    if name and name != before.name and len(users) == 1:
+    if name != before.name and len(users) == 1:
         [(key, item)] = users.items()
         if item is None or item == before.name:
             users.add(key, name)
@@ -97,9 +106,12 @@ async def respond(ctx: rs.RuleContext) -> None:
 
 
 @module.rule(when=rawio.output.changed.max_age(None).detached(), writes=talk, background=True)
-async def overhear(ctx: rs.RuleContext) -> None:
+async def overhear(ctx: rs.RuleContext) -> rs.Resign | None:
     """Whoever makes the agent speak unasked has the user's next words: they are no answer to the question before."""
+    if not any(letter.isalpha() for letter in ctx.payload(rawio.output.changed)):
+        return rs.Resign("that was no word")  # a feeling that goes with an answer, say
     ctx[talk] = ctx[talk].speaking()
+    return None
 
 
 @module.rule(

@@ -48,8 +48,8 @@ class Talk:
         closed: Topics that are not asked in this talk any more.
         ignored: How many questions in a row the user has left without a word.
         told: Topics that the user has told about in this talk.
-        last: The topic that was learnt last.
-        latest: What was learnt of it.
+        last: The topic that was learnt, or mentioned, last.
+        latest: What was said about it.
         age: How often the user has spoken since.
         met: Whether memory was asked about the user.
         remembered: What it had of him then.
@@ -130,6 +130,10 @@ class Talk:
             latest=latest,
             age=0,
         )
+
+    def mentioning(self, topic: str, values: tuple[str, ...]) -> Talk:
+        """The agent says what it knows about a topic, which the user may put right."""
+        return replace(self, last=topic, latest=values, age=0)
 
     @property
     def correctable(self) -> str:

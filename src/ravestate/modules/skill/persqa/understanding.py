@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
@@ -50,6 +50,8 @@ class Heard:
     yesno: nlp.YesNo = field(default_factory=nlp.YesNo)
     question: nlp.QuestionWord | None = None
     entities: tuple[nlp.Entity, ...] = ()
+    tokens: tuple[str, ...] = ()
+    pos: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,7 +96,7 @@ def understand(
         return _of_forgetting(heard, leave)
     if heard.question is not None and (asked := inquiry(text)):
         return Meaning("asked", (asked,))
-    told = statements(text, persons=persons_in(text, heard.entities), asked=topic)
+    told = statements(text, persons=persons_in(heard), asked=topic)
     told = [fact for fact in told if not fact.gone or _matters(fact, known, topic)]
     aside = leave or heard.question is not None
     if told:
@@ -158,13 +160,21 @@ def _before_question(text: str) -> str:
     return parts[0].strip() if len(parts) > 1 else ""
 
 
-def persons_in(text: str, entities: Iterable[nlp.Entity]) -> frozenset[str]:
-    """The names of persons in a text: those that `nlp` has found, and what has a capital and is nothing else."""
-    entities = list(entities)
-    found = {entity.text for entity in entities if entity.label == "PERSON"}
-    other = {word for entity in entities if entity.label != "PERSON" for word in entity.text.split()}
-    for match in re.finditer(r"(?<=[\s,])[^\W\d_a-z][\w'-]*(?: [^\W\d_a-z][\w'-]+)*", text):
+def persons_in(heard: Heard) -> frozenset[str]:
+    """The names of persons in an utterance: those that `nlp` has found, and what has a capital and is nothing else."""
+    plain_words = {word for word, pos in zip(heard.tokens, heard.pos, strict=False) if pos in _NO_NAMES}
+    other = {word for entity in heard.entities if entity.label != "PERSON" for word in entity.text.split()}
+    found = {
+        entity.text
+        for entity in heard.entities
+        if entity.label == "PERSON" and not plain_words >= set(entity.text.split())
+    }
+    for match in _CAPITALS.finditer(heard.text):
         words = match[0].split()
-        if not other & set(words) and words[0] not in ("I", "I'm"):
+        if not (other | plain_words) & set(words):
             found.update((match[0], words[0]))
     return frozenset(found)
+
+
+_NO_NAMES = frozenset(["ADJ", "ADV", "VERB", "AUX", "PRON", "DET", "NUM"])
+_CAPITALS = re.compile(r"(?<![\w'])[^\W\d_a-z][\w-]*(?: [^\W\d_a-z][\w-]+)*")

@@ -23,7 +23,8 @@ def tidy(text: str, topic: Topic) -> str:
     words = text.split()
     match topic.kind:
         case "name" | "people" | "place":
-            if text != text.lower() and not (text.isupper() and len(text) > 3):
+            shouted = text.isupper() and len(text) > (3 if topic.kind == "place" else 2)  # but USA, and JP
+            if text != text.lower() and not shouted:
                 return text
             if words[0].lower() in ("a", "an") and len(words) > 1:
                 return text  # a small town

@@ -1,0 +1,61 @@
+"""How the talk stands, step by step."""
+
+from ravestate.modules.skill.persqa.talk import Question, Talk
+
+
+def asked(topic: str = "home") -> Talk:
+    return Talk().asking(topic, 10.0).speaking()
+
+
+def test_the_first_thing_said_after_asking_is_the_question() -> None:
+    assert asked().question == Question("home", 10.0, heard=True)
+    assert asked().tries == {"home": 1}
+
+
+def test_what_is_said_next_unasked_speaks_over_it() -> None:
+    question = asked().speaking().question
+    assert question is not None and question.spoken_over and not question.fresh
+
+
+def test_an_answer_to_the_user_does_not_speak_over_it() -> None:
+    question = asked().listening(leave=False).speaking().question
+    assert question is not None and not question.spoken_over and question.turns == 1
+
+
+def test_a_question_waits_for_two_utterances_and_some_time() -> None:
+    talk = asked()
+    assert talk.pending(100.0, within=90.0) is not None
+    assert talk.pending(100.1, within=90.0) is None
+    once = talk.listening(leave=False)
+    assert once.pending(20.0, within=90.0) is not None
+    assert once.listening(leave=False).pending(20.0, within=90.0) is None
+
+
+def test_who_takes_leave_has_no_question_and_is_quiet_until_he_speaks() -> None:
+    left = asked().listening(leave=True)
+    assert left.question is None and left.quiet
+    assert not left.listening(leave=False).quiet
+
+
+def test_ignored_questions_count_until_the_user_speaks() -> None:
+    talk = asked().waiting().asking("name", 50.0).waiting()
+    assert talk.ignored == 2 and talk.question is None
+    assert talk.listening(leave=False).ignored == 0
+
+
+def test_what_was_learnt_can_be_put_right_for_a_while() -> None:
+    talk = asked().learning(["home"], "home", ("Ulm",))
+    assert talk.question is None and talk.told == {"home"}
+    for _ in range(2):
+        talk = talk.listening(leave=False)
+        assert talk.correctable == "home"
+    assert talk.listening(leave=False).correctable == ""
+
+
+def test_to_learn_something_else_leaves_the_question_open() -> None:
+    talk = asked().learning(["hobby"], "hobby", ("chess",))
+    assert talk.question is not None and talk.question.topic == "home"
+
+
+def test_closed_topics_stay_closed() -> None:
+    assert asked().closing("home").asking("name", 1.0).closing("name").closed == {"home", "name"}

@@ -1,0 +1,48 @@
+"""What is asked next."""
+
+import pytest
+
+from ravestate.modules import ontology
+from ravestate.modules.meta.ontology.places import types_of
+from ravestate.modules.skill.persqa.topics import TOPICS, due
+
+ALL = tuple(TOPICS)
+
+
+def next_topic(known: dict[str, tuple[str, ...]], **more: object) -> str:
+    given = {"closed": (), "tries": {}, "limit": 2, **more}
+    return due(ALL, known, **given)  # type: ignore[arg-type]
+
+
+def test_the_name_goes_first_and_the_order_is_that_of_the_table() -> None:
+    assert next_topic({}) == "name"
+    assert next_topic({"name": ("Ada",)}) == "home"
+    assert next_topic({}, closed=["name"]) == "home"
+
+
+def test_what_was_asked_less_often_goes_first_and_twice_is_enough() -> None:
+    assert next_topic({}, tries={"name": 1}) == "home"
+    assert next_topic({}, tries=dict.fromkeys(ALL, 1)) == "name"
+    assert next_topic({}, tries=dict.fromkeys(ALL, 2)) == ""
+
+
+@pytest.mark.parametrize(("last", "follow"), [("occupation", "employer"), ("subject", "university")])
+def test_follow_ups_go_first_and_need_what_they_follow(last: str, follow: str) -> None:
+    assert next_topic({"name": ("Ada",), last: ("x",)}, last=last) == follow
+    everything_else = {topic: ("x",) for topic in ALL if topic not in (last, follow)}
+    assert next_topic(everything_else, closed=[last]) == ""
+    assert next_topic({**everything_else, last: ()}) == ""
+
+
+@pytest.mark.parametrize("occupation", ["student", "Retired", "self-employed"])
+def test_who_has_no_employer_is_not_asked_for_one(occupation: str) -> None:
+    known = {topic: ("x",) for topic in ALL if topic != "employer"}
+    assert next_topic(known) == "employer"
+    assert next_topic({**known, "occupation": (occupation,)}) == ""
+
+
+def test_memory_knows_each_topic() -> None:
+    types = types_of(ontology.Settings())
+    for topic in TOPICS.values():
+        if topic.relation:
+            types.check_relation("Person", topic.relation, topic.type)

@@ -1,0 +1,67 @@
+"""How values are written, and said."""
+
+import pytest
+
+from ravestate.modules.skill.persqa.topics import TOPICS
+from ravestate.modules.skill.persqa.wording import clause, same, spoken, tidy
+
+
+@pytest.mark.parametrize(
+    ("topic", "text", "written"),
+    [
+        ("home", "hannover", "Hannover"),
+        ("home", "new york", "New York"),
+        ("home", "NEW YORK", "New York"),
+        ("home", "USA", "USA"),
+        ("home", "frankfurt am main", "Frankfurt am Main"),
+        ("home", "stoke-on-trent", "Stoke-on-Trent"),
+        ("home", "the hague", "the Hague"),
+        ("home", "Bad Homburg vor der Höhe", "Bad Homburg vor der Höhe"),
+        ("home", "łódź", "Łódź"),
+        ("name", "ada lovelace", "Ada Lovelace"),
+        ("name", "McKay", "McKay"),
+        ("name", "o'brien", "O'Brien"),
+        ("name", "jean-luc", "Jean-Luc"),
+        ("name", "ludwig van beethoven", "Ludwig van Beethoven"),
+        ("name", "🦊", "🦊"),
+        ("name", "李小龍", "李小龍"),
+        ("employer", "bmw", "BMW"),
+        ("employer", "deutsche bank", "Deutsche Bank"),
+        ("employer", "a bakery", "a bakery"),
+        ("employer", "eBay", "eBay"),
+        ("occupation", "Software Engineer", "software engineer"),
+        ("occupation", "CEO", "CEO"),
+        ("hobby", "Chess", "Chess"),
+        ("subject", "German", "German"),
+    ],
+)
+def test_tidy(topic: str, text: str, written: str) -> None:
+    assert tidy(text, TOPICS[topic]) == written
+
+
+@pytest.mark.parametrize(
+    ("topic", "values", "said"),
+    [
+        ("home", ["Hannover"], "you live in Hannover"),
+        ("hobby", ["chess", "football", "go"], "you like chess, football and go"),
+        ("occupation", ["baker"], "you are a baker"),
+        ("occupation", ["engineer"], "you are an engineer"),
+        ("occupation", ["university teacher"], "you are a university teacher"),
+        ("occupation", ["retired"], "you are retired"),
+        ("friend", ["Tom", "Anna"], "you are a friend of Tom and Anna"),
+    ],
+)
+def test_clauses(topic: str, values: list[str], said: str) -> None:
+    assert clause(topic, values) == said
+
+
+def test_every_topic_has_a_clause() -> None:
+    for topic in TOPICS:
+        assert spoken(topic, ["x"]) in clause(topic, ["x"])
+
+
+def test_the_same_is_the_same_whatever_its_case_and_article() -> None:
+    assert same("the Red Cross", "red cross")
+    assert same("Chess", "chess")
+    assert not same("Ulm", "Bremen")
+    assert same("the", "The")
