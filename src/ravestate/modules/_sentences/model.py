@@ -138,7 +138,9 @@ class SentenceModel:
             while end < len(order):
                 length = len(codes[order[end]].ids)
                 shortest = len(codes[order[start]].ids)
-                if end > start and (length * (end - start + 1) > BATCH_TOKENS or length > 1.25 * shortest + 4):
+                if end > start and (
+                    length * (end - start + 1) > BATCH_TOKENS or length > 1.25 * shortest + 4
+                ):
                     break
                 end += 1
             indices, start = order[start:end], end

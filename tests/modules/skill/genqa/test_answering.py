@@ -95,6 +95,25 @@ def test_a_title_gives_its_passages_their_sense(tmp_path: Path) -> None:
     answerer.close()
 
 
+def test_the_largest_is_not_the_second_largest(tmp_path: Path) -> None:
+    path = tmp_path / "index.sqlite"
+    put(
+        path,
+        "The second largest pump of the house is in the shed.",
+        "The largest pump of the house stands in the cellar, by the door.",
+    )
+    answerer = Answerer(path, collection=False)
+    assert "cellar" in answerer.answer("Where is the largest pump of the house?").text
+    assert "shed" in answerer.answer("Where is the second largest pump of the house?").text
+    answerer.close()
+
+
+def test_of_what_is_about_as_good_that_is_taken_which_says_least_besides(collection: Answerer) -> None:
+    assert collection.answer("What is the life expectancy in Italy?").text.startswith(
+        "The life expectancy of Italy is"
+    )
+
+
 def test_what_is_indexed_meanwhile_is_known_at_once(tmp_path: Path) -> None:
     path = tmp_path / "index.sqlite"
     answerer = Answerer(path, collection=False)

@@ -59,7 +59,7 @@ _EMPTY_WORDS = """
 _KIND_WORDS = """
     who whom whose what which when where why how many much old long far name names named call called tell know
     before become became gain gained live lives believe there time year day place way happen happens cause causes average
-    total current national main major use used
+    total current national main major use used lie lies located situated
 """
 _QUESTION_WORDS = frozenset(
     ("who", "whom", "whose", "what", "which", "when", "where", "why", "how", "many", "much", "tell", "know")
