@@ -10,5 +10,6 @@ QUESTIONS = {
     "importing": "how long does the import take, and what comes with it?",
     "threads": "what does a plain function cost, which runs in a thread?",
     "compiling": "how long does it take to compile a policy?",
+    "web_users": "how long do many users of the web page wait for an answer?",
     "text_agent": "how fast is the complete text agent, and how large?",
 }

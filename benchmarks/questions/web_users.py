@@ -1,0 +1,283 @@
+"""How long do many users of the web page wait for an answer?
+
+500 users are connected at once. Each says something every 10 s, at moments of their own, and all of them talk for half
+a minute; the server and the users are processes of their own, on one machine. The agent has all text modules but the
+language model; where no skill has anything to say, a rule in its place says what it has heard, so that an answer that
+went to the wrong user would be noticed. Measured, by the users, is the time from saying something to the first answer
+after it.
+
+Against it: a server of the same make (uvicorn) that sends back each message, and does nothing else.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import random
+import statistics
+import threading
+import time
+from collections.abc import Coroutine, Iterable
+from typing import Any
+
+from benchmarks.bench import Bench
+from benchmarks.child import Child
+from benchmarks.figures import Figure, compare, measured
+from benchmarks.peers.wire import serve
+
+USERS = 500
+EVERY = 10.0
+"""Seconds between what a user says and what they say next."""
+LIMIT = 0.2
+"""Seconds within which 95 % of the answers shall be there."""
+GIVEN_UP = 15.0
+"""Seconds after which an answer counts as lost."""
+
+NOT_ASKED = {"conio", "webio", "wildtalk", "telegramio"}
+"""Built-in modules that take no part: other platforms, and the language model."""
+
+PHRASES = (
+    "hello",
+    "I had soup number {} for lunch",
+    "My bicycle has {} spokes and squeaks a little",
+    "The tram with number {} was late again",
+    "There are {} swans on the canal today",
+)
+
+
+# ------------------------------------------------------------------------------------ the servers, each in a process
+
+
+def start(kind: str) -> int:
+    """Serve on a port of its own, which is returned, until the process ends.
+
+    Args:
+        kind: "agent" or "echo".
+    """
+    ready: list[int] = []
+    told = threading.Event()
+
+    def tell(port: int) -> None:
+        ready.append(port)
+        told.set()
+
+    work = serve_agent(tell) if kind == "agent" else serve_echo(tell)
+    threading.Thread(target=_run, args=(work, told), daemon=True).start()
+    told.wait()
+    return ready[0]
+
+
+def _run(work: Coroutine[Any, Any, None], told: threading.Event) -> None:
+    try:
+        asyncio.run(work)
+    finally:
+        told.set()
+
+
+def worked() -> float:
+    """Processor time that the process has taken so far (seconds)."""
+    return time.process_time()
+
+
+async def serve_agent(tell: Any) -> None:
+    """The agent, on its page."""
+    import importlib
+
+    import ravestate as rs
+    from ravestate.modules import BUILT_IN, rawio, webio
+    from ravestate.modules.platform.webio.server import Server
+    from ravestate.runtime.agent import Agent
+
+    stand_in = rs.Module("stand_in", requires=[rawio])
+
+    @stand_in.rule(when=rawio.input.changed, writes=rawio.output)
+    async def say_again(ctx: rs.RuleContext) -> None:
+        ctx[rawio.output] = f"You said: {ctx.payload(rawio.input.changed)}"
+
+    modules = [
+        importlib.import_module(f"ravestate.modules.{kind}.{name}")
+        for name, kind in BUILT_IN.items()
+        if name not in NOT_ASKED
+    ]
+    settings = {"webio": {"port": 0, "per_address": 2 * USERS}}
+    async with Server(Agent(*modules, stand_in, webio, settings=settings)) as server:
+        tell(server.port)
+        await asyncio.Event().wait()
+
+
+async def serve_echo(tell: Any) -> None:
+    """A bare echo."""
+    import socket
+
+    import uvicorn
+
+    async def echo(scope: Any, receive: Any, send: Any) -> None:
+        while True:
+            message = await receive()
+            if message["type"] == "websocket.connect":
+                await send({"type": "websocket.accept"})
+            elif message["type"] == "websocket.receive":
+                await send({"type": "websocket.send", "text": message["text"]})
+            else:
+                return
+
+    listener = socket.create_server(("127.0.0.1", 0))
+    tell(listener.getsockname()[1])
+    config = uvicorn.Config(
+        echo, log_config=None, log_level="error", ws_per_message_deflate=False, lifespan="off"
+    )
+    server = uvicorn.Server(config)
+    server.install_signal_handlers = lambda: None  # type: ignore[attr-defined]  # not in a thread
+    await server.serve(sockets=[listener])
+
+
+# ------------------------------------------------------------------------------------ the users, in a process of theirs
+
+
+def talk(port: int, kind: str, users: int, seconds: float) -> dict[str, Any]:
+    """Let all users talk for some time: how long each answer took (seconds), and what went wrong."""
+    return asyncio.run(_talk(port, kind, users, seconds))
+
+
+async def _talk(port: int, kind: str, users: int, seconds: float) -> dict[str, Any]:
+    first = User(users, kind)  # for whom everything is loaded
+    await first.come(port)
+    for _ in PHRASES:
+        await first._say()
+    await first.go()
+    everybody = [User(number, kind) for number in range(users)]
+    gate = asyncio.Semaphore(20)  # they do not all come through the door in one moment
+
+    async def come(user: User) -> None:
+        async with gate:
+            await user.come(port)
+
+    await asyncio.gather(*(come(user) for user in everybody))
+    await asyncio.gather(*(user.talk(seconds) for user in everybody))
+    await asyncio.gather(*(user.go() for user in everybody))
+    return {
+        "times": [took for user in everybody for took in user.times],
+        "said": sum(user.said for user in everybody),
+        "lost": sum(user.lost for user in everybody),
+        "crossed": sum(user.crossed for user in everybody),
+    }
+
+
+class User:
+    """Says something now and then, and looks at the clock until there is an answer."""
+
+    def __init__(self, number: int, kind: str) -> None:
+        self.number = number
+        self.is_agent = kind == "agent"
+        self.random = random.Random(number)
+        self.times: list[float] = []
+        self.said = self.lost = self.crossed = 0
+
+    async def come(self, port: int) -> None:
+        """Connect."""
+        from websockets.asyncio.client import connect
+
+        self.socket = await connect(f"ws://127.0.0.1:{port}/ws", compression=None, ping_interval=None)
+        if self.is_agent:
+            await self.socket.send('{"type":"hello","v":1}')
+            while json.loads(await self.socket.recv())["type"] != "message":
+                pass  # the greeting has come
+
+    async def talk(self, seconds: float) -> None:
+        """Say something every so often."""
+        await asyncio.sleep(self.random.random() * EVERY)
+        end = time.monotonic() + seconds - EVERY
+        while True:
+            began = time.monotonic()
+            await self._say()
+            if began + EVERY > end:
+                return
+            await asyncio.sleep(began + EVERY - time.monotonic())
+
+    async def _say(self) -> None:
+        self.said += 1
+        text = PHRASES[self.said % len(PHRASES)].format(self.number)
+        key = f"{self.number}-{self.said}"
+        began = time.perf_counter()
+        await self.socket.send(json.dumps({"type": "say", "id": key, "text": text}))
+        try:
+            async with asyncio.timeout(GIVEN_UP):
+                await self._answer(key, text)
+        except TimeoutError:
+            self.lost += 1
+        else:
+            self.times.append(time.perf_counter() - began)
+
+    async def _answer(self, key: str, text: str) -> None:
+        heard = False
+        while True:
+            frame = json.loads(await self.socket.recv())
+            if not self.is_agent:
+                self.crossed += frame["id"] != key
+                return
+            if frame["type"] != "message":
+                continue
+            if frame["from"] == "user":
+                self.crossed += frame.get("id") != key
+                heard = True
+            else:
+                again = frame["text"].removeprefix("You said: ")
+                self.crossed += again != frame["text"] and again != text
+                if heard:
+                    return
+
+    async def go(self) -> None:
+        """Disconnect."""
+        await self.socket.close()
+
+
+# ------------------------------------------------------------------------------------ the question
+
+
+def ask(bench: Bench) -> Iterable[Figure]:
+    """The agent against the echo, in turns."""
+    seconds = 40.0 if bench.several(1, 0) else 20.0
+    p95: dict[str, list[float]] = {"agent": [], "echo": []}
+    medians: dict[str, list[float]] = {"agent": [], "echo": []}
+    shares: list[float] = []
+    wrong = 0
+    for _ in bench.rounds(3, 1):
+        for kind in p95:
+            server, users = (bench.ours("benchmarks.questions.web_users") for _ in range(2))
+            port = server.ask("start", kind=kind)
+            before, began = server.ask("worked"), time.monotonic()
+            result = users.ask("talk", port=port, kind=kind, users=USERS, seconds=seconds)
+            if kind == "agent":
+                shares.append((server.ask("worked") - before) / (time.monotonic() - began))
+                wrong += result["lost"] + result["crossed"]
+            p95[kind].append(statistics.quantiles(result["times"], n=20)[-1])
+            medians[kind].append(statistics.median(result["times"]))
+            _end(server, users)
+    who = f"{USERS} users"
+    yield measured(
+        "web_users",
+        f"{who}: 95 % answered within",
+        p95["agent"],
+        target="< 200 ms",
+        reach=lambda v: v < LIMIT,
+    )
+    yield compare("web_users", f"{who}: 95 % answered within", p95["agent"], "bare echo", p95["echo"])
+    yield compare("web_users", f"{who}: half answered within", medians["agent"], "bare echo", medians["echo"])
+    yield measured(
+        "web_users",
+        f"{who}: messages lost or crossed",
+        [float(wrong)],
+        unit="",
+        target="none",
+        reach=lambda v: v == 0,
+    )
+    yield measured("web_users", f"{who}: work of the server", shares, unit="core")
+
+
+def _end(*children: Child) -> None:
+    for child in children:
+        child.close()
+
+
+if __name__ == "__main__":
+    serve(start, worked, talk)
