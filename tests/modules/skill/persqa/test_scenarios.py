@@ -324,6 +324,36 @@ def test_small_talk_is_left_to_others_at_once(file: Path, text: str) -> None:
         assert sim.read(persqa.who) is None
 
 
+@pytest.mark.parametrize("topic", ["name", "home", "employer"])
+@pytest.mark.parametrize(
+    "text",
+    [
+        "birds can fly",
+        "close the window please",
+        "lisa and mark bought a house",
+        "hard to say",
+        "most likely",
+        "unfortunately not",
+        "tom, where do you live?",
+        "my sister plays the piano",
+    ],
+)
+def test_sentences_are_no_answers(file: Path, topic: str, text: str) -> None:
+    with agent(file, topics=[topic]) as sim:
+        sim.put(persqa.talk, persqa.Talk().asking(topic, 0.0).speaking())
+        sim.say(text)
+        assert not any(sim.read(persqa.facts).values()) and sim.read(persqa.who) is None
+
+
+@pytest.mark.parametrize(
+    "name", ["bill gates", "will smith", "ada lovelace", "yes, it's ada", "well, i guess ada"]
+)
+def test_names_are_no_sentences(file: Path, name: str) -> None:
+    with agent(file) as sim:
+        assert asked(sim) == "name"
+        assert meant(answers(sim, name), "learned_name")
+
+
 def test_a_greeting_is_answered_by_who_greets_but_a_name_in_it_is_heard(file: Path) -> None:
     with agent(file, hibye) as sim:
         assert asked(sim) == "name"

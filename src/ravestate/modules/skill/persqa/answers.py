@@ -8,7 +8,7 @@ from collections.abc import Collection
 from .phrase import values
 from .statements import gerund, worker
 from .topics import NAME, TOPICS, Fact, Kind
-from .words import REMARKS, STATES
+from .words import REMARKS, STATES, VERBS
 
 __all__ = ["answer", "correction", "has_none", "refuses"]
 
@@ -25,7 +25,8 @@ OPENING = re.compile(
 LEAD: dict[Kind, str] = {
     "name": r"(?:you can |please )?(?:call me|i'm called|i am called|(?:i'm|i am|im)) ",
     "place": r"(?:(?:(?:i'm|i am|im) |i (?:live|come|came) )?(?:currently )?(?:from|in|at|out of) )?(?:the (?:city|town|village) of )?",
-    "activity": r"(?:i (?:(?:really|also|mostly|usually|sometimes|often) )*(?:(?:like|love|enjoy|prefer|do|go)(?: to)? )?|(?:i'm|i am|im) (?:into|interested in|fond of) )?",
+    "activity": r"(?:i (?:(?:really|also|mostly|usually|sometimes|often) )*(?:(?:like|love|enjoy|prefer|do|go)(?: to)? |"
+    rf"(?=(?:{'|'.join(sorted(VERBS))})\b))|(?:i'm|i am|im) (?:into|interested in|fond of) )?",
     "work": r"(?:i work |i'm working |i am working )?(?:as )?",
     "organisation": r"(?:(?:(?:i'm|i am|im) )?(?:a member of|in|at|for|with|part of) )?",
     "subject": r"(?:i(?:'m| am)? )?(?:study|studying|studied|doing|in)? ?",

@@ -116,7 +116,8 @@ def is_value(value: str, topic: Topic) -> bool:
     words = value.lower().split()
     if not words or len(value) > 60 or len(words) > (4 if topic.kind in ("name", "people", "place") else 7):
         return False
-    if NEVER_IN & set(words) or not any(_tells(letter) for letter in value):
+    named = words[0] == "will" and topic.kind in ("name", "people")  # Will Smith
+    if NEVER_IN & set(words[named:]) or not any(_tells(letter) for letter in value):
         return False
     first = words[0]
     match topic.kind:
@@ -124,7 +125,8 @@ def is_value(value: str, topic: Topic) -> bool:
             return (
                 first not in STATES
                 and not any(letter.isdigit() for letter in words[0][:1])
-                and not re.fullmatch(r"\w+ing", value)  # leaving, working
+                and "to" not in words
+                and not re.match(r"[a-z]+ing\b", value)  # leaving, working
             )
         case "place":
             if any(letter.isdigit() for letter in value):
@@ -141,6 +143,8 @@ def is_value(value: str, topic: Topic) -> bool:
         case "subject":
             return first not in NO_SUBJECT
         case "work":
+            if first[0].isdigit() or re.match(r"[a-z]+ing\b", value):  # 25 years old, working on it
+                return False
             return first not in STATES or value.lower() in ("retired", "self-employed", "freelance")
         case "activity":
             return first not in NO_HOBBY

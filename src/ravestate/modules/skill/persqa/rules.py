@@ -66,6 +66,7 @@ async def ask(ctx: rs.RuleContext) -> rs.Resign | None:
     & nlp.tokens.changed
     & nlp.pos.changed
     & nlp.entities.changed
+    & nlp.triples.changed
     & nlp.question.changed
     & nlp.yesno.changed,
     reads=ontology.memory,
@@ -82,6 +83,7 @@ async def listen(ctx: rs.RuleContext) -> None:
         ctx.payload(nlp.entities.changed),
         ctx.payload(nlp.tokens.changed),
         ctx.payload(nlp.pos.changed),
+        ctx.payload(nlp.triples.changed),
     )
     meaning = understand(heard, ctx[talk], known_of(ctx), ctx.now, settings.within)
     before = acquaintance_of(ctx)

@@ -15,6 +15,7 @@ from .phrase import plain
 from .statements import statements
 from .talk import FORGET, Talk
 from .topics import NAME, TOPICS, Fact
+from .words import VERBS
 
 __all__ = ["Heard", "Meaning", "persons_in", "understand"]
 
@@ -52,6 +53,7 @@ class Heard:
     entities: tuple[nlp.Entity, ...] = ()
     tokens: tuple[str, ...] = ()
     pos: tuple[str, ...] = ()
+    triples: tuple[nlp.Triple, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,7 +117,7 @@ def understand(
         return Meaning("declined", topic=topic)
     if pending.fresh and has_none(text):
         return Meaning("none" if topic != NAME else "declined", topic=topic)
-    if answered := answer(text, topic):
+    if (answered := answer(text, topic)) and may_stand_alone(heard):
         return Meaning("told", tuple(answered), topic)
     if not pending.fresh:
         return Meaning("nothing")
@@ -128,6 +130,35 @@ def _of_forgetting(heard: Heard, leave: bool) -> Meaning:
     if heard.yesno.no or heard.yesno.unsure:
         return Meaning("forget_no", leave=leave)
     return Meaning("nothing", leave=leave)
+
+
+def may_stand_alone(heard: Heard) -> bool:
+    """Whether an utterance may be an answer by itself: no sentence about others, no request, not adverbs alone."""
+    if heard.yesno and not _YES_AND.match(heard.text):
+        return False  # hard to say
+    if heard.pos and not _TELLING & set(heard.pos):
+        return False
+    if len(heard.tokens) < 3:
+        return True  # Bill Gates is no sentence, whatever a parser makes of him
+    for triple in heard.triples:
+        subject = str(triple.subject).lower()
+        if subject == "you" and triple.predicate.split()[0] not in VERBS:
+            return False
+        if subject and subject.split()[0] not in _SPEAKER:
+            return False
+    return True
+
+
+_YES_AND = re.compile(
+    r"\W*(?:yes|yeah|yep|yup|yea|sure|of course|certainly|ok|okay|probably|maybe|perhaps|i guess|i think|i suppose|mostly|no|nope|well|"
+    r"oh|actually|honestly)\b\W+\w",
+    re.IGNORECASE,
+)
+"""A yes that goes on: *yes, chess*."""
+_TELLING = frozenset(["NOUN", "PROPN", "VERB", "ADJ", "NUM", "X", "SYM"])
+_SPEAKER = frozenset(
+    ["i", "we", "my", "our", "you", "it", "that", "this", "they", "these", "those", "his", "her", "their"]
+)
 
 
 def _of_yesno(yesno: nlp.YesNo, topic: str, text: str) -> Kind:
@@ -156,8 +187,14 @@ def _matters(fact: Fact, known: Mapping[str, tuple[str, ...]], topic: str) -> bo
 
 def _before_question(text: str) -> str:
     """What is said before a question in the same breath: *hannover* in *hannover, and you?*."""
-    parts = re.split(r"(?:[,.;!…\n]+|\s(?=(?:and|what about|how about) (?:you|yours)\b))", text.rstrip(" ?"))
+    parts = _TURNED.split(text.rstrip(" ?"), maxsplit=1)
     return parts[0].strip() if len(parts) > 1 else ""
+
+
+_TURNED = re.compile(
+    r"[.;!…\n]+|,?\s(?=(?:and|what about|how about) (?:you|yours)\b|(?:what's|what is|where|who|what) (?:yours|about you|are you)\b)",
+    re.IGNORECASE,
+)
 
 
 def persons_in(heard: Heard) -> frozenset[str]:

@@ -37,14 +37,14 @@ STATES = word_set(
     probably never always nah nope yeah yep yup hmm hm um uh oh ah wow lol haha oops cheers morning evening night later
     tomorrow today yesterday again anyway absolutely certainly definitely exactly correct true false stop wait help quit exit
     me you he she we they us them him i i'm im do does did don't dont go come tell say talk ask let let's lets give show play
-    sing stay move forget shut leave doing being having having good-bye question welcome nonsense rubbish bullshit fuck shit damn
+    sing stay move forget shut leave doing being having having such bit thing pleasure doubt allergic unsure possible impossible likely most yay sir madam turn ten twenty thirty forty fifty sixty good-bye question welcome nonsense rubbish bullshit fuck shit damn
     """
 )
 """Words with which no name begins: how one is, and what one says instead of a name."""
 
 NEVER_IN = word_set(
     """i i'm im you you're youre he she we they it's don't dont doesn't isn't aren't won't can't cannot is are was were do does
-    did has have had will would could should what why how when who where me us them yourself myself not that's there's what's who's let's let he's she's we're they're want wanna think guess know mean need feel i've i'd i'll you've you'll tell
+    did has have had will would could can might must shall should what why how when who where me us them yourself myself not that's there's what's who's let's let he's she's we're they're want wanna think guess know mean need feel i've i'd i'll you've you'll tell
     """
 )
 """Words that stand in sentences and in no value."""
@@ -96,7 +96,7 @@ DETERMINERS = word_set("a an the my your his her our their this that it some any
 REMARKS = word_set(
     """no nope nah not never none nothing nobody noone yes yeah thanks thank hello hi hey bye goodbye what why how who lol haha hm hmm
     cool great awesome amazing sorry stop help please maybe perhaps whatever wow oops nonsense next skip pass tell shut go come wait
-    interesting raining snowing sunny cloudy windy rainy very too so really nice true false right wrong exactly take see have"""
+    interesting raining snowing sunny cloudy windy rainy very too so really nice true false right wrong exactly take see have indeed unfortunately hell whose sort be look can"""
 )
 """With these words begins what is no answer, unless something is called so: *New York*, but *no chance*."""
 
