@@ -53,7 +53,7 @@ class Host:
     @property
     def sessions(self) -> list[Any]:
         """The conversations that are going on."""
-        return list(self.app.state.sessions._tasks)
+        return list(self.app.state.sessions)
 
     def drop(self) -> None:
         """Lose all connections, as when the network fails."""

@@ -132,22 +132,25 @@ async def test_who_never_sends_a_request_is_not_waited_for() -> None:
 
 
 @on_loop
+async def test_who_never_sends_the_whole_of_a_second_request_is_not_waited_for_either() -> None:
+    with Served(patience=0.5) as served:
+        reader, writer = await asyncio.open_connection("127.0.0.1", served.port)
+        writer.write(b"GET /nothing HTTP/1.1\r\nhost: 127.0.0.1\r\n\r\nGET / HTTP/1.1\r\n")
+        with contextlib.suppress(ConnectionResetError):
+            assert b"404 Not Found" in await reader.read()
+        writer.close()
+
+
+@on_loop
 async def test_a_client_that_stops_reading_is_dropped_and_costs_little() -> None:
-    text = "x" * 60_000
+    text = "x" * 9_000
     with Served(patience=0.5) as served:
         async with unharmed(served, megabytes=16):
             open_before = served.files()
-            with socket.socket() as deaf:
-                deaf.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
-                deaf.connect(("127.0.0.1", served.port))
-                deaf.sendall(
-                    b"GET /ws HTTP/1.1\r\nhost: 127.0.0.1\r\nconnection: upgrade\r\nupgrade: websocket\r\n"
-                    b"sec-websocket-version: 13\r\nsec-websocket-key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n"
-                )
-                assert b"101 Switching Protocols" in await asyncio.to_thread(deaf.recv, 1000)
+            with upgraded(served) as deaf:
                 deaf.sendall(masked('{"type": "hello", "v": 1}'))
                 deaf.setblocking(False)
-                # Each is said again; 40 MB would wait for it.
+                # Each is said again; megabytes would wait for it.
                 with contextlib.suppress(BlockingIOError, ConnectionError):
                     for number in range(400):
                         deaf.sendall(masked(json.dumps({"type": "say", "id": f"{number}", "text": text})))
@@ -167,11 +170,38 @@ def everything(one: socket.socket) -> bytes:
     return received
 
 
+@contextlib.contextmanager
+def upgraded(served: Served) -> Iterator[socket.socket]:
+    """A WebSocket by hand, with little room for what is not read."""
+    with socket.socket() as one:
+        one.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
+        one.settimeout(10)
+        one.connect(("127.0.0.1", served.port))
+        one.sendall(
+            b"GET /ws HTTP/1.1\r\nhost: 127.0.0.1\r\nconnection: upgrade\r\nupgrade: websocket\r\n"
+            b"sec-websocket-version: 13\r\nsec-websocket-key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n"
+        )
+        assert b"101 Switching Protocols" in one.recv(1000)
+        yield one
+
+
 def masked(text: str) -> bytes:
     """A client's text frame."""
     data = text.encode()
     size = bytes([0x80 | len(data)]) if len(data) < 126 else b"\xfe" + len(data).to_bytes(2, "big")
     return b"\x81" + size + b"\0\0\0\0" + data
+
+
+@on_loop
+async def test_who_is_closed_and_does_not_go_is_hung_up_on() -> None:
+    with Served(patience=0.5) as served:
+        open_before = served.files()
+        with upgraded(served) as stubborn:
+            stubborn.sendall(masked("no hello"))
+            hang_up = select.poll()
+            hang_up.register(stubborn, 0)
+            assert await asyncio.to_thread(hang_up.poll, 15_000)
+            assert served.files() <= open_before
 
 
 @on_loop

@@ -64,6 +64,8 @@ async def test_a_bad_frame_later_is_told_and_the_conversation_goes_on() -> None:
         for bad in ("nonsense", '{"type": "say", "id": "a"}', '{"type": "hello", "v": 1}', b"\xff"):
             visit.send(bad)
             assert (await visit.next())["code"] == "malformed"
+        visit.say("x" * 10_001)
+        assert (await visit.next())["text"] == 'say: "text" has at most 10,000 characters, not 10,001'
         visit.say("  \n ")
         assert await visit.next() == {
             "type": "error",
@@ -80,7 +82,7 @@ async def test_a_frame_that_is_too_long_ends_it() -> None:
         await visit.hello()
         await visit.messages(1)
         visit.say("x" * connection.LONGEST)
-        assert (await visit.next())["code"] == "too-long"
+        assert (await visit.next())["code"] == "too-large"
         await visit.next()
         assert visit.closed == 1009
 

@@ -185,6 +185,18 @@ async def test_an_agent_that_leaves_ends_this_conversation_alone() -> None:
 
 
 @in_virtual_time
+async def test_what_is_said_while_it_ends_leaves_nothing_behind() -> None:
+    async with page(quitter) as app, Visit(app) as visit:
+        await visit.hello()
+        visit.say("go")
+        for _ in range(10):
+            visit.say("are you still there?")
+        await visit.frames("ended")
+        await visit.over()
+    assert not [task for task in asyncio.all_tasks() if task is not asyncio.current_task()]
+
+
+@in_virtual_time
 async def test_an_agent_that_fails_ends_this_conversation_and_says_so(
     caplog: pytest.LogCaptureFixture,
 ) -> None:

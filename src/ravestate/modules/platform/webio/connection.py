@@ -56,7 +56,7 @@ CODES = {
     "behind": 4409,
     "full": 1013,
     "closing": 1001,
-    "too-long": 1009,
+    "too-large": 1009,
 }
 """With which code a connection is closed. What is not listed leaves it open."""
 
@@ -142,7 +142,7 @@ class Connection:
             raise WebSocketDisconnect(message.get("code", 1006))
         text: str | bytes = message.get("text") or message.get("bytes") or ""
         if len(text) > LONGEST:  # most servers refuse it themselves
-            raise ProtocolError("too-long", f"a frame has at most {LONGEST:,} bytes, not {len(text):,}")
+            raise ProtocolError("too-large", f"a frame has at most {LONGEST:,} bytes, not {len(text):,}")
         return text
 
     # ------------------------------------------------------------------------------------ from the client

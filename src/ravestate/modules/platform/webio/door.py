@@ -37,7 +37,7 @@ class Door(H11Protocol):
         super().__init__(*args, **kwargs)
         self._per_address = per_address
         self._most = most
-        self._answering: object = None
+        self._answered: object = None
 
     def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]  # as above it
         """Take a connection, or refuse it."""
@@ -60,14 +60,13 @@ class Door(H11Protocol):
         self.transport.close()
 
     def _look(self) -> None:
-        """Close if nothing has been asked, or if an answer has not been read since the last look."""
+        """Close if nothing has been asked since the last look, or its answer is still not read."""
         if self.transport.is_closing() or self.transport.get_protocol() is not self:
             return
-        cycle = cast("Any", self.cycle)  # None until there is a request
-        if cycle is None or (not cycle.response_complete and cycle is self._answering):
+        if self.cycle is self._answered:  # both are None until there is a request
             _hang_up(self.transport)
             return
-        self._answering = cycle
+        self._answered = self.cycle
         self.loop.call_later(PATIENCE, self._look)
 
 
@@ -75,6 +74,15 @@ class Line(WebSocketsSansIOProtocol):
     """WebSockets: drops who does not read, instead of keeping what is meant for them."""
 
     _stalled: asyncio.TimerHandle | None = None
+
+    async def run_asgi(self) -> None:
+        """Run the application; who has not closed its end some time after that is hung up on."""
+        await super().run_asgi()
+        self.loop.call_later(PATIENCE, self._see_off)
+
+    def _see_off(self) -> None:
+        if not self.disconnected:
+            _hang_up(self.transport)
 
     def pause_writing(self) -> None:
         """The client leaves much unread: it has some time to make up."""

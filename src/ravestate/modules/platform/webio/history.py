@@ -13,7 +13,7 @@ __all__ = ["History"]
 MESSAGES = 500
 """Messages that are kept."""
 
-CHARACTERS = 500_000
+CHARACTERS = 200_000
 """Characters that are kept."""
 
 

@@ -45,6 +45,9 @@ __all__ = [
 VERSION = 1
 """Of the protocol. A frame or a field that is added does not change it; anything else does."""
 
+LONGEST_TEXT = 10_000
+"""Characters that a visitor says at once."""
+
 GREATEST = 2**53 - 1
 """The greatest whole number that every JSON reader has."""
 
@@ -219,7 +222,8 @@ def parse(text: str | bytes, frames: Mapping[str, type[Any]]) -> Any:
         frames: Which frames may come: `CLIENT` or `SERVER`.
 
     Raises:
-        ProtocolError: It is none of them; the code is ``version`` for another version, else ``malformed``.
+        ProtocolError: It is none of them; the code is ``version`` for another version, ``too-long`` for too much said at
+            once, else ``malformed``.
     """
     if not isinstance(text, str):
         raise _malformed("a frame is a text message, not a binary one")
@@ -250,6 +254,10 @@ def parse(text: str | bytes, frames: Mapping[str, type[Any]]) -> Any:
             raise _malformed(f'{name}: "{wire}": {_short(value)} is not {wanted}') from None
     if values.get("v", VERSION) != VERSION:
         raise ProtocolError("version", f'"v": {values["v"]}: this side speaks version {VERSION} only')
+    if len(values.get("text", "")) > LONGEST_TEXT and kind is Say:
+        raise ProtocolError(
+            "too-long", f'say: "text" has at most {LONGEST_TEXT:,} characters, not {len(values["text"]):,}'
+        )
     return kind(**values)
 
 

@@ -116,6 +116,7 @@ class Session:
         stopped = asyncio.create_task(self.context.until_stopped())
         try:
             await asyncio.wait((left, stopped), return_when=asyncio.FIRST_COMPLETED)
+            self._left.set()  # from now on nothing is heard
             if stopped.done():
                 self._reason = "the agent has left"
                 stopped.result()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from .protocol import ProtocolError
@@ -39,6 +40,10 @@ class Sessions:
 
     def __len__(self) -> int:
         return len(self._tasks)
+
+    def __iter__(self) -> Iterator[Session]:
+        """Those that are going on, or about to end; the oldest first."""
+        return iter(tuple(self._tasks))
 
     def get(self, id: str) -> Session | None:
         """The conversation of a secret, if it is still going on."""
