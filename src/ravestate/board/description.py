@@ -1,0 +1,273 @@
+"""A policy as plain values: what the board shows of it, and what a recorded trace carries along.
+
+Everything here can be written to JSON and read back, so that a trace is understood without the agent that made it.
+"""
+
+from __future__ import annotations
+
+import inspect
+import math
+from dataclasses import dataclass
+from typing import Any
+
+from ravestate.policy.completion import UNIT
+from ravestate.policy.diagram.build import build
+from ravestate.policy.diagram.graph import Diagram
+from ravestate.policy.plan import Clause, Need, RulePlan, SignalPlan, SlotPlan
+from ravestate.policy.policy import Policy
+
+__all__ = [
+    "ClauseView",
+    "ConstraintView",
+    "Description",
+    "GateView",
+    "RuleView",
+    "SignalView",
+    "SlotView",
+    "Term",
+    "describe",
+]
+
+
+_Users = dict[str, list[str]]
+
+
+@dataclass(frozen=True, slots=True)
+class ConstraintView:
+    """A signal that a clause wants; ages in seconds (``max_age=None``: any), predicates by their names."""
+
+    signal: str
+    min_age: float
+    max_age: float | None
+    detached: bool
+    predicates: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class GateView:
+    """A predicate on a slot that gates a clause, and how it is written."""
+
+    slot: str
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Term:
+    """One addend of a utility: a signal that lies on the pathways of so many rules says −ln(rules / |Λ|) nats (L9)."""
+
+    signal: str
+    rules: int
+    nats: float
+
+
+@dataclass(frozen=True, slots=True)
+class ClauseView:
+    """A clause, and how its utility is made up (nats).
+
+    Attributes:
+        condition: As it is written.
+        terms: Of the pathway that decides, which is the one that says least.
+        pathways: How many pathways there are.
+        predicates: How many predicates add ln 2 each.
+        utility: The sum of both (L9).
+        base: Utility × weight: the effective utility of a rule that has recovered.
+    """
+
+    condition: str
+    constraints: tuple[ConstraintView, ...]
+    gates: tuple[GateView, ...]
+    terms: tuple[Term, ...]
+    pathways: int
+    predicates: int
+    utility: float
+    base: float
+
+
+@dataclass(frozen=True, slots=True)
+class RuleView:
+    """A rule: as declared, with all that it ``raises``, the signals of slots that it writes included."""
+
+    name: str
+    module: str
+    doc: str
+    origin: str
+    when: str
+    until: str
+    clauses: tuple[ClauseView, ...]
+    reads: tuple[str, ...]
+    writes: tuple[str, ...]
+    emits: tuple[str, ...]
+    raises: tuple[str, ...]
+    weight: float
+    cooldown: float
+    patience: float | None
+    timeout: float | None
+    detached: bool
+    background: bool
+
+
+@dataclass(frozen=True, slots=True)
+class SignalView:
+    """A signal: whose it is, whether it may come from outside, who hears it and who raises it."""
+
+    name: str
+    module: str
+    slot: str | None
+    payload: str
+    input: bool
+    hearers: tuple[str, ...]
+    raisers: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class SlotView:
+    """A slot: ``value``, ``flag`` or ``collection``, the type that it takes, and its signals."""
+
+    name: str
+    module: str
+    kind: str
+    type: str
+    signals: tuple[str, ...]
+    readers: tuple[str, ...]
+    writers: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Description:
+    """A policy. |Λ| is the number of its rules."""
+
+    modules: tuple[str, ...]
+    rules: tuple[RuleView, ...]
+    signals: tuple[SignalView, ...]
+    slots: tuple[SlotView, ...]
+    diagram: Diagram
+
+    def rule(self, name: str) -> RuleView | None:
+        """The rule of a name, if there is one."""
+        return next((rule for rule in self.rules if rule.name == name), None)
+
+
+def describe(policy: Policy) -> Description:
+    """Describe a policy. It takes a moment (milliseconds for a hundred rules): describe each one once.
+
+    Example:
+        >>> import ravestate as rs
+        >>> lamp = rs.Module("lamp")
+        >>> lit = lamp.flag("lit")
+        >>> @lamp.rule(when=rs.startup, writes=lit)
+        ... def light(ctx): ...
+        >>> describe(rs.compile(lamp)).rules[0].raises
+        ('lamp:lit:changed', 'lamp:lit:true', 'lamp:lit:false')
+    """
+    readers, writers = _users(policy)
+    return Description(
+        tuple(module.name for module in policy.modules),
+        tuple(_rule(policy, plan) for plan in policy.rule_plans),
+        tuple(_signal(policy, plan) for plan in policy.signal_plans),
+        tuple(_slot(plan, readers, writers) for plan in policy.slot_plans),
+        build(policy.rules.values()),
+    )
+
+
+def _rule(policy: Policy, plan: RulePlan) -> RuleView:
+    rule = plan.rule
+    return RuleView(
+        plan.name,
+        _module(plan.name),
+        inspect.cleandoc(rule.__doc__ or "").partition("\n\n")[0],
+        rule.origin,
+        str(rule.when),
+        "" if rule.until is None else str(rule.until),
+        tuple(_clause(policy, clause) for clause in plan.clauses),
+        tuple(slot.name for slot in rule.reads),
+        tuple(slot.name for slot in rule.writes),
+        tuple(signal.name for signal in rule.emits),
+        tuple(policy.signal_plans[signal].name for signal in plan.raises),
+        plan.weight,
+        plan.cooldown,
+        plan.patience,
+        plan.timeout,
+        plan.detached,
+        plan.background,
+    )
+
+
+def _clause(policy: Policy, clause: Clause) -> ClauseView:
+    pathways = clause.pathways
+    predicates = len(clause.guards) + sum(len(need.predicates) for need in clause.needs)
+    least = sorted(signal.name for signal in pathways[0]) if pathways else []
+    return ClauseView(
+        clause.source,
+        tuple(_constraint(need) for need in clause.needs),
+        tuple(GateView(slot.name, str(guard)) for slot, guard in clause.guards),
+        tuple(_term(policy, clause, name) for name in least),
+        len(pathways),
+        predicates,
+        clause.utility,
+        clause.base,
+    )
+
+
+def _constraint(need: Need) -> ConstraintView:
+    return ConstraintView(
+        need.signal.name,
+        need.min_age,
+        None if need.max_age == math.inf else need.max_age,
+        need.detached,
+        tuple(getattr(p, "__name__", type(p).__name__) for p in need.predicates),
+    )
+
+
+def _term(policy: Policy, clause: Clause, name: str) -> Term:
+    completed = clause.completed
+    assert completed is not None  # a compiled clause has it
+    completion = completed.completion
+    nats = completion.information[completion.place[policy.signal_of[name].index]] / UNIT
+    return Term(name, round(len(policy.rule_plans) * math.exp(-nats)), round(nats, 12))
+
+
+def _signal(policy: Policy, plan: SignalPlan) -> SignalView:
+    rules = policy.causes.all_causes[plan.index]
+    slot = None if plan.slot is None else policy.slot_plans[plan.slot].name
+    return SignalView(
+        plan.name,
+        _module(plan.name),
+        slot,
+        _type(plan.signal.payload),
+        plan.input or not rules,
+        tuple(dict.fromkeys(need.clause.rule.name for need in plan.listeners)),
+        tuple(rule.name for rule in rules),
+    )
+
+
+def _slot(plan: SlotPlan, readers: _Users, writers: _Users) -> SlotView:
+    return SlotView(
+        plan.name,
+        _module(plan.name),
+        plan.slot.kind,
+        _type(plan.slot.type),
+        tuple(signal.name for signal in plan.signals),
+        tuple(readers.get(plan.name, ())),
+        tuple(writers.get(plan.name, ())),
+    )
+
+
+def _users(policy: Policy) -> tuple[_Users, _Users]:
+    """For each slot the rules that read it, and those that write it."""
+    readers: _Users = {}
+    writers: _Users = {}
+    for name, rule in policy.rules.items():
+        for slots, users in ((rule.reads, readers), (rule.writes, writers)):
+            for slot in slots:
+                users.setdefault(slot.name, []).append(name)
+    return readers, writers
+
+
+def _module(name: str) -> str:
+    return name.partition(":")[0]
+
+
+def _type(kind: Any) -> str:
+    if kind is None or kind is type(None):
+        return ""
+    return getattr(kind, "__name__", str(kind))

@@ -1,0 +1,116 @@
+"""Values as they are shown: JSON where that can carry them, else their ``repr``; cut where they are long.
+
+Values are foreign: they may be huge, endless in depth, or fail when they are looked at. None of that may harm who looks.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any, cast
+
+__all__ = ["Shown", "show"]
+
+DEEPEST = 6
+"""Containers within containers that are looked into."""
+
+
+@dataclass(frozen=True, slots=True)
+class Shown:
+    """A value as text.
+
+    Attributes:
+        text: JSON, or a ``repr``.
+        json: Whether it is JSON that stands for the whole value, so that it may be edited and written back.
+        cut: Whether there is more of it.
+    """
+
+    text: str
+    json: bool = True
+    cut: bool = False
+
+
+class _Foreign(Exception):
+    """JSON has no word for a value."""
+
+
+def show(value: object, most: int = 2000) -> Shown:
+    """A value as text of at most `most` characters.
+
+    Example:
+        >>> show({"name": "Ada", "seen": [1, 2]})
+        Shown(text='{"name": "Ada", "seen": [1, 2]}', json=True, cut=False)
+        >>> show("x" * 5000, most=8)
+        Shown(text='"xxxxxxx', json=False, cut=True)
+        >>> show(object).text
+        "<class 'object'>"
+    """
+    kind = type(value)
+    if value is None or kind is bool or (kind is int and abs(cast("int", value)) < 1 << 2 * most):
+        return Shown(json.dumps(value))
+    if kind is str:
+        text = cast("str", value)
+        if len(text) < most - 2:
+            whole = json.dumps(_well_formed(text), ensure_ascii=False)
+            if len(whole) <= most:
+                return Shown(whole)
+        return Shown(json.dumps(_well_formed(text[:most]), ensure_ascii=False)[:most], False, True)
+    pieces: list[str] = []
+    size = 0
+    try:
+        for piece in _json(value, 0):
+            pieces.append(piece)
+            size += len(piece)
+            if size > most:
+                return Shown("".join(pieces)[:most], False, True)
+        return Shown("".join(pieces))
+    except _Foreign:
+        return _repr(value, most)
+    except Exception as error:  # a container of foreign make, that fails when it is looked through
+        return Shown(f"<{kind.__name__} that cannot be shown: {type(error).__name__}>", False)
+
+
+def _json(value: object, depth: int) -> Iterator[str]:
+    """The pieces of a value's JSON, made one by one, so that a huge one need not be made whole."""
+    if value is None or isinstance(value, (bool, int)):
+        yield json.dumps(value)
+    elif isinstance(value, float):
+        if not math.isfinite(value):
+            raise _Foreign
+        yield json.dumps(value)
+    elif isinstance(value, str):
+        yield json.dumps(_well_formed(value[:100_000]), ensure_ascii=False)
+    elif depth > DEEPEST:
+        raise _Foreign
+    elif isinstance(value, Mapping):
+        yield "{"
+        for number, (key, item) in enumerate(cast("Mapping[object, object]", value).items()):
+            if not isinstance(key, str):
+                raise _Foreign
+            yield (", " if number else "") + json.dumps(_well_formed(key[:1000]), ensure_ascii=False) + ": "
+            yield from _json(item, depth + 1)
+        yield "}"
+    elif type(value) in (list, tuple):
+        yield "["
+        for number, item in enumerate(cast("list[object]", value)):
+            if number:
+                yield ", "
+            yield from _json(item, depth + 1)
+        yield "]"
+    else:
+        raise _Foreign
+
+
+def _repr(value: object, most: int) -> Shown:
+    try:
+        text = _well_formed(repr(value))
+    except Exception as error:  # its repr is foreign code
+        return Shown(f"<{type(value).__name__} whose repr fails: {type(error).__name__}>", False)
+    return Shown(text[:most], False, len(text) > most)
+
+
+def _well_formed(text: Any) -> str:
+    """Without lone surrogates, which no encoding carries."""
+    return text if text.isascii() else text.encode("utf-8", "replace").decode("utf-8")

@@ -1,0 +1,431 @@
+"""Why a rule did not fire: the right reason for each way in which that happens."""
+
+import asyncio
+import math
+
+import pytest
+
+import ravestate as rs
+from ravestate.board.description import describe
+from ravestate.board.gates import gates_of
+from ravestate.board.why_not import WhyNot, why_not
+from ravestate.engine.trace import Born
+from ravestate.testing import Simulation, simulate
+
+
+class Stage:
+    """Two inputs, an output, and the usual rules to ask about."""
+
+    def __init__(self) -> None:
+        self.module = rs.Module("demo")
+        self.input = self.module.slot("input", "", always=True)
+        self.touch = self.module.signal("touch")
+        self.output = self.module.slot("output", "", always=True)
+
+    def run(self, patience: float = 1.0) -> Simulation:
+        return simulate(self.module, patience=patience)
+
+
+@pytest.fixture
+def stage() -> Stage:
+    return Stage()
+
+
+def spike_of(sim: Simulation, signal: str, number: int = 0) -> int:
+    return [r.spike for r in sim.trace if isinstance(r, Born) and r.signal == signal][number]
+
+
+def ask(sim: Simulation, rule: str, signal: str = "demo:input:changed", number: int = 0) -> WhyNot:
+    policy = sim.context.policy
+    found = why_not(
+        sim.trace, describe(policy), f"demo:{rule}", spike_of(sim, signal, number), gates_of(policy)
+    )
+    assert str(found)  # it can always be said
+    return found
+
+
+def conversation(stage: Stage, is_question: bool, resigns: bool = False, slow: float = 0.0) -> None:
+    """A classifier, an answer to questions, and small talk for the rest."""
+    question = stage.module.signal("question")
+
+    @stage.module.rule(when=stage.input.changed, emits=question)
+    async def classify(ctx: rs.RuleContext) -> None:
+        if slow:
+            await ctx.sleep(slow)
+        if is_question:
+            ctx.emit(question)
+
+    @stage.module.rule(when=question, writes=stage.output)
+    async def qa(ctx: rs.RuleContext) -> rs.Resign | None:
+        if resigns:
+            return rs.Resign("it does not know")
+        ctx[stage.output] = "an answer"
+        return None
+
+    @stage.module.rule(when=stage.input.changed, writes=stage.output)
+    async def talk(ctx: rs.RuleContext) -> None:
+        ctx[stage.output] = "small talk"
+
+
+def test_it_did_fire(stage: Stage) -> None:
+    conversation(stage, is_question=True)
+    with stage.run() as sim:
+        sim.put(stage.input, "?")
+        found = ask(sim, "qa")
+    assert found.verdict == "fired"
+    assert found.words == "it did fire, at 0.000 s; it wrote demo:output"
+    assert [moment.words for moment in found.moments] == [
+        "took demo:question: it has all it needs", "runs", "is done",
+    ]  # fmt: skip
+
+
+def test_it_was_ready_and_the_better_one_answered(stage: Stage) -> None:
+    conversation(stage, is_question=True, slow=2.0)
+    with stage.run() as sim:
+        sim.put(stage.input, "?")
+        assert ask(sim, "talk").verdict == "waiting"
+        sim.advance(2)
+        found = ask(sim, "talk")
+    assert found.verdict == "outrun"
+    nats = math.log(3)
+    assert found.words == (
+        f"it was ready, and waited for demo:qa ({nats:.3f} nats ahead); demo:qa answered at 2.000 s"
+    )
+    assert found.at == 2.0
+    assert ("demo:qa",) in [moment.rules for moment in found.moments]
+
+
+def test_it_lacked_a_signal_that_its_cause_did_not_raise(stage: Stage) -> None:
+    conversation(stage, is_question=False)
+    with stage.run() as sim:
+        sim.put(stage.input, "hello")
+        found = ask(sim, "qa")
+    assert found.verdict == "untouched"
+    (missing,) = found.missing
+    assert missing.words == "demo:question did not occur"
+    (raiser,) = missing.raisers
+    assert (raiser.rule, raiser.outcome) == ("demo:classify", "done")
+    assert raiser.words == "demo:classify was done without raising it, at 0.000 s"
+
+
+def test_it_resigned(stage: Stage) -> None:
+    conversation(stage, is_question=True, resigns=True)
+    with stage.run() as sim:
+        sim.put(stage.input, "?")
+        found, other = ask(sim, "qa"), ask(sim, "talk")
+    assert found.verdict == "resigned"
+    assert found.words == "it ran at 0.000 s and resigned: it does not know"
+    assert other.verdict == "fired"
+
+
+def test_it_failed_before_and_after_a_write(stage: Stage) -> None:
+    @stage.module.rule(when=stage.input.changed, writes=stage.output)
+    async def early(ctx: rs.RuleContext) -> None:
+        raise ValueError("no such word")
+
+    @stage.module.rule(when=stage.touch, writes=stage.output)
+    async def late(ctx: rs.RuleContext) -> None:
+        ctx[stage.output] = "half"
+        raise ValueError("no such word")
+
+    with stage.run() as sim:
+        sim.put(stage.input, "x")
+        sim.emit(stage.touch)
+        first, second = ask(sim, "early"), ask(sim, "late", "demo:touch")
+    assert (first.verdict, first.words) == (
+        "failed",
+        "it ran at 0.000 s and failed: ValueError('no such word')",
+    )
+    assert second.verdict == "fired"
+    assert "failed after it had written" in second.words
+
+
+def test_it_never_took_the_spike_as_the_payload_did_not_fit(stage: Stage) -> None:
+    @stage.module.rule(when=stage.input.changed.where(str.isupper), writes=stage.output)
+    async def shout(ctx: rs.RuleContext) -> None: ...
+
+    with stage.run() as sim:
+        sim.put(stage.input, "quiet")
+        found = ask(sim, "shout")
+    assert found.verdict == "passed"
+    assert found.words == "it did not take demo:input:changed: its payload did not fit the predicate"
+
+
+def test_it_never_took_the_spike_as_its_cause_was_answered(stage: Stage) -> None:
+    later = stage.module.signal("later")
+
+    @stage.module.rule(when=stage.input.changed, writes=stage.output)
+    async def quick(ctx: rs.RuleContext) -> None:
+        ctx[stage.output] = "quick"
+
+    @stage.module.rule(when=stage.output.changed, emits=later)
+    async def follow(ctx: rs.RuleContext) -> None:
+        ctx.emit(later)
+
+    @stage.module.rule(when=later, writes=stage.output, weight=0.01)
+    async def again(ctx: rs.RuleContext) -> None: ...
+
+    with stage.run() as sim:
+        sim.put(stage.input, "x")
+        found = ask(sim, "again")
+    assert found.verdict in ("passed", "outrun")
+    assert "demo:quick" in found.words
+
+
+def test_it_was_among_its_own_causes(stage: Stage) -> None:
+    @stage.module.rule(when=stage.input.changed | stage.output.changed, writes=stage.output)
+    async def echo(ctx: rs.RuleContext) -> None:
+        ctx[stage.output] = "echo"
+
+    with stage.run() as sim:
+        sim.put(stage.input, "x")
+        found = ask(sim, "echo")
+    assert found.verdict == "fired"
+    assert "did not take demo:output:changed: the rule itself was among its causes" in [
+        moment.words for moment in found.moments
+    ]
+
+
+def test_it_lacked_an_input_until_its_spike_was_too_old(stage: Stage) -> None:
+    @stage.module.rule(when=stage.input.changed & stage.touch)
+    async def both(ctx: rs.RuleContext) -> None: ...
+
+    with stage.run() as sim:
+        sim.put(stage.input, "x")
+        now = ask(sim, "both")
+        sim.advance(6)
+        found = ask(sim, "both")
+    assert now.verdict == "lacked"
+    assert now.words == "it has demo:input:changed, and still lacks demo:touch"
+    assert found.verdict == "lacked"
+    assert found.words == (
+        "it took demo:input:changed, but lacked demo:touch; demo:input:changed reached its greatest age of 5 s at 5.000 s"
+    )
+    assert found.missing[0].words == "demo:touch comes from outside, and did not come"
+
+
+def test_its_patience_ran_out_while_another_waited(stage: Stage) -> None:
+    @stage.module.rule(when=stage.input.changed & stage.touch, writes=stage.output)
+    async def fused(ctx: rs.RuleContext) -> None: ...
+
+    @stage.module.rule(when=stage.input.changed, writes=stage.output)
+    async def plain(ctx: rs.RuleContext) -> None:
+        ctx[stage.output] = "plain"
+
+    with stage.run() as sim:
+        sim.put(stage.input, "x")
+        waits = ask(sim, "plain")
+        sim.advance(2)
+        found = ask(sim, "fused")
+    assert waits.verdict == "waiting"
+    assert waits.words.endswith("until 1.000 s at the latest")
+    assert found.verdict == "eliminated"
+    assert found.words == (
+        "it took demo:input:changed, but lacked demo:touch; demo:plain waited for it from 0.000 s on, and its patience "
+        "ran out at 1.000 s"
+    )
+
+
+def test_a_predicate_on_a_slot_was_false(stage: Stage) -> None:
+    awake = stage.module.flag("awake")
+
+    @stage.module.rule(when=stage.input.changed & awake.holds(bool))
+    async def react(ctx: rs.RuleContext) -> None: ...
+
+    with stage.run() as sim:
+        sim.put(stage.input, "x")
+        assert ask(sim, "react").verdict == "gated"
+        sim.advance(6)
+        found = ask(sim, "react")
+    assert found.verdict == "gated"
+    assert found.words.startswith("it had all spikes, but demo:awake.holds(bool) was false")
+
+
+def test_a_gate_that_was_shut_is_told_from_a_better_rule(stage: Stage) -> None:
+    awake = stage.module.flag("awake")
+
+    @stage.module.rule(when=stage.input.changed & awake.holds(bool), writes=stage.output)
+    async def react(ctx: rs.RuleContext) -> None: ...
+
+    @stage.module.rule(when=stage.input.changed, writes=stage.output)
+    async def plain(ctx: rs.RuleContext) -> None:
+        ctx[stage.output] = "plain"
+
+    with stage.run() as sim:
+        sim.put(awake, True)
+        sim.put(awake, False)
+        sim.put(stage.input, "x")
+        found = ask(sim, "react")
+    assert found.verdict == "gated"
+    assert "demo:plain answered this cause" in found.words
+
+
+def test_its_spike_was_too_young(stage: Stage) -> None:
+    @stage.module.rule(when=stage.input.changed.min_age(3.0), writes=stage.output)
+    async def slow(ctx: rs.RuleContext) -> None: ...
+
+    @stage.module.rule(when=stage.input.changed, writes=stage.output, weight=9)
+    async def quick(ctx: rs.RuleContext) -> None:
+        ctx[stage.output] = "quick"
+
+    with stage.run() as sim:
+        sim.put(stage.input, "x")
+        found = ask(sim, "slow")
+    assert found.verdict in ("young", "fired")
+    if found.verdict == "young":
+        assert "3 s old" in found.words
+
+
+def test_it_had_retired(stage: Stage) -> None:
+    @stage.module.rule(when=stage.input.changed)
+    async def once(ctx: rs.RuleContext) -> rs.Retire:
+        return rs.Retire()
+
+    with stage.run() as sim:
+        sim.put(stage.input, "x")
+        sim.advance(1)
+        sim.put(stage.input, "y")
+        first, second = ask(sim, "once"), ask(sim, "once", number=1)
+    assert first.verdict == "fired"
+    assert (second.verdict, second.words) == ("retired", "it had retired at 0.000 s, before that")
+
+
+def test_its_spike_was_withdrawn(stage: Stage) -> None:
+    @stage.module.rule(when=stage.input.changed & stage.touch)
+    async def both(ctx: rs.RuleContext) -> None: ...
+
+    with stage.run() as sim:
+        sim.put(stage.input, "x")
+        sim.wipe(stage.input.changed)
+        found = ask(sim, "both")
+    assert found.verdict == "withdrawn"
+    assert found.words == "demo:input:changed was withdrawn at 0.000 s: it was wiped"
+
+
+def test_it_waited_for_a_slot_that_was_taken(stage: Stage) -> None:
+    @stage.module.rule(when=stage.input.changed, writes=stage.output, weight=2)
+    async def long(ctx: rs.RuleContext) -> None:
+        await ctx.sleep(3)
+        ctx[stage.output] = "at last"
+
+    @stage.module.rule(when=stage.input.changed, writes=stage.output)
+    async def short(ctx: rs.RuleContext) -> None: ...
+
+    with stage.run() as sim:
+        sim.put(stage.input, "x")
+        sim.advance(1)
+        waiting = ask(sim, "short")
+        sim.advance(3)
+        found = ask(sim, "short")
+    assert waiting.verdict == "waiting"
+    assert "demo:long, which ran and had taken demo:output" in waiting.words
+    assert found.verdict == "outrun"
+    assert found.words.endswith("demo:long answered at 3.000 s")
+
+
+def test_of_equals_the_first_declared_answers(stage: Stage) -> None:
+    @stage.module.rule(when=stage.input.changed, writes=stage.output)
+    async def first(ctx: rs.RuleContext) -> None:
+        await asyncio.sleep(0)
+        ctx[stage.output] = "first"
+
+    @stage.module.rule(when=stage.input.changed, writes=stage.output)
+    async def second(ctx: rs.RuleContext) -> None: ...
+
+    with stage.run() as sim:
+        sim.put(stage.input, "x")
+        found = ask(sim, "second")
+    assert found.verdict == "outrun"
+    assert "demo:first" in found.words
+
+
+def test_another_input_has_another_answer(stage: Stage) -> None:
+    conversation(stage, is_question=False)
+    with stage.run() as sim:
+        sim.put(stage.input, "one")
+        sim.advance(1)
+        sim.put(stage.input, "two")
+        found = ask(sim, "talk", number=1)
+    assert found.verdict == "fired"
+    assert found.time == 1.0
+    assert all(moment.time == 1.0 for moment in found.moments)
+
+
+def test_the_signal_of_another_cause_is_told_apart(stage: Stage) -> None:
+    question = stage.module.signal("question")
+
+    @stage.module.rule(when=stage.input.changed.where(lambda text: "?" in text), emits=question)
+    async def classify(ctx: rs.RuleContext) -> None:
+        ctx.emit(question)
+
+    @stage.module.rule(when=question, writes=stage.output)
+    async def qa(ctx: rs.RuleContext) -> None:
+        ctx[stage.output] = "answer"
+
+    with stage.run() as sim:
+        sim.put(stage.input, "how?")
+        sim.advance(1)
+        sim.put(stage.input, "hello")
+        found = ask(sim, "qa", number=1)
+    assert found.verdict == "untouched"
+    assert found.missing[0].words == "demo:question did not occur for this cause (for another one at 0.000 s)"
+    assert found.missing[0].raisers[0].words == (
+        "demo:classify did not run: it did not take demo:input:changed: its payload did not fit the predicate"
+    )
+
+
+def test_causes_are_followed_back_and_circles_end(stage: Stage) -> None:
+    one, two = stage.module.signal("one", input=True), stage.module.signal("two")
+
+    @stage.module.rule(when=stage.touch & two, emits=one)
+    async def to_one(ctx: rs.RuleContext) -> None: ...
+
+    @stage.module.rule(when=one | stage.touch & one, emits=two)
+    async def to_two(ctx: rs.RuleContext) -> None: ...
+
+    @stage.module.rule(when=stage.touch & one & two)
+    async def both(ctx: rs.RuleContext) -> None: ...
+
+    with stage.run() as sim:
+        sim.emit(stage.touch)
+        sim.advance(6)
+        found = ask(sim, "both", "demo:touch")
+    assert found.verdict == "lacked"
+    assert [missing.signal for missing in found.missing] == ["demo:one", "demo:two"]
+    assert (
+        "demo:to_one did not run: it took demo:touch, but lacked demo:two"
+        in found.missing[0].raisers[0].words
+    )
+
+
+def test_a_running_rule_runs(stage: Stage) -> None:
+    @stage.module.rule(when=stage.input.changed)
+    async def dream(ctx: rs.RuleContext) -> None:
+        await ctx.sleep(100)
+
+    with stage.run() as sim:
+        sim.put(stage.input, "x")
+        found = ask(sim, "dream")
+        sim.advance(100)
+    assert (found.verdict, found.words) == ("running", "it runs since 0.000 s")
+
+
+def test_what_is_not_there_cannot_be_asked_about(stage: Stage) -> None:
+    conversation(stage, is_question=False)
+    with stage.run() as sim:
+        sim.put(stage.input, "x")
+        view = describe(sim.context.policy)
+        with pytest.raises(LookupError, match="spike 9999 is not in the history"):
+            why_not(sim.trace, view, "demo:talk", 9999)
+        with pytest.raises(LookupError, match="there is no rule 'demo:tlak'"):
+            why_not(sim.trace, view, "demo:tlak", 1)
+
+
+def test_a_trace_that_begins_later_says_so(stage: Stage) -> None:
+    conversation(stage, is_question=False)
+    with stage.run() as sim:
+        sim.put(stage.input, "x")
+        spike = spike_of(sim, "demo:input:changed")
+        late = [record for record in sim.trace if getattr(record, "spike", spike) >= spike]
+        found = why_not(late, describe(sim.context.policy), "demo:talk", spike, whole=False)
+    assert not found.whole
