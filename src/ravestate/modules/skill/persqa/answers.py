@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Collection
 
+from .patterns import either
 from .phrase import values
 from .statements import gerund, worker
 from .topics import NAME, TOPICS, Fact, Kind
@@ -13,60 +14,78 @@ from .words import REMARKS, STATES, VERBS
 __all__ = ["answer", "correction", "has_none", "refuses"]
 
 OPENING = re.compile(
-    r"^\W*(?:(?:oh|well|hm+|um+|uh+|er|ah|ok|okay|alright|sure|yes|yeah|yep|yup|yea|of course|certainly|actually|honestly|so|"
-    r"that's easy|that is easy|let me see|let me think|good question|i(?:'d| would) say|i guess|i think|i suppose|probably|maybe|"
-    r"mostly|mainly|usually|currently|right now|just|only|i said|i mean|i meant|my answer is|it must be|"
-    r"it's|its|it is|it's called|it is called|that's|that is|thats|that would be|that'd be|they're|they are|they're called|"
-    r"they are called|there is|there's|there are|one is|one of them is|for example|for instance|such as|like)(?![\w'])[\s,.:;!…-]*)*",
+    r"^\W*("
+    + either(r"""
+        oh|well|hm+|um+|uh+|er|ah|ok|okay|alright|sure|yes|yeah|yep|yup|yea|of course|certainly|actually|honestly|so
+        that('s| is) easy|let me (see|think)|good question
+        i('d| would) say|i guess|i think|i suppose|i said|i mean|i meant|my answer is
+        probably|maybe|mostly|mainly|usually|currently|right now|just|only
+        it's|its|it is|it must be|it's called|it is called|that's|that is|thats|that would be|that'd be
+        they're|they are|they're called|they are called|there is|there's|there are
+        one is|one of them is|for example|for instance|such as|like
+    """)
+    + r"(?![\w'])[\s,.:;!…-]*)*",
     re.IGNORECASE,
-)
+)  # fmt: skip
 """What one says before an answer."""
 
-LEAD: dict[Kind, str] = {
-    "name": r"(?:you can |please )?(?:call me|i'm called|i am called|(?:i'm|i am|im)) ",
-    "place": r"(?:(?:(?:i'm|i am|im) |i (?:live|come|came) )?(?:currently )?(?:from|in|at|out of) )?(?:the (?:city|town|village) of )?",
-    "activity": r"(?:i (?:(?:really|also|mostly|usually|sometimes|often) )*(?:(?:like|love|enjoy|prefer|do|go)(?: to)? |"
-    rf"(?=(?:{'|'.join(sorted(VERBS))})\b))|(?:i'm|i am|im) (?:into|interested in|fond of) )?",
-    "work": r"(?:i work |i'm working |i am working )?(?:as )?",
-    "organisation": r"(?:(?:(?:i'm|i am|im) )?(?:a member of|in|at|for|with|part of) )?",
-    "subject": r"(?:i(?:'m| am)? )?(?:study|studying|studied|doing|in)? ?",
-    "people": r"(?:(?:his|her|their) names? (?:is|are) )?(?:(?:i have|i've got) )?",
-}
+_BE = r"(i'm|i am|im)"
+_LEADS: dict[Kind, str] = {
+    "name": rf"((you can |please )?(call me|i'm called|i am called|{_BE}) )?",
+    "place": rf"(({_BE} |i (live|come|came) )?(currently )?(from|in|at|out of) )?(the (city|town|village) of )?",
+    "activity": rf"(i ((really|also|mostly|usually|sometimes|often) )*((like|love|enjoy|prefer|do|go)( to)? |(?=({'|'.join(sorted(VERBS))})\b))|"
+    rf"{_BE} (into|interested in|fond of) )?",
+    "work": r"(i work |i'm working |i am working )?(as )?",
+    "organisation": rf"(({_BE} )?(a member of|in|at|for|with|part of) )?",
+    "subject": r"(i('m| am)? )?(study|studying|studied|doing|in)? ?",
+    "people": r"((his|her|their) names? (is|are) )?((i have|i've got) )?",
+}  # fmt: skip
+LEADS = {kind: re.compile("^" + words, re.IGNORECASE) for kind, words in _LEADS.items()}
+"""With what an answer of each kind may be introduced."""
 
 REFUSAL = re.compile(
-    r"(?<![\w'])(?:(?:i'd|i would|id) (?:rather|prefer|like)(?: to)? (?:not|keep)\b(?! to (?:work|live|study))|rather not|prefer not to|"
-    r"(?:it's |that's |it is |that is )?none of (?:your|ur) (?:\w+ )?business|not your (?:\w+ )?business|mind your own business|"
-    r"(?:it's|that's|it is|that is|too|is|very|quite|rather) (?:too |very |a bit |quite |rather )?(?:private|personal|confidential)|^private\W*$|"
-    r"(?:it's |that's |that is |it is )?(?:a |my |top )?secret\b(?! (?:agent|service))|(?:i )?(?:won't|will not|wont|can't|cannot|cant) (?:tell|say)\b|"
-    r"i (?:don't|do not|dont) (?:want|wish|like|wanna|feel like)(?: to)? (?:tell|talk|say|answer|share|telling|talking|saying|answering|sharing|discuss)\w*|"
-    r"i(?:'m| am) not (?:telling|saying|going to (?:tell|say|answer))|not telling|no comment|let's not (?:talk|speak|go)|"
-    r"(?:let's |let us |can we |please )?(?:change|switch) the (?:subject|topic)|(?:let's )?talk about something else|"
-    r"(?:next|another) question|(?:i )?pass\W*$|skip(?: it| this| that| the question)?\W*$|"
-    r"(?:that|this|it) is not for you|you don't need to know|(?:that )?does(?:n't| not) concern you|stop asking|don't ask)",
+    r"(?<![\w'])"
+    + either(r"""
+        (i'd|i would|id) (rather|prefer|like)( to)? (not|keep)\b(?! to (work|live|study))|rather not|prefer not to
+        ((it's|that's|it is|that is) )?(none of (your|ur)|not your) (\w+ )?business|mind your own business
+        (it's|that's|it is|that is|too|is|very|quite|rather) ((too|very|a bit|quite|rather) )?(private|personal|confidential)|^private\W*$
+        (a |my |top )?secret\b(?! (agent|service))
+        (i )?(won't|will not|wont|can't|cannot|cant) (tell|say)\b
+        i (don't|do not|dont) (want|wish|like|wanna|feel like)( to)? (tell|talk|say|answer|share|discuss)(ing)?\b
+        i('m| am) not (telling|saying|going to (tell|say|answer))|not telling|no comment|let's not (talk|speak|go)
+        ((let's|let us|can we|please) )?(change|switch) the (subject|topic)|(let's )?talk about something else
+        (next|another) question|(i )?pass\W*$|skip( it| this| that| the question)?\W*$
+        (that|this|it) is not for you|you don't need to know|(that )?does(n't| not) concern you|stop asking|don't ask
+    """),
     re.IGNORECASE,
-)
+)  # fmt: skip
 
 NONE = re.compile(
-    r"^\W*(?:(?:no|nope|well|oh|honestly|actually|i have|i've got|i do|at the moment|right now|currently|sorry)\W+)*"
-    r"(?:nothing|none|nobody|no one|noone|nowhere|nothing (?:special|really|in particular|at all|much)|none (?:really|at all)|not any(?:thing|where|one|body)?)"
-    r"(?: (?:really|at all|at the moment|right now|actually|special|yet|sorry|to be honest))*\W*$",
+    r"^\W*((no|nope|well|oh|honestly|actually|i have|i've got|i do|at the moment|right now|currently|sorry)\W+)*"
+    r"(nothing|none|nobody|no one|noone|nowhere|not any(thing|where|one|body)?)"
+    r"( (special|in particular|much|really|at all|at the moment|right now|actually|yet|sorry|to be honest))*\W*$",
     re.IGNORECASE,
 )
 
 CORRECTION = re.compile(
-    r"^\W*(?:(?:no(?! (?:problem|way|worries|worry|idea|thanks|thank|need|matter|doubt|chance|clue|one|kidding|offen[cs]e|more|longer|"
-    r"other|big deal|reason|wonder|joke|really))|nope|nah|wrong|not quite|not really|that's wrong|that is wrong|that's not (?:right|correct|true)|sorry|actually|wait|oh|"
-    r"i (?:meant|mean|said)|correction|rather)(?![\w'])[\s,.:;!…-]*)+",
+    r"^\W*("
+    + either(r"""
+        no(?! (problem|way|worr(ies|y)|idea|thanks?|need|matter|doubt|chance|clue|one|kidding|offen[cs]e|more|longer|other|big deal|reason|wonder|joke|really))
+        nope|nah|wrong|not quite|not really|that('s| is) wrong|that('s| is) not (right|correct|true)
+        sorry|actually|wait|oh|i (meant|mean|said)|correction|rather
+    """)
+    + r"(?![\w'])[\s,.:;!…-]*)+",
     re.IGNORECASE,
-)
+)  # fmt: skip
+"""What one says before one puts something right."""
 _NOT_THIS = re.compile(
-    r"^\W*(?:(?:no|it's|i'm|i am|it is)\W+)?not (.+?)[,;.]\s*(?:but |it's |i'm |it is |i am |rather )?(.+)$",
+    r"^\W*((no|it's|i'm|i am|it is)\W+)?not (?P<wrong>.+?)[,;.]\s*((but|it's|i'm|it is|i am|rather) )?(?P<right>.+)$", re.IGNORECASE
+)  # fmt: skip
+_NOT_THAT = re.compile(
+    r"^(no\W+)?((it's|it is|i'm|i am) )?(?P<right>.+?)[,;]? not (?!in\b|at\b|from\b)(?P<wrong>\w.*)$",
     re.IGNORECASE,
 )
-_NOT_THAT = re.compile(
-    r"^(?:no\W+)?(?:it's |it is |i'm |i am )?(.+?)[,;]? not (?!in\b|at\b|from\b)(\w.*)$", re.IGNORECASE
-)
-_ASIDE = re.compile(r"^\W*(?:(?:hi+|hello|hey)\b\W*)?(?:bye|goodbye|let's|lets)\b", re.IGNORECASE)
+_ASIDE = re.compile(r"^\W*((hi+|hello|hey)\b\W*)?(bye|goodbye|let's|lets)\b", re.IGNORECASE)
 
 
 def refuses(text: str) -> bool:
@@ -104,9 +123,7 @@ def answer(text: str, topic: str) -> list[Fact]:
     said = OPENING.sub("", text)
     if _ASIDE.match(said) or "?" in re.split(r"[.!,;\n]", said, maxsplit=1)[0]:
         return []
-    rest = re.sub(
-        rf"^{LEAD[about.kind]}" if topic != NAME else rf"^(?:{LEAD['name']})?", "", said, flags=re.IGNORECASE
-    )
+    rest = LEADS[about.kind].sub("", said)
     if about.kind == "name":
         return _of(topic, _name(rest))
     if about.kind == "work":
@@ -148,10 +165,8 @@ def correction(text: str, topic: str, known: Collection[str]) -> list[Fact]:
         [Fact(topic='home', values=('Bremen',), gone=False)]
     """
     denied = {value.casefold() for value in known}
-    if both := _NOT_THIS.match(text):
-        wrong, right = both[1], both[2]
-    elif both := _NOT_THAT.match(text):
-        wrong, right = both[2], CORRECTION.sub("", both[1])
+    if both := _NOT_THIS.match(text) or _NOT_THAT.match(text):
+        wrong, right = both["wrong"], CORRECTION.sub("", both["right"])
     elif opening := CORRECTION.match(text):
         return answer(text[opening.end() :], topic) if text[opening.end() :].strip() else []
     else:

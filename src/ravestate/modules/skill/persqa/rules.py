@@ -87,8 +87,9 @@ async def listen(ctx: rs.RuleContext) -> None:
     )
     meaning = understand(heard, ctx[talk], known_of(ctx), ctx.now, settings.within)
     before = acquaintance_of(ctx)
-    answer, after = await respond_to(meaning, before, ctx[ontology.memory], ctx.now, ctx.random)
-    if after.talk.trouble and after.talk.trouble != before.talk.trouble:
+    memory = ctx[ontology.memory]
+    answer, after = await respond_to(meaning, before, memory, ctx.now, ctx.random)
+    if memory is not None and after.talk.trouble not in ("", before.talk.trouble):  # else it is told already
         ctx.log.error("%s", after.talk.trouble)
     keep(ctx, before, after)
     name = after.name
@@ -133,10 +134,12 @@ async def welcome(ctx: rs.RuleContext) -> rs.Resign | None:
         after = replace(after, who=item)
     elif isinstance(item, str) and item.strip():
         after = replace(after, who=ontology.Node("Person", {NAME: item.strip()}))
-    try:
-        after = await after.recall(ctx[ontology.memory])
-    except RavestateError as error:
-        ctx.log.error("%s", error)
+    memory = ctx[ontology.memory]
+    if memory is not None:
+        try:
+            after = await after.recall(memory)
+        except RavestateError as error:
+            ctx.log.error("%s", error)
     keep(ctx, before, after)
     return None
 

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Sequence
 
 from .topics import TOPICS, Topic
 from .words import SMALL
 
-__all__ = ["clause", "joined", "parameters", "same", "spoken", "tidy"]
+__all__ = ["clause", "joined", "same", "spoken", "tidy"]
 
 BARE = frozenset(["retired", "self-employed", "freelance", "unemployed"])
 """Occupations that take no article."""
@@ -105,11 +105,3 @@ def clause(topic: str, values: Sequence[str]) -> str:
         'you live in Hannover'
     """
     return TOPICS[topic].clause.format(spoken(topic, values))
-
-
-def parameters(name: str | None, facts: Mapping[str, Iterable[str]]) -> dict[str, object]:
-    """What phrases may mention: each topic that is known, by its name."""
-    found: dict[str, object] = {
-        topic: spoken(topic, list(values)) for topic, values in facts.items() if values
-    }
-    return {**found, "name": name}

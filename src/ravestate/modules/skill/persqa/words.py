@@ -82,6 +82,7 @@ OCCUPATIONS = word_set(
     administrator astronaut astronomer apprentice
     """
 )
+"""What *I am a ...* makes an occupation, where nobody has asked for one."""
 
 VERBS = word_set(
     """read play cook bake dance swim run paint draw sing travel hike climb cycle bike sew knit write collect ski surf fish hunt
