@@ -152,13 +152,14 @@ def _of(topic: str, said: tuple[str, ...]) -> list[Fact]:
     return [Fact(topic, said)]
 
 
-def correction(text: str, topic: str, known: Collection[str]) -> list[Fact]:
+def correction(text: str, topic: str, known: Collection[str], *, explicit: bool = False) -> list[Fact]:
     """The facts in words that put right what was understood about `topic`: *no, Bremen*, *Bremen, not Hannover*.
 
     Args:
         text: As `phrase.plain` makes it.
         topic: The topic's name.
         known: The values that were understood.
+        explicit: Whether only *Bremen, not Hannover* counts, and a mere *no, Bremen* does not.
 
     Example:
         >>> correction("no, bremen", "home", ["Hannover"])
@@ -167,7 +168,7 @@ def correction(text: str, topic: str, known: Collection[str]) -> list[Fact]:
     denied = {value.casefold() for value in known}
     if both := _NOT_THIS.match(text) or _NOT_THAT.match(text):
         wrong, right = both["wrong"], CORRECTION.sub("", both["right"])
-    elif opening := CORRECTION.match(text):
+    elif not explicit and (opening := CORRECTION.match(text)):
         return answer(text[opening.end() :], topic) if text[opening.end() :].strip() else []
     else:
         return []

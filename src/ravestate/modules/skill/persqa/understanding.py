@@ -95,7 +95,8 @@ def understand(
     if wants_to_be_forgotten(text):
         return Meaning("forget", leave=leave)
     if topic == FORGET:
-        return _of_forgetting(heard, leave)
+        fresh = pending is not None and pending.fresh  # a yes to something else must not do it
+        return _of_forgetting(heard, leave) if fresh else Meaning("nothing", leave=leave)
     if heard.question is not None and (asked := inquiry(text)):
         return Meaning("asked", (asked,))
     told = statements(text, persons=persons_in(heard), asked=topic)
@@ -107,8 +108,8 @@ def understand(
         before = _before_question(text) if heard.question is not None and topic else ""
         side = answer(before, topic) if before else []
         return Meaning("told" if side else "nothing", tuple(side), topic, leave, aloud=False)
-    if talk.correctable and (not topic or heard.yesno.no):
-        put_right = correction(text, talk.correctable, talk.latest)
+    if talk.correctable:
+        put_right = correction(text, talk.correctable, talk.latest, explicit=pending is not None)
         if put_right:
             return Meaning("corrected", tuple(put_right), talk.correctable)
     if pending is None:
@@ -117,7 +118,10 @@ def understand(
         return Meaning("declined", topic=topic)
     if pending.fresh and has_none(text):
         return Meaning("none" if topic != NAME else "declined", topic=topic)
-    if (answered := answer(text, topic)) and may_stand_alone(heard):
+    answered = answer(text, topic) or (
+        correction(text, topic, ()) if heard.yesno.no else []
+    )  # no, from Bremen
+    if answered and may_stand_alone(heard):
         return Meaning("told", tuple(answered), topic)
     if not pending.fresh:
         return Meaning("nothing")
