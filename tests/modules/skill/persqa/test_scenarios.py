@@ -686,6 +686,52 @@ def test_memory_that_fails_when_he_comes_knows_him_later(file: Path, look: Look)
     assert look() == {"Ada": {"lives_in": ["Ulm"], "has_hobby": ["chess"]}}
 
 
+def test_a_memory_that_another_process_has_open(file: Path, look: Look) -> None:
+    code = """
+import sys
+from ravestate.modules import ontology
+from ravestate.modules.meta.ontology.places import open_memory
+memory = open_memory(ontology.Settings(path=sys.argv[1]))
+memory.opened().result(20)
+print("open", flush=True)
+sys.stdin.read()
+memory.close().result(20)
+"""
+    command = [sys.executable, "-c", code, str(file)]
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as other:
+        assert other.stdin is not None and other.stdout is not None
+        assert other.stdout.readline() == "open\n"
+        with agent(file) as sim:
+            assert meant(answers(sim, "my name is ada"), "unsaved_name")
+            assert meant(answers(sim, "i live in ulm"), "learned_home")
+            assert answers(sim, "where do i live").endswith("you live in Ulm.")
+        other.stdin.close()
+    assert look() == {}
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no limit on the size of files")
+def test_a_full_disk(file: Path, look: Look) -> None:
+    code = """
+import os, resource, sys
+from ravestate.modules import ontology, persqa
+from ravestate.testing import simulate
+with simulate(persqa, settings={"ontology": {"path": sys.argv[1]}}) as sim:
+    sim.say("my name is ada and i live in ulm")
+    resource.setrlimit(resource.RLIMIT_FSIZE, (os.path.getsize(sys.argv[1] + ".wal"), resource.RLIM_INFINITY))
+    sim.say("i work as a baker")
+    sim.say("where do i live")
+    resource.setrlimit(resource.RLIMIT_FSIZE, (resource.RLIM_INFINITY, resource.RLIM_INFINITY))
+    sim.say("my hobby is chess")
+    print("\\n".join(sim.said))
+    assert not sim.failures, sim.failures
+"""
+    done = subprocess.run([sys.executable, "-c", code, str(file)], capture_output=True, text=True, check=True)
+    _, told, recalled, _ = done.stdout.splitlines()
+    assert meant(told, "unsaved") and recalled.endswith("you live in Ulm.")
+    assert "Traceback" not in done.stderr
+    assert look() == {"Ada": {"lives_in": ["Ulm"], "works_as": ["baker"], "has_hobby": ["chess"]}}
+
+
 def test_without_nlp_it_leaves_the_talk_to_others(file: Path) -> None:
     with simulate(
         persqa, chatter(), settings={"ontology": {"path": file}, "nlp": {"pipeline": "nonsense"}}
