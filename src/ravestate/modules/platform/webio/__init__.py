@@ -68,7 +68,7 @@ async def serve(agent: Agent) -> None:
         await server.until_failed()
 
 
-def app(agent: Agent, routes: Iterable[BaseRoute] = ()) -> Starlette:
+def app(agent: Agent, routes: Iterable[BaseRoute] = (), inside: str | None = None) -> Starlette:
     """The page of an agent as an ASGI application, to be served, or mounted in another one.
 
     Its lifespan ends the conversations in order. A mounted one has none of its own: enter
@@ -78,6 +78,7 @@ def app(agent: Agent, routes: Iterable[BaseRoute] = ()) -> Starlette:
     Args:
         agent: The agent, with ``webio`` among its modules.
         routes: Served beside the page, behind the same checks of host and origin.
+        inside: Where among them the page may look inside of the agent, e.g. ``board/``.
 
     Raises:
         PlatformError: Starlette is not installed.
@@ -92,7 +93,7 @@ def app(agent: Agent, routes: Iterable[BaseRoute] = ()) -> Starlette:
     _load()
     from .application import make_app
 
-    return make_app(agent, routes)
+    return make_app(agent, routes, inside)
 
 
 def _load() -> None:

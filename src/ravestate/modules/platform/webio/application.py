@@ -38,7 +38,7 @@ CONSOLES = ("conio",)
 """Platforms for one user, of which there would be one in each visitor's context."""
 
 
-def make_app(agent: Agent, routes: Iterable[BaseRoute] = ()) -> Starlette:
+def make_app(agent: Agent, routes: Iterable[BaseRoute] = (), inside: str | None = None) -> Starlette:
     """See `webio.app`. The conversations are in ``app.state.sessions``, the checks in ``app.state.gate``.
 
     Raises:
@@ -49,7 +49,7 @@ def make_app(agent: Agent, routes: Iterable[BaseRoute] = ()) -> Starlette:
     sessions = Sessions(agent, limit=settings.sessions, keep=settings.keep)
 
     async def connect(socket: WebSocket) -> None:
-        await Connection(socket, sessions, gate, settings.title).run()
+        await Connection(socket, sessions, gate, settings.title, inside).run()
 
     @contextlib.asynccontextmanager
     async def lifespan(_: Starlette) -> AsyncGenerator[None]:

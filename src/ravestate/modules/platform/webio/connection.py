@@ -69,13 +69,17 @@ class Connection:
         sessions: The conversations.
         gate: Knows the token.
         agent: What the agent is called.
+        inside: Where the page may look inside of the agent, e.g. ``board/``; None: nowhere.
     """
 
-    def __init__(self, socket: WebSocket, sessions: Sessions, gate: Gate, agent: str) -> None:
+    def __init__(
+        self, socket: WebSocket, sessions: Sessions, gate: Gate, agent: str, inside: str | None = None
+    ) -> None:
         self._socket = socket
         self._sessions = sessions
         self._gate = gate
         self._agent = agent
+        self._inside = inside
         self._woken = asyncio.Event()
         self._replies: deque[Frame] = deque()
 
@@ -105,7 +109,7 @@ class Connection:
         try:
             last = hello.last if resumed and hello.last <= session.history.last else 0
             first = session.history.first
-            await self._send(Welcome(VERSION, session.id, resumed, first, self._agent))
+            await self._send(Welcome(VERSION, session.id, resumed, first, self._agent, self._inside))
             tasks = [
                 asyncio.create_task(self._read(session)),
                 asyncio.create_task(self._write(session, max(last, first - 1))),

@@ -117,6 +117,7 @@ class Welcome:
         resumed: Whether it is the one that was asked for.
         first: The number of the oldest message that is kept.
         agent: What the agent is called.
+        inside: Where its user may look inside of it, relative to the page; None: nowhere.
     """
 
     v: int
@@ -124,6 +125,7 @@ class Welcome:
     resumed: bool
     first: int
     agent: str
+    inside: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -322,6 +324,7 @@ _FIELDS: Mapping[str, tuple[Callable[[object], Any], str]] = {
     "code": _ANY_TEXT,
     "first": _WHOLE_NUMBER,
     "id": _NAME_OF,
+    "inside": _ANY_TEXT,
     "last": _WHOLE_NUMBER,
     "n": _WHOLE_NUMBER,
     "name": (_name, "a text of 1 to 80 characters"),

@@ -8,7 +8,7 @@ import errno
 import functools
 import socket
 import sys
-from collections.abc import Generator
+from collections.abc import Generator, Iterable
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, cast
 
@@ -22,6 +22,8 @@ from .door import Door, Line
 from .gate import is_local
 
 if TYPE_CHECKING:
+    from starlette.routing import BaseRoute
+
     from ravestate.runtime.agent import Agent
 
     from . import Settings
@@ -46,13 +48,14 @@ class Server:
 
     Args:
         agent: With ``webio`` among its modules, whose settings say where to listen.
+        routes, inside: As for `webio.app`.
 
     Raises:
         PlatformError: The address can be reached by others, and there is no token; or see `make_app`.
     """
 
-    def __init__(self, agent: Agent) -> None:
-        self._app = make_app(agent)
+    def __init__(self, agent: Agent, routes: Iterable[BaseRoute] = (), inside: str | None = None) -> None:
+        self._app = make_app(agent, routes, inside)
         self._settings: Settings = agent.settings["webio"]  # type: ignore[assignment]  # the module's own
         if self._settings.token is None and not is_local(self._settings.host):
             raise PlatformError(

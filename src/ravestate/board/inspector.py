@@ -1,0 +1,322 @@
+"""One inspector: a WebSocket over which a browser sees what happens, and asks and does things."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+from collections import deque
+from time import perf_counter
+from typing import TYPE_CHECKING, Any
+
+from starlette.websockets import WebSocket, WebSocketDisconnect
+
+from ravestate.board import picture
+from ravestate.board.commands import Command, Diagram, Explain, Hello, Look, Ping, Why, parse
+from ravestate.board.recorder import Gap, Recorders
+from ravestate.board.shelf import Shelf
+from ravestate.board.subject import Live, Recorded, Subject
+from ravestate.board.why_not import why_not
+from ravestate.board.wire import VERSION, data_of, whole_data
+from ravestate.errors import RavestateError
+from ravestate.modules.platform.webio.bucket import Bucket
+from ravestate.modules.platform.webio.protocol import ProtocolError
+
+if TYPE_CHECKING:
+    from ravestate.modules.platform.webio.gate import Gate
+    from ravestate.modules.platform.webio.session import Session
+    from ravestate.modules.platform.webio.sessions import Sessions
+
+__all__ = ["Inspector"]
+
+FRAME = 0.05
+"""Seconds between two frames of records."""
+
+SHARE = 0.02
+"""The share of the loop's time that telling one inspector may take: a frame that took long is followed by a long pause."""
+
+MOST = 500
+"""Records in one frame: more would hold the agent up."""
+
+BACKLOG = 30_000
+"""Records of the past that an inspector gets when it comes."""
+
+SILENT = 10.0
+"""Seconds within which a client says hello."""
+
+BURST, SPEED = 60, 30.0
+"""Commands that are taken at once, and each second after that. Who sends more has to wait."""
+
+REPLIES = 64
+"""Answers that may wait for a client. Who asks on and on, and does not read, is dropped."""
+
+CODES = {
+    "malformed": 4400,
+    "version": 4400,
+    "token": 4401,
+    "silent": 4408,
+    "gone": 4404,
+    "full": 1013,
+    "closing": 1001,
+}
+"""With which code a connection is closed. What is not listed leaves it open."""
+
+
+class Inspector:
+    """Carries the board's protocol over one WebSocket.
+
+    Args:
+        socket: Not accepted yet.
+        gate: Knows the token.
+        sessions: The conversations.
+        recorders: Those of their contexts.
+        shelf: The recordings.
+        title: What the agent is called.
+    """
+
+    def __init__(
+        self,
+        socket: WebSocket,
+        gate: Gate,
+        sessions: Sessions,
+        recorders: Recorders,
+        shelf: Shelf,
+        title: str,
+    ) -> None:
+        self._socket = socket
+        self._gate = gate
+        self._sessions = sessions
+        self._recorders = recorders
+        self._shelf = shelf
+        self._title = title
+        self._replies: deque[dict[str, Any]] = deque()
+        self._news = asyncio.Event()
+
+    def wake(self) -> None:
+        """As an onlooker of a conversation: what it has to tell stands in the records."""
+
+    async def run(self) -> None:
+        """Serve the browser until either side closes."""
+        try:
+            await self._socket.accept()
+            try:
+                await self._serve()
+            except ProtocolError as error:
+                await self._send({"type": "error", "code": error.code, "text": str(error)})
+                await self._socket.close(CODES.get(error.code, 1011), error.code)
+        except WebSocketDisconnect:
+            pass
+
+    async def _serve(self) -> None:
+        hello = await self._hello()
+        session: Session | None = None
+        recorded = self._recording(hello)
+        if recorded is not None:
+            subject: Subject = recorded
+            title = recorded.title
+        else:
+            session = await self._session(hello)
+            self._sessions.enter(session, self)
+            subject = Live(session, self._recorders.of(session.context))
+            title = self._title
+        try:
+            if session is not None:
+                await asyncio.sleep(0)  # a conversation that is new has begun by now
+            seen = max(subject.first - 1, subject.last - BACKLOG)
+            await self._send(
+                {
+                    "type": "welcome",
+                    "v": VERSION,
+                    "title": title,
+                    "live": subject.live,
+                    "visitor": None if session is None else session.visitor,
+                    "whole": subject.whole and seen == 0,
+                    "policy": whole_data(subject.description),
+                    **subject.clock(),
+                }
+            )
+            await self._send({"type": "state", **subject.look(), **subject.clock()})
+            await self._until_over(subject, session, seen)
+        finally:
+            if session is not None:
+                self._sessions.exit(session, self)
+
+    async def _until_over(self, subject: Subject, session: Session | None, seen: int) -> None:
+        tasks = [
+            asyncio.create_task(self._read(subject)),
+            asyncio.create_task(self._write(subject, session, seen)),
+        ]
+        try:
+            await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
+        finally:
+            for task in tasks:
+                task.cancel()
+        for end in await asyncio.gather(*tasks, return_exceptions=True):
+            if isinstance(end, Exception):
+                raise end
+
+    # ------------------------------------------------------------------------------------ what is looked at
+
+    async def _hello(self) -> Hello:
+        example = f'begin with {{"type": "hello", "v": {VERSION}}}'
+        try:
+            async with asyncio.timeout(SILENT):
+                command = parse(await self._receive())
+        except TimeoutError:
+            raise ProtocolError("silent", f"no hello within {SILENT:g} s: {example}") from None
+        except ValueError as error:
+            raise ProtocolError("malformed", str(error)) from None
+        if not isinstance(command, Hello):
+            raise ProtocolError("malformed", example)
+        if command.v != VERSION:
+            raise ProtocolError("version", f'"v": {command.v}: this side speaks version {VERSION} only')
+        await self._gate.check_token(command.token)
+        return command
+
+    def _recording(self, hello: Hello) -> Recorded | None:
+        if hello.session is not None or hello.visitor is not None:
+            return None
+        recording = self._shelf.get(hello.recording)
+        if recording is None and hello.recording is not None:
+            raise ProtocolError("gone", "this recording is kept no more: open its file again")
+        return None if recording is None else Recorded(recording)
+
+    async def _session(self, hello: Hello) -> Session:
+        if hello.session is not None:
+            session = self._sessions.get(hello.session)
+        elif hello.visitor is not None:
+            session = next((s for s in self._sessions if s.visitor == hello.visitor), None)
+        else:
+            going_on = list(self._sessions)
+            return going_on[-1] if going_on else await self._sessions.open()
+        if session is None:
+            raise ProtocolError("gone", "this conversation has ended")
+        return session
+
+    # ------------------------------------------------------------------------------------ from the browser
+
+    async def _receive(self) -> str | bytes:
+        message = await self._socket.receive()
+        if message["type"] == "websocket.disconnect":
+            raise WebSocketDisconnect(message.get("code", 1006))
+        return message.get("text") or message.get("bytes") or ""
+
+    async def _read(self, subject: Subject) -> None:
+        now = asyncio.get_running_loop().time
+        bucket = Bucket(burst=BURST, rate=SPEED, now=now())
+        while True:
+            text = await self._receive()
+            wait = bucket.wait(now())
+            if wait:
+                await asyncio.sleep(wait)
+            try:
+                await self._take(parse(text), subject)
+            except ValueError as error:
+                self._reply({"type": "error", "code": "malformed", "text": str(error)})
+            except (RavestateError, LookupError) as error:
+                words = str(error.args[0]) if isinstance(error, LookupError) and error.args else str(error)
+                self._reply({"type": "error", "code": "refused", "text": words})
+
+    async def _take(self, command: Command, subject: Subject) -> None:
+        match command:
+            case Why():
+                records = [
+                    r for r in subject.since(subject.first - 1, subject.last) if not isinstance(r, Gap)
+                ]
+                found = await asyncio.to_thread(
+                    why_not,
+                    records,
+                    subject.description,
+                    command.rule,
+                    command.spike,
+                    subject.opens,
+                    subject.whole,
+                )
+                self._reply({"type": "why", **whole_data(found)})
+            case Diagram():
+                drawn = await asyncio.to_thread(
+                    picture.draw, subject.description.diagram, frozenset(command.unfolded)
+                )
+                self._reply({"type": "diagram", "unfolded": command.unfolded, **drawn})
+            case Explain():
+                self._reply({"type": "explained", "rule": command.rule, **subject.explain(command.rule)})
+            case Look():
+                self._reply({"type": "state", **subject.look(), **subject.clock()})
+            case Ping():
+                self._reply({"type": "pong"})
+            case Hello():
+                raise ValueError("hello is said once, at the beginning")
+            case _:
+                subject.act(command)
+
+    def _reply(self, frame: dict[str, Any]) -> None:
+        if len(self._replies) >= REPLIES:
+            raise WebSocketDisconnect(1008, "it does not read")
+        self._replies.append(frame)
+        self._news.set()
+
+    # ------------------------------------------------------------------------------------ to the browser
+
+    async def _write(self, subject: Subject, session: Session | None, seen: int) -> None:
+        """Tell what happens, some twenty times a second at most, and answer."""
+        clock: dict[str, Any] = {}
+        listed: list[dict[str, Any]] = []
+        while True:
+            began = perf_counter()
+            self._news.clear()
+            while self._replies:
+                await self._send(self._replies.popleft())
+            if isinstance(subject, Live) and subject.renewed():
+                await self._send({"type": "policy", "policy": whole_data(subject.description)})
+            if session is not None and (conversations := self._conversations()) != listed:
+                listed = conversations
+                await self._send({"type": "conversations", "conversations": listed})
+            missed = max(0, subject.first - 1 - seen)
+            records = subject.since(seen, MOST)
+            paused = subject.clock()["paused"]
+            text = ""
+            gap = False
+            if records or missed or paused != clock.get("paused"):
+                seen += missed + len(records)
+                clock = subject.clock()
+                gap = missed > 0 or any(isinstance(record, Gap) for record in records)
+                behind = subject.last - seen
+                text = _json(
+                    {
+                        "type": "records",
+                        "records": [data_of(record) for record in records],
+                        "missed": missed,
+                        "behind": behind,
+                        **clock,
+                    }
+                )
+            took = perf_counter() - began
+            if text:
+                await self._socket.send_text(text)
+            if gap and subject.live:
+                await self._send({"type": "state", **subject.look(), **subject.clock()})
+            if session is not None and session.ended is not None and seen >= subject.last:
+                await self._send({"type": "ended", "text": session.ended})
+                await self._socket.close(1000, "ended")
+                return
+            await self._pause(max(FRAME, took / SHARE) if subject.live else 0.0, seen < subject.last)
+
+    async def _pause(self, seconds: float, more: bool) -> None:
+        """Until the next frame; answers need not wait so long."""
+        if seconds == 0.0 and not more:
+            await self._news.wait()
+            return
+        try:
+            async with asyncio.timeout(seconds):
+                await self._news.wait()
+        except TimeoutError:
+            pass
+
+    def _conversations(self) -> list[dict[str, Any]]:
+        return [{"visitor": session.visitor, "name": session.name} for session in self._sessions][-100:]
+
+    async def _send(self, frame: dict[str, Any]) -> None:
+        await self._socket.send_text(_json(frame))
+
+
+def _json(frame: dict[str, Any]) -> str:
+    return json.dumps(frame, ensure_ascii=False, separators=(",", ":"))

@@ -1,0 +1,161 @@
+"""What happens in a context, kept for whoever looks in: bounded in memory, and in what it costs the agent.
+
+Nobody has a queue of their own: records are numbered, and an inspector reads those that it has not seen. One that does
+not read misses what is kept no more; it holds nobody up.
+
+Making records is dear for an agent that does nothing else. So a recorder takes a burst, then so many a second; beyond
+that it stops listening for a moment, in which the engine makes none, and a `Gap` says how many spikes went unseen.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from collections import deque
+from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import islice
+from weakref import WeakKeyDictionary
+
+from ravestate.engine.trace import Born, Record
+from ravestate.runtime.context import Context
+
+__all__ = ["BURST", "KEPT", "RATE", "Gap", "Recorder", "Recorders"]
+
+KEPT = 100_000
+"""Records that are kept."""
+
+BURST = 20_000
+"""Records that are taken at once."""
+
+RATE = 5_000
+"""Records a second that are taken after that."""
+
+PAUSE = 0.05
+"""Seconds for which a recorder that has taken too much does not listen."""
+
+
+@dataclass(slots=True)
+class Gap:
+    """Here something went unseen.
+
+    Attributes:
+        time: Since when (seconds).
+        spikes: How many spikes were born meanwhile; -1 as long as that is not known.
+    """
+
+    time: float
+    spikes: int = -1
+
+
+class Recorder:
+    """Keeps what happens in a context from now on.
+
+    Args:
+        context: Running, or not begun yet.
+        kept: Records to keep.
+        burst: Records to take at once.
+        rate: Records a second to take after that.
+        whole: Whether the context has not begun yet, so that nothing is missed.
+    """
+
+    def __init__(
+        self,
+        context: Context,
+        *,
+        kept: int = KEPT,
+        burst: int = BURST,
+        rate: float = RATE,
+        whole: bool = False,
+    ) -> None:
+        self._context = context
+        self._burst = burst
+        self._rate = rate
+        self._left = burst
+        self._granted: float | None = None
+        self._spike = 0  # the newest that is known
+        self._gap: Gap | None = None
+        self._leave: Callable[[], None] = lambda: None
+        self.records: deque[Record | Gap] = deque(maxlen=kept)
+        """The newest, oldest first."""
+        self.last = 0
+        """The number of the newest: how many there have been."""
+        self.missed = 0
+        """Spikes that went unseen."""
+        self.whole = whole
+        """Whether it has been there from the beginning."""
+        self._listen()
+
+    @property
+    def first(self) -> int:
+        """The number of the oldest that is kept."""
+        return self.last - len(self.records) + 1
+
+    def since(self, number: int, most: int) -> list[Record | Gap]:
+        """Records after a number, at most so many."""
+        skip = max(0, number - self.first + 1)
+        length = len(self.records)
+        if length - skip < skip:  # a deque is quick from both ends
+            tail = list(islice(reversed(self.records), length - skip))
+            tail.reverse()
+            return tail[:most]
+        return list(islice(self.records, skip, skip + most))
+
+    def close(self) -> None:
+        """Listen no more."""
+        self._leave()
+
+    def _listen(self) -> None:
+        self._leave = self._context.observe(self._take if self._gap is None else self._take_after_gap)
+
+    def _take(self, record: Record) -> None:
+        self.records.append(record)
+        self.last += 1
+        self._left -= 1
+        if self._left <= 0:
+            self._rest()
+
+    def _take_after_gap(self, record: Record) -> None:
+        """Until the number of a spike tells how many went unseen."""
+        self._take(record)
+        if isinstance(record, Born) and self._gap is not None:
+            self._gap.spikes = record.spike - self._spike - 1
+            self.missed += self._gap.spikes
+            self._gap = None
+            self._leave()
+            self._listen()
+
+    def _rest(self) -> None:
+        """What it may take is used up: go on if there was time enough meanwhile, or else stop listening for a moment."""
+        loop = asyncio.get_running_loop()
+        now = loop.time()
+        earned = self._burst if self._granted is None else (now - self._granted) * self._rate
+        self._granted = now
+        self._left = min(self._burst, int(earned))
+        if self._left > 0:
+            return
+        self._leave()
+        if self._gap is None:
+            self._spike = next((r.spike for r in reversed(self.records) if isinstance(r, Born)), 0)
+            self._gap = Gap(self.records[-1].time)
+            self.records.append(self._gap)
+            self.last += 1
+        loop.call_later(PAUSE, self._listen_again)
+
+    def _listen_again(self) -> None:
+        self._granted = asyncio.get_running_loop().time()
+        self._left = max(1, int(self._rate * PAUSE))
+        self._listen()
+
+
+class Recorders:
+    """The recorder of each context that is, or was, looked into; it goes with the context."""
+
+    def __init__(self) -> None:
+        self._of: WeakKeyDictionary[Context, Recorder] = WeakKeyDictionary()
+
+    def of(self, context: Context, *, whole: bool = False) -> Recorder:
+        """The recorder of a context: made when it is first asked for; `whole` as for `Recorder`."""
+        found = self._of.get(context)
+        if found is None:
+            found = self._of[context] = Recorder(context, whole=whole)
+        return found

@@ -1,0 +1,102 @@
+"""``ravestate board``: an agent on a page, and the debugger that looks into it; or a recorded trace without an agent."""
+
+from __future__ import annotations
+
+import argparse
+import asyncio
+import os
+import sys
+import webbrowser
+from collections.abc import Awaitable, Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ravestate.cli import agent as agents
+from ravestate.errors import PlatformError
+
+if TYPE_CHECKING:
+    from starlette.routing import BaseRoute
+
+    from ravestate.runtime.agent import Agent
+
+__all__ = ["add_arguments", "run"]
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """The command's options."""
+    agents.add_arguments(parser, modules="*")
+    parser.add_argument(
+        "--open",
+        dest="recording",
+        metavar="TRACE.json",
+        help="look at a recorded trace instead of an agent",
+    )
+    parser.add_argument(
+        "--browser",
+        action=argparse.BooleanOptionalAction,
+        default=None,
+        help="open a browser, or do not; by default if there is one",
+    )
+
+
+def run(options: argparse.Namespace) -> int:
+    """Carry the command out."""
+    from ravestate.modules import webio
+
+    named = bool(options.modules or options.file)
+    if options.recording and named:
+        raise agents.UsageError("--open shows a recording, which has no agent: leave the modules out")
+    try:
+        from ravestate.board.application import INSIDE, RecordedAgent, routes
+        from ravestate.board.trace_file import open_trace
+    except ModuleNotFoundError as error:
+        raise PlatformError(f"the board needs {error.name}: pip install 'ravestate[web]'") from error
+    recording = open_trace(Path(options.recording)) if options.recording else None
+    if recording is None and not named:
+        raise agents.UsageError("name a module, an agent file, or a recorded trace (--open trace.json)")
+    chosen = agents.load_agent(options, ["webio"])
+    made = RecordedAgent(*chosen.modules, **chosen.options())
+    title = getattr(made.settings[webio.module.name], "title", "Ravestate")
+    beside = routes(made.recorders, recording, title)
+    asyncio.run(_serve(made, beside, INSIDE, recording is None, options.browser))
+    return 0
+
+
+async def _serve(
+    made: Agent, beside: list[BaseRoute], inside: str, talks: bool, browser: bool | None
+) -> None:
+    from ravestate.modules.platform.webio.server import Server
+    from ravestate.runtime.run import asked_by_signals
+
+    stopped = asyncio.Event()
+    with asked_by_signals(stopped.set):
+        async with Server(made, beside, inside) as server:
+            token: Any = getattr(made.settings["webio"], "token", None)
+            secret = f"#token={token.get_secret_value()}" if token else ""
+            board = f"{server.address}{inside}{secret}"
+            if talks:
+                sys.stdout.write(f"The agent is at {server.address}{secret}\n")
+            sys.stdout.write(f"The board is at {board} (Ctrl-C ends it)\n")
+            sys.stdout.flush()
+            if browser or (browser is None and _has_browser()):
+                await asyncio.to_thread(webbrowser.open, f"{server.address}{secret}" if talks else board)
+            await _first(stopped.wait, server.until_failed)
+
+
+async def _first(*waits: Callable[[], Awaitable[object]]) -> None:
+    """Wait for the first of some things, and fail as it fails."""
+    tasks = [asyncio.ensure_future(wait()) for wait in waits]
+    done, _ = await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
+    for task in tasks:
+        task.cancel()
+    for task in done:
+        task.result()
+
+
+def _has_browser() -> bool:
+    """Whether there is a screen on which a browser would be seen."""
+    if not sys.stdout.isatty():
+        return False
+    return sys.platform in ("darwin", "win32") or bool(
+        os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")
+    )
