@@ -3,8 +3,7 @@
 500 users are connected at once. Each says something every 10 s, at moments of their own, and all of them talk for half
 a minute; the server and the users are processes of their own, on one machine. The agent has all text modules but the
 language model; where no skill has anything to say, a rule in its place says what it has heard, so that an answer that
-went to the wrong user would be noticed. Measured, by the users, is the time from saying something to the first answer
-after it.
+went to the wrong user would be noticed. Measured, by the users, is the time from saying something to its answer.
 
 Against it: a server of the same make (uvicorn) that sends back each message, and does nothing else.
 """
@@ -12,9 +11,12 @@ Against it: a server of the same make (uvicorn) that sends back each message, an
 from __future__ import annotations
 
 import asyncio
+import atexit
 import json
+import os
 import random
 import statistics
+import tempfile
 import threading
 import time
 from collections.abc import Coroutine, Iterable
@@ -36,8 +38,11 @@ GIVEN_UP = 15.0
 NOT_ASKED = {"conio", "webio", "wildtalk", "telegramio"}
 """Built-in modules that take no part: other platforms, and the language model."""
 
+GREETING = "hello"
+"""Answered in words of the agent's own."""
+
 PHRASES = (
-    "hello",
+    GREETING,
     "I had soup number {} for lunch",
     "My bicycle has {} spokes and squeaks a little",
     "The tram with number {} was late again",
@@ -49,11 +54,14 @@ PHRASES = (
 
 
 def start(kind: str) -> int:
-    """Serve on a port of its own, which is returned, until the process ends.
+    """Serve on a port of its own, which is returned, until the process ends. What the agent remembers goes with it.
 
     Args:
         kind: "agent" or "echo".
     """
+    place = tempfile.TemporaryDirectory()
+    atexit.register(place.cleanup)
+    os.environ["XDG_DATA_HOME"] = place.name
     ready: list[int] = []
     told = threading.Event()
 
@@ -171,6 +179,7 @@ class User:
         self.is_agent = kind == "agent"
         self.random = random.Random(number)
         self.times: list[float] = []
+        self.texts: set[str] = set()
         self.said = self.lost = self.crossed = 0
 
     async def come(self, port: int) -> None:
@@ -209,6 +218,8 @@ class User:
             self.times.append(time.perf_counter() - began)
 
     async def _answer(self, key: str, text: str) -> None:
+        """Wait for the answer to a text. A filler is none; what only another user can have said is counted."""
+        self.texts.add(text)
         heard = False
         while True:
             frame = json.loads(await self.socket.recv())
@@ -218,13 +229,14 @@ class User:
             if frame["type"] != "message":
                 continue
             if frame["from"] == "user":
-                self.crossed += frame.get("id") != key
-                heard = True
-            else:
-                again = frame["text"].removeprefix("You said: ")
-                self.crossed += again != frame["text"] and again != text
-                if heard:
-                    return
+                self.crossed += not frame["id"].startswith(f"{self.number}-")
+                heard = heard or frame["id"] == key
+                continue
+            again = frame["text"].removeprefix("You said: ")
+            if again != frame["text"]:
+                self.crossed += again not in self.texts
+            if heard and (again == text or (text == GREETING and again == frame["text"])):
+                return
 
     async def go(self) -> None:
         """Disconnect."""

@@ -330,3 +330,12 @@ def test_the_package_is_named_where_it_is_missing(tmp_path: Path, monkeypatch: p
     monkeypatch.setitem(sys.modules, "ladybug", None)
     assert failure(path=tmp_path / "x") == "ontology needs ladybug: pip install 'ravestate[ontology]'"
     assert list(tmp_path.iterdir()) == []
+
+
+def test_tidying_up_works_the_log_into_the_file(tmp_path: Path, open_here: Open) -> None:
+    memory = open_here(path=tmp_path / "memory.lbug")
+    memory.create("Person", name="Ada").result()
+    log = tmp_path / "memory.lbug.wal"
+    assert log.stat().st_size > 0
+    memory.tidy().result()
+    assert not log.exists() or log.stat().st_size == 0

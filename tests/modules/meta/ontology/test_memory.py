@@ -477,3 +477,11 @@ def test_what_is_newer_is_left_alone(open_here: Open, place: dict[str, Any]) -> 
     memory.close().result()
     with pytest.raises(PlatformError, match="is of format 2, and this version of ravestate knows up to 1"):
         open_here(**place)
+
+
+def test_tidying_up_changes_nothing_that_is_known(memory: Memory) -> None:
+    ada, london = memory.create("Person", name="Ada").result(), memory.create("City", name="London").result()
+    memory.relate(ada, "lives_in", london).result()
+    before = memory.export().result()
+    memory.tidy().result()
+    assert memory.export().result() == before

@@ -8,6 +8,7 @@ import contextlib
 import ravestate as rs
 from ravestate.errors import PlatformError
 from ravestate.modules import rawio
+from ravestate.modules._room import give_back
 
 from . import (
     Settings,
@@ -36,6 +37,7 @@ def load(ctx: rs.RuleContext) -> None:
     settings: Settings = ctx.settings
     with contextlib.suppress(PlatformError):  # which is told when it is needed
         pipeline(settings.pipeline).load()
+        give_back()
 
 
 @module.rule(

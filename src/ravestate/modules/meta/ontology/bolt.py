@@ -175,6 +175,9 @@ class BoltStore:
     def purge(self) -> None:
         """What a server keeps on its disk is its own affair."""
 
+    def tidy(self) -> None:
+        """So is its log."""
+
     def undeclared(self, types: Types) -> list[str]:
         """The labels on the server that `types` do not have."""
         rows = self.read("MATCH (n) UNWIND labels(n) AS name RETURN DISTINCT name", {})

@@ -225,6 +225,10 @@ class EmbeddedStore:
             with contextlib.suppress(OSError):
                 new.unlink(missing_ok=True)
 
+    def tidy(self) -> None:
+        """Work the log into the file: until then the database holds some megabytes for each table written to."""
+        self._shorten_log(limit=0)
+
     def close(self) -> None:
         """Let go of the file, its log worked in. If it cannot be written, the log is for the next opening."""
         if self._stuck and not self._can_write():

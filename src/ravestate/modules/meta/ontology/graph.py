@@ -223,6 +223,10 @@ class Graph:
 
     # ------------------------------------------------------------------------------------ documents
 
+    def tidy(self) -> None:
+        """Work what was written into the database."""
+        self._store.tidy()
+
     def export(self) -> dict[str, Any]:
         """Everything, as a document."""
         nodes = sorted(

@@ -180,6 +180,10 @@ class Memory:
         """The names of types that are in memory, and in no file of types: their nodes are there, and unseen."""
         return self._do("undeclared", lambda graph: graph.undeclared())
 
+    def tidy(self) -> Reply[None]:
+        """After many writes: give back the room in memory that they took. Nothing is known before that is not known after."""
+        return self._do("tidy", lambda graph: graph.tidy())
+
     def close(self) -> Reply[None]:
         """Let go, after all operations before; called again it does nothing. Later operations are refused."""
         with self._lock:

@@ -77,6 +77,10 @@ class Store(Protocol):
         """Leave no trace of what was deleted, where that is in this process's power."""
         ...
 
+    def tidy(self) -> None:
+        """Work the log of writes into the database, and give back the room that they took."""
+        ...
+
     def undeclared(self, types: Types) -> list[str]:
         """The names of types in the database that `types` do not have."""
         ...

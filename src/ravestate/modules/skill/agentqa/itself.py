@@ -58,6 +58,7 @@ async def settle(life: Life, memory: Memory) -> Node:
         for text in wanted:
             if text not in [other.get("name") for other in there]:
                 await memory.relate(node, relation, await memory.ensure(type, name=text))
+    await memory.tidy()  # the first time that was a whole life
     return node
 
 

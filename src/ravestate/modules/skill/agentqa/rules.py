@@ -10,6 +10,7 @@ from datetime import datetime, timedelta
 import ravestate as rs
 from ravestate.errors import PlatformError, RavestateError
 from ravestate.modules import idle, nlp, ontology, rawio, verbaliser
+from ravestate.modules._room import give_back
 from ravestate.modules.meta.verbaliser.intents import Intent
 
 from . import Settings, asked, life, module, mood, prompted, today
@@ -38,6 +39,7 @@ def load(ctx: rs.RuleContext) -> None:
     if told is not None:
         with contextlib.suppress(PlatformError):  # which is told when it is needed
             router_of(told).load()
+            give_back()
 
 
 @module.rule(when=life.changed.detached(), reads=ontology.memory, background=True)

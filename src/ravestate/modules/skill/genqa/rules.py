@@ -7,6 +7,7 @@ import contextlib
 import ravestate as rs
 from ravestate.errors import DeclarationError, DeclarationErrors, PlatformError
 from ravestate.modules import nlp, rawio, verbaliser
+from ravestate.modules._room import give_back
 
 from . import Settings, found, module
 from .places import answerer_of
@@ -18,6 +19,7 @@ def load(ctx: rs.RuleContext) -> None:
     """Open the index and load the reader while the agent is up already, so that the first question need not wait."""
     with contextlib.suppress(PlatformError):  # which is told when it is needed
         answerer_of(ctx.settings).load()
+        give_back()
 
 
 @module.rule(when=rs.startup)
