@@ -23,7 +23,7 @@ def _seen(text: str) -> Analysis:
 
 def triples(text: str) -> list[tuple[str, str, str]]:
     """By nlp; a question word by its name."""
-    return [(_text(t.subject), t.predicate, _text(t.object)) for t in _seen(text).triples]
+    return [(_text(s), predicate, _text(o)) for s, predicate, o in _seen(text).triples]
 
 
 def _text(part: str | QuestionWord) -> str:

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 from .question_word import QuestionWord
 
 __all__ = ["Triple"]
 
 
-@dataclass(frozen=True, slots=True)
-class Triple:
+class Triple(NamedTuple):
     """One statement of a text, or one question; the module's README says by which conventions.
 
     Example:

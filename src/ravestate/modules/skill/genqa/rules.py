@@ -36,9 +36,13 @@ async def choose_wording(ctx: rs.RuleContext) -> None:
             ) from error
 
 
-@module.rule(when=rawio.input.changed & nlp.is_question, emits=found)
+# Of every utterance, question or not: a rule that waited for the signal of a question would hold each statement for
+# seconds, and nobody would be bored meanwhile.
+@module.rule(when=rawio.input.changed & nlp.question.changed, emits=found)
 def find(ctx: rs.RuleContext) -> rs.Resign | None:
     """Ask the documents."""
+    if ctx.payload(nlp.question.changed) is None:
+        return rs.Resign("it is no question")
     settings: Settings = ctx.settings
     answer = answerer_of(settings).answer(ctx.payload(rawio.input.changed))
     if not answer.text:
