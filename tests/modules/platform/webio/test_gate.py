@@ -5,9 +5,11 @@ import asyncio
 import pytest
 
 from modules.platform.webio.visit import in_virtual_time
+from ravestate.modules import webio
 from ravestate.modules.platform.webio import Settings
 from ravestate.modules.platform.webio.gate import Gate, is_local
 from ravestate.modules.platform.webio.protocol import ProtocolError
+from ravestate.settings import load_settings
 
 TOKEN = "open sesame, please"
 
@@ -96,5 +98,10 @@ def test_what_is_no_origin_is_no_setting(origin: str) -> None:
 
 
 def test_a_short_token_is_no_setting() -> None:
-    with pytest.raises(ValueError, match="at least 12"):
+    with pytest.raises(ValueError, match="write at least 12 characters"):
         Settings(token="secret")
+
+
+def test_a_token_of_digits_is_text_in_the_environment_too() -> None:
+    variables = {"RAVESTATE_WEBIO_TOKEN": "123456789012"}
+    assert Gate(load_settings([webio.module], None, variables)["webio"]).admits("123456789012")

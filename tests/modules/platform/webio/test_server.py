@@ -103,9 +103,8 @@ def test_a_second_signal_ends_it_at_once_and_a_term_in_order() -> None:
 
 def test_the_link_has_the_token() -> None:
     with Served(token=TOKEN, host="0.0.0.0") as served:
-        assert (
-            served.line == f"The agent is at http://0.0.0.0:{served.port}/#token={TOKEN} (Ctrl-C ends it)\n"
-        )
+        link = f"http://{socket.gethostname()}:{served.port}/#token=open%20sesame%2C%20please"
+        assert served.line == f"The agent is at {link} (Ctrl-C ends it)\n"
 
 
 def test_where_others_can_reach_it_a_token_is_needed() -> None:

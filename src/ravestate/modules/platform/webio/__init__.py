@@ -40,7 +40,7 @@ class Settings(rs.Settings):
     """The address to listen on. Any other than this machine's own needs a token."""
     port: int = pydantic.Field(8420, ge=0, le=65535)
     """The port; 0 takes any that is free."""
-    token: pydantic.SecretStr | None = pydantic.Field(None, min_length=12)
+    token: pydantic.SecretStr | None = None
     """What a visitor must present, as a link with ``#token=...`` does; best given as ``RAVESTATE_WEBIO_TOKEN``."""
     origins: tuple[Annotated[str, pydantic.AfterValidator(_origin)], ...] = ()
     """Web sites that may embed the page, e.g. ``https://museum.example``; also the page's own, behind a proxy."""
@@ -52,6 +52,13 @@ class Settings(rs.Settings):
     """Conversations at one time."""
     per_address: int = pydantic.Field(100, ge=1)
     """Connections at one time from one address."""
+
+    @pydantic.field_validator("token")
+    @classmethod
+    def _long_enough(cls, token: pydantic.SecretStr | None) -> pydantic.SecretStr | None:
+        if token is not None and len(token.get_secret_value()) < 12:
+            raise ValueError("write at least 12 characters, such as secrets.token_urlsafe() makes")
+        return token
 
 
 async def serve(agent: Agent) -> None:

@@ -11,6 +11,7 @@ import sys
 from collections.abc import Generator, Iterable
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, cast
+from urllib.parse import quote
 
 import uvicorn
 
@@ -118,14 +119,16 @@ class Server:
 
     @property
     def address(self) -> str:
-        """Where the page is."""
-        host = self._settings.host
+        """Where the page is: by this machine's name, where it listens on all addresses."""
+        host = self._settings.host.strip("[]")
+        if host in ("0.0.0.0", "::"):
+            host = socket.gethostname()
         return f"http://{f'[{host}]' if ':' in host else host}:{self.port}/"
 
     def announce(self) -> None:
         """Print where the page is; with the token, as it is the link that lets in."""
         token = self._settings.token
-        link = self.address + (f"#token={token.get_secret_value()}" if token else "")
+        link = self.address + (f"#token={quote(token.get_secret_value(), safe='')}" if token else "")
         sys.stdout.write(f"The agent is at {link} (Ctrl-C ends it)\n")
         sys.stdout.flush()
 
