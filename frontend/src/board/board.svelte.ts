@@ -1,0 +1,229 @@
+import { type Address, Link, type Status } from "./link";
+import type { Command, Diagram, Explained, Policy, ServerFrame, Shown, TraceRecord, Why } from "./protocol";
+import { Trace } from "./trace";
+import { View } from "./view";
+
+export interface Conversation {
+  visitor: string;
+  name: string | null;
+}
+
+const EMPTY: Policy = { modules: [], rules: [], signals: [], slots: [], diagram: null };
+
+/** All that the page knows: the policy, the trace, what is selected, and the connection. */
+export class Board {
+  status: Status = $state("connecting");
+  title = $state("Ravestate");
+  live = $state(true);
+  visitor: string | null = $state(null);
+  conversations: Conversation[] = $state.raw([]);
+  policy: Policy = $state.raw(EMPTY);
+  paused = $state(false);
+  /** Records and spikes that were not seen. */
+  missed = $state(0);
+  /** Records that are still to come, of the past. */
+  behind = $state(0);
+  whole = $state(true);
+  trouble = $state("");
+  ending = $state("");
+  /** Counts the batches of records: whoever shows something of the trace looks at it. */
+  version = $state(0);
+  rule: string | null = $state(null);
+  spike: number | null = $state(null);
+  why: Why | null = $state.raw(null);
+  asking = $state(false);
+  explained: Explained | null = $state.raw(null);
+  diagram: Diagram | null = $state.raw(null);
+  search = $state("");
+  view = new View();
+  follows = $state(true);
+  trace = new Trace();
+  /** The signals that may come from outside. */
+  inputs: ReadonlySet<string> = new Set();
+
+  #address: Address;
+  #link: Link;
+  #now = 0;
+  #at = 0;
+
+  constructor(address: Address, open?: () => WebSocket) {
+    this.#address = address;
+    this.#link = new Link({
+      address: () => this.#address,
+      onframe: (frame) => this.take(frame),
+      onstatus: (status) => {
+        this.status = status;
+      },
+      ...(open === undefined ? {} : { open }),
+    });
+  }
+
+  start(): void {
+    this.#link.start();
+  }
+
+  stop(): void {
+    this.#link.stop();
+  }
+
+  /** Look at something else. */
+  turnTo(address: Address): void {
+    const { token } = this.#address;
+    this.#address = { ...(token === undefined ? {} : { token }), ...address };
+    this.rule = this.spike = null;
+    this.ending = this.trouble = "";
+    this.view = new View();
+    this.start();
+  }
+
+  present(token: string): void {
+    this.#address = { ...this.#address, token };
+    this.start();
+  }
+
+  get token(): string | undefined {
+    return this.#address.token;
+  }
+
+  send(command: Command): void {
+    this.trouble = "";
+    if (!this.#link.send(command)) this.trouble = "There is no connection to the agent.";
+  }
+
+  /** The context's time now (seconds). */
+  now(): number {
+    if (!this.live || this.paused || this.status !== "open") return this.#now;
+    return this.#now + (performance.now() - this.#at) / 1000;
+  }
+
+  select(rule: string | null): void {
+    if (rule !== null && !this.policy.rules.some((known) => known.name === rule)) return;
+    this.rule = rule;
+    this.explained = null;
+    this.#ask();
+    this.explain();
+  }
+
+  /** Ask about the cause of a spike from now on. */
+  point(spike: number | null): void {
+    this.spike = spike;
+    this.#ask();
+  }
+
+  explain(): void {
+    if (this.rule !== null && this.live && this.status === "open") {
+      this.#link.send({ type: "explain", rule: this.rule });
+    }
+  }
+
+  unfold(modules: string[]): void {
+    this.#link.send({ type: "diagram", unfolded: modules });
+  }
+
+  follow(follows: boolean): void {
+    this.view.follows = this.follows = follows;
+  }
+
+  /** The trace as a file that the board opens. */
+  export(): string {
+    return JSON.stringify({
+      format: "ravestate-trace",
+      v: 1,
+      title: this.title,
+      whole: this.whole && this.missed === 0,
+      policy: this.policy,
+      records: this.trace.records,
+    });
+  }
+
+  value(slot: string): Shown | undefined {
+    return this.trace.slots.get(slot)?.shown;
+  }
+
+  #ask(): void {
+    this.why = null;
+    if (this.rule === null || this.spike === null) return;
+    this.asking = this.#link.send({ type: "why", rule: this.rule, spike: this.spike });
+  }
+
+  take(frame: ServerFrame): void {
+    if ("now" in frame && frame.type !== "explained") {
+      this.#now = frame.now;
+      this.#at = performance.now();
+      this.paused = frame.paused;
+    }
+    switch (frame.type) {
+      case "welcome":
+        this.trace = new Trace();
+        this.missed = this.behind = 0;
+        this.title = frame.title;
+        this.live = frame.live;
+        this.visitor = frame.visitor;
+        this.whole = frame.whole;
+        if (!frame.live) this.follow(false);
+        this.#know(frame.policy);
+        this.diagram = null;
+        this.unfold(frame.policy.rules.length <= 40 ? frame.policy.modules : []);
+        if (this.rule !== null) this.select(this.rule);
+        break;
+      case "policy":
+        this.#know(frame.policy);
+        break;
+      case "state":
+        for (const [slot, shown] of Object.entries(frame.slots)) {
+          const known = this.trace.slots.get(slot);
+          this.trace.slots.set(slot, { shown, time: known?.time ?? Number.NEGATIVE_INFINITY });
+        }
+        if (this.live && this.behind === 0 && this.trace.records.length > 0) {
+          this.trace.reconcile(frame.activations, frame.now);
+        }
+        break;
+      case "records": {
+        const begins = this.trace.records.length === 0;
+        this.missed += frame.missed + gaps(frame.records);
+        this.behind = frame.behind;
+        this.trace.add(frame.records);
+        if (!this.live && (begins || frame.behind === 0)) this.view.fit(this.trace.first, this.trace.last);
+        break;
+      }
+      case "conversations":
+        this.conversations = frame.conversations;
+        break;
+      case "why":
+        if (frame.rule === this.rule && frame.spike === this.spike) {
+          this.why = frame;
+          this.asking = false;
+        }
+        break;
+      case "explained":
+        if (frame.rule === this.rule) this.explained = frame;
+        break;
+      case "diagram":
+        this.diagram = frame;
+        break;
+      case "ended":
+        this.ending = frame.text;
+        break;
+      case "error":
+        this.trouble = frame.text;
+        this.asking = false;
+        break;
+    }
+    this.version++;
+  }
+
+  #know(policy: Policy): void {
+    this.policy = policy;
+    this.inputs = new Set(
+      policy.signals
+        .filter((signal) => signal.input && signal.module !== "core")
+        .map((signal) => signal.name),
+    );
+  }
+}
+
+function gaps(records: TraceRecord[]): number {
+  let spikes = 0;
+  for (const record of records) if (record.kind === "gap") spikes += Math.max(0, record.spikes);
+  return spikes;
+}

@@ -1,0 +1,311 @@
+import type { Activation, Shown, TraceRecord } from "./protocol";
+
+/** In which state an activation is, or was, for a while. */
+export type State = "gathering" | "complete" | "waiting" | "running";
+
+export interface Phase {
+  state: State;
+  from: number;
+  /** Whom it waits for, and until when at the latest (seconds). */
+  waits?: string[];
+  until?: number | null;
+}
+
+/** One activation of a rule, from its first spike to its end. */
+export interface Bar {
+  id: number;
+  rule: string;
+  clause: number;
+  from: number;
+  /** When it ended (seconds); null while it lives. */
+  to: number | null;
+  phases: Phase[];
+  /** Once it has ended: `done`, `resigned`, `failed`, ... or why it gave its spikes up: `age`, `consumed`, ... */
+  outcome: string;
+  reason: string;
+  holds: Set<number>;
+  spikes: number[];
+  lacks: string[];
+  row: number;
+}
+
+export interface Lane {
+  rule: string;
+  bars: Bar[];
+  open: Set<Bar>;
+  /** The longest that a bar of it has lasted (seconds). */
+  longest: number;
+  rows: number;
+  /** When the last bar of each row ends. */
+  ends: number[];
+  retired: boolean;
+}
+
+export interface Spike {
+  id: number;
+  signal: string;
+  time: number;
+  group: number;
+  parents: number[];
+  children: number[];
+  /** The rule that raised it; empty from outside. */
+  rule: string;
+  payload: Shown;
+  dropped: string;
+}
+
+export interface Gap {
+  time: number;
+  spikes: number;
+}
+
+const MOST_ROWS = 4;
+
+/** What has happened, folded into lanes, spikes, groups and slots as the records come in. */
+export class Trace {
+  records: TraceRecord[] = [];
+  lanes = new Map<string, Lane>();
+  spikes: Spike[] = [];
+  slots = new Map<string, { shown: Shown; time: number }>();
+  gaps: Gap[] = [];
+  /** When each signal occurred last. */
+  occurred = new Map<string, number>();
+  first = 0;
+  last = 0;
+  #spikes = new Map<number, Spike>();
+  #bars = new Map<number, Bar>();
+  #into = new Map<number, number>();
+
+  /** @param kept how many records are kept, at least; the oldest go first. */
+  constructor(private readonly kept = 100_000) {}
+
+  add(records: TraceRecord[]): void {
+    for (const record of records) this.#add(record);
+    if (this.records.length > this.kept * 1.25) this.#forget();
+  }
+
+  /** What is alive now, from the server: bars of which no end was seen are ended. */
+  reconcile(activations: (Activation & { rule: string })[], now: number): void {
+    const alive = new Set(activations.map((activation) => activation.id));
+    for (const lane of this.lanes.values()) {
+      for (const bar of [...lane.open]) {
+        if (!alive.has(bar.id)) this.#end(bar, now, "unseen", "its end went unseen");
+      }
+    }
+    for (const activation of activations) {
+      if (this.#bars.has(activation.id)) continue;
+      const oldest = Math.max(0, ...activation.holds.map(([, age]) => age));
+      const bar = this.#bar(activation.id, activation.rule, 0, now - oldest);
+      const known: State[] = ["waiting", "running", "gathering"];
+      const state = activation.state === "cancelling" ? "running" : (activation.state as State);
+      bar.lacks = activation.lacks;
+      this.#phase(bar, known.includes(state) ? state : "complete", now - oldest);
+    }
+    this.last = Math.max(this.last, now);
+  }
+
+  spike(id: number): Spike | undefined {
+    return this.#spikes.get(id);
+  }
+
+  bar(id: number): Bar | undefined {
+    return this.#bars.get(id);
+  }
+
+  lane(rule: string): Lane {
+    let lane = this.lanes.get(rule);
+    if (lane === undefined) {
+      lane = { rule, bars: [], open: new Set(), longest: 0, rows: 1, ends: [], retired: false };
+      this.lanes.set(rule, lane);
+    }
+    return lane;
+  }
+
+  /** The causal group that one has become a part of. */
+  group(id: number): number {
+    let root = id;
+    for (let into = this.#into.get(root); into !== undefined; into = this.#into.get(root)) root = into;
+    return root;
+  }
+
+  /** A spike, all that it comes from, and all that comes from it. */
+  kin(id: number): Set<number> {
+    const found = new Set<number>();
+    const follow = (start: number, next: (spike: Spike) => number[]) => {
+      const stack = [start];
+      for (let at = stack.pop(); at !== undefined; at = stack.pop()) {
+        const spike = this.#spikes.get(at);
+        if (spike === undefined) continue;
+        found.add(at);
+        for (const other of next(spike)) if (!found.has(other)) stack.push(other);
+      }
+    };
+    follow(id, (spike) => spike.parents);
+    found.delete(id);
+    follow(id, (spike) => spike.children);
+    return found;
+  }
+
+  /** What came from outside, the newest first: what one may ask "why not" about. */
+  inputs(most: number, inputs: ReadonlySet<string>): Spike[] {
+    const found: Spike[] = [];
+    for (let i = this.spikes.length - 1; i >= 0 && found.length < most; i--) {
+      const spike = this.spikes[i] as Spike;
+      if (spike.parents.length === 0 && spike.rule === "" && inputs.has(spike.signal)) found.push(spike);
+    }
+    return found;
+  }
+
+  #add(record: TraceRecord): void {
+    if (this.records.length === 0) this.first = record.time;
+    this.records.push(record);
+    this.last = Math.max(this.last, record.time);
+    switch (record.kind) {
+      case "born": {
+        const spike: Spike = {
+          id: record.spike,
+          signal: record.signal,
+          time: record.time,
+          group: record.group,
+          parents: record.parents,
+          children: [],
+          rule: this.#bars.get(record.source)?.rule ?? "",
+          payload: record.payload,
+          dropped: "",
+        };
+        this.spikes.push(spike);
+        this.#spikes.set(spike.id, spike);
+        for (const parent of spike.parents) this.#spikes.get(parent)?.children.push(spike.id);
+        this.occurred.set(spike.signal, spike.time);
+        break;
+      }
+      case "dropped": {
+        const spike = this.#spikes.get(record.spike);
+        if (spike !== undefined) spike.dropped = record.reason;
+        break;
+      }
+      case "merged":
+        this.#into.set(record.group, record.into);
+        break;
+      case "set":
+        this.slots.set(record.slot, { shown: record.value, time: record.time });
+        break;
+      case "held": {
+        const bar = this.#bar(record.activation, record.rule, record.clause, record.time);
+        bar.holds.add(record.spike);
+        bar.spikes.push(record.spike);
+        bar.lacks = record.lacks;
+        this.#phase(bar, record.lacks.length > 0 ? "gathering" : "complete", record.time);
+        break;
+      }
+      case "gaveup": {
+        const bar = this.#bars.get(record.activation);
+        if (bar === undefined || bar.to !== null) break;
+        bar.holds.delete(record.spike);
+        bar.lacks = [...bar.lacks, record.signal];
+        const reason = record.by !== "" ? `${record.by} answered` : "";
+        if (bar.holds.size === 0) this.#end(bar, record.time, record.reason, reason);
+        else this.#phase(bar, "gathering", record.time);
+        break;
+      }
+      case "waits": {
+        const bar = this.#bars.get(record.activation);
+        if (bar !== undefined) this.#phase(bar, "waiting", record.time, record.for, record.until);
+        break;
+      }
+      case "started": {
+        const bar = this.#bar(record.run, record.rule, record.clause, record.time);
+        if (bar.spikes.length === 0) bar.spikes.push(...record.spikes);
+        this.#phase(bar, "running", record.time);
+        break;
+      }
+      case "settled": {
+        const bar = this.#bars.get(record.run);
+        if (bar !== undefined) this.#end(bar, record.time, record.outcome, record.reason);
+        if (record.outcome === "retired") this.lane(record.rule).retired = true;
+        break;
+      }
+      case "gap":
+        this.gaps.push({ time: record.time, spikes: record.spikes });
+        break;
+    }
+  }
+
+  #bar(id: number, rule: string, clause: number, time: number): Bar {
+    const known = this.#bars.get(id);
+    if (known !== undefined) return known;
+    const lane = this.lane(rule);
+    let row = 0;
+    while (row < MOST_ROWS - 1 && (lane.ends[row] ?? Number.NEGATIVE_INFINITY) > time) row++;
+    lane.ends[row] = Number.POSITIVE_INFINITY;
+    lane.rows = Math.max(lane.rows, row + 1);
+    const bar: Bar = {
+      id,
+      rule,
+      clause,
+      from: time,
+      to: null,
+      phases: [],
+      outcome: "",
+      reason: "",
+      holds: new Set(),
+      spikes: [],
+      lacks: [],
+      row,
+    };
+    this.#bars.set(id, bar);
+    lane.bars.push(bar);
+    lane.open.add(bar);
+    return bar;
+  }
+
+  #phase(bar: Bar, state: State, from: number, waits?: string[], until?: number | null): void {
+    const last = bar.phases.at(-1);
+    if (last !== undefined && last.state === state && waits === undefined) return;
+    const phase: Phase = { state, from };
+    if (waits !== undefined) {
+      phase.waits = waits;
+      phase.until = until ?? null;
+    }
+    bar.phases.push(phase);
+  }
+
+  #end(bar: Bar, time: number, outcome: string, reason: string): void {
+    const lane = this.lane(bar.rule);
+    bar.to = time;
+    bar.outcome = outcome;
+    bar.reason = reason;
+    bar.holds.clear();
+    lane.open.delete(bar);
+    lane.longest = Math.max(lane.longest, time - bar.from);
+    lane.ends[bar.row] = time;
+  }
+
+  /** Forget the oldest records, and what has nothing left of it. */
+  #forget(): void {
+    this.records = this.records.slice(-this.kept);
+    this.first = this.records[0]?.time ?? 0;
+    const gone = (time: number) => time < this.first;
+    for (const spike of this.spikes) if (gone(spike.time)) this.#spikes.delete(spike.id);
+    this.spikes = this.spikes.filter((spike) => !gone(spike.time));
+    this.gaps = this.gaps.filter((gap) => !gone(gap.time));
+    for (const lane of this.lanes.values()) {
+      for (const bar of lane.bars) if (bar.to !== null && gone(bar.to)) this.#bars.delete(bar.id);
+      lane.bars = lane.bars.filter((bar) => bar.to === null || !gone(bar.to));
+    }
+    const groups = new Set(this.spikes.map((spike) => spike.group));
+    for (const group of this.#into.keys()) if (!groups.has(group)) this.#into.delete(group);
+  }
+}
+
+/** The index of the first item at or after a time. */
+export function from<T>(items: readonly T[], time: number, of: (item: T) => number): number {
+  let low = 0;
+  let high = items.length;
+  while (low < high) {
+    const middle = (low + high) >> 1;
+    if (of(items[middle] as T) < time) low = middle + 1;
+    else high = middle;
+  }
+  return low;
+}

@@ -1,0 +1,25 @@
+// Raveboard: a page of its own, which ships with the room that serves it.
+import { fileURLToPath } from "node:url";
+import { svelte } from "@sveltejs/vite-plugin-svelte";
+import { defineConfig } from "vite";
+
+export default defineConfig({
+  root: "src/board",
+  base: "./",
+  publicDir: false,
+  plugins: [svelte({ configFile: fileURLToPath(new URL("svelte.config.js", import.meta.url)) })],
+  build: {
+    outDir: fileURLToPath(new URL("../src/ravestate/board/page", import.meta.url)),
+    emptyOutDir: true,
+    target: "es2022",
+    assetsInlineLimit: 0,
+    modulePreload: { polyfill: false },
+    rolldownOptions: {
+      output: {
+        entryFileNames: "assets/board.js",
+        chunkFileNames: "assets/[name].js",
+        assetFileNames: (asset) => `assets/${asset.names[0]?.endsWith(".css") ? "board" : "[name]"}[extname]`,
+      },
+    },
+  },
+});
