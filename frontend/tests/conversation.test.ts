@@ -143,6 +143,16 @@ test("the token of a link is presented, kept across reloads, and taken out of th
   expect(TestSocket.newest.sent[0]).toMatchObject({ token: "sesame" });
 });
 
+test("why it was refused is told until it is welcomed", () => {
+  TestSocket.newest.open();
+  TestSocket.newest.tell({ type: "error", code: "full", text: "9 visitors are here already" });
+  TestSocket.newest.lose(1013);
+  expect([conversation.status, conversation.trouble]).toEqual(["lost", "9 visitors are here already"]);
+  vi.advanceTimersByTime(1000);
+  TestSocket.newest.welcome("s");
+  expect(conversation.trouble).toBe("");
+});
+
 test("a token that was refused may be replaced", () => {
   TestSocket.newest.open();
   TestSocket.newest.tell({ type: "error", code: "token", text: "a token is needed" });

@@ -19,6 +19,8 @@ export class Conversation {
   typing = $state(false);
   agent = $state("Ravestate");
   status: Status = $state("connecting");
+  /** Where one may look inside of the agent, with what it takes to be let in; empty: nowhere. */
+  inside = $state("");
   /** Why it has ended, once it has. */
   ending = $state("");
   /** What the server did not take, and why. */
@@ -98,12 +100,14 @@ export class Conversation {
   #take(frame: ServerFrame): void {
     if (frame.type === "welcome") {
       this.agent = frame.agent;
+      this.trouble = "";
       if (!frame.resumed) {
         this.#anew = this.lines.some((line) => line.time !== undefined);
         this.#last = 0;
         this.#epoch += 1;
       }
       this.#keep({ session: frame.session });
+      this.inside = frame.inside === undefined ? "" : this.#linkInside(frame.inside);
       this.partial = "";
       for (const say of this.#outbox) this.#connection.send(say); // what was heard already is not heard again
     } else if (frame.type === "message") this.#hear(frame);
@@ -140,6 +144,15 @@ export class Conversation {
       this.#outbox = this.#outbox.filter((say) => say.id !== message.id);
       this.#keep({ outbox: this.#outbox });
     }
+  }
+
+  /** A link to what shows this conversation from inside; the secrets are in its fragment, which is sent nowhere. */
+  #linkInside(path: string): string {
+    const { session, token } = this.#kept;
+    const secrets = new URLSearchParams();
+    if (session !== undefined) secrets.set("session", session);
+    if (token !== undefined) secrets.set("token", token);
+    return `${path}#${secrets}`;
   }
 
   #forget(): void {

@@ -30,6 +30,8 @@ export interface Welcome {
   resumed: boolean;
   first: number;
   agent: string;
+  /** Where one may look inside of the agent, relative to the page. */
+  inside?: string;
 }
 
 export type ServerFrame =
