@@ -57,11 +57,8 @@ def about_agent(
     for sentence in sentences[: 2 * SENTENCES]:
         words, told = _unwrapped(_words(sentence, names))
         text = " ".join(words)
-        reason = (
-            ""
-            if text in known
-            else _unfit(words, told or sentence.endswith("?") or (question and len(sentences) == 1))
-        )
+        asks = told or sentence.endswith("?") or (question and len(sentences) == 1)
+        reason = "" if text in known else _unfit(words, asks, known)
         if reason:
             why = reason
         else:
@@ -74,7 +71,7 @@ def plain(question: str) -> str:
     return " ".join(_unwrapped(_words(question, ()))[0])
 
 
-def _unfit(words: list[str], asks: bool) -> str:
+def _unfit(words: list[str], asks: bool, known: Collection[str]) -> str:
     """Why a sentence is no question about the agent; empty if it may be one."""
     if not words:
         return "nothing is said"
@@ -84,6 +81,10 @@ def _unfit(words: list[str], asks: bool) -> str:
         return "it is no question"
     if not _USER.isdisjoint(_ABOUT_BOTH.sub(" ", " ".join(words)).split()):
         return "it is about the user"
+    if not _SOMEBODY.isdisjoint(words):
+        return "it is about somebody else"
+    if words[0] == "why" and not any(one.startswith("why ") for one in known):
+        return "it asks for a reason"
     return ""
 
 
@@ -127,7 +128,11 @@ def _unwrapped(words: list[str]) -> tuple[list[str], bool]:
     if words[:1] == ["any"]:
         words = ["do", "you", "have", *words]
     elif words[:1] == ["got"]:
-        words = ["have", "you", *words]
+        words = ["do", "you", "have", *words[1:]]
+    elif words[:3] == ["have", "you", "got"] or (
+        words[:2] == ["have", "you"] and not _SOME.isdisjoint(words[2:3])
+    ):
+        words = ["do", "you", "have", *words[3 if words[2:3] == ["got"] else 2 :]]
     return words, told
 
 
@@ -150,15 +155,17 @@ _NAME = "thename"
 _AGREEING = {"is": "are ", "does": "do ", "has": "have "}
 _YOU = _set("you your yours yourself")
 _USER = _set("i me my mine myself am we us our ours ourselves")
+_SOME = _set("a an any some many brothers sisters siblings friends hobbies parents")
+_SOMEBODY = _set("he she him his her hers them their")
 _ABOUT_BOTH = re.compile(
     r"\b(?:(?:should|shall|can|may|do|must|could|might) i (?:call|address|reach|find) (?=you)|"
-    r"am i (?:\w+ )?(?:talking|speaking|chatting) (?:to|with)|(?:for|help|tell|about) me\b)"
+    r"(?:am i|i am) (?:\w+ )?(?:talking|speaking|chatting) (?:to|with)|(?:for|help|tell|about) me\b)"
 )
 """Where the user is mentioned in a question about the agent."""
 _QUESTION_WORDS = _set("who whom whose what which where when why how")
 _FIRST = _QUESTION_WORDS | _set(
     "do does did are is was were have has had can could will would may should since in from by of to with at on until under am "
-    "introduce describe say talk"
+    "introduce describe say talk list name"
 )
 """With these a question or a request begins."""
 _AT_THE_END = _set("please exactly actually anyway though by-the-way then")

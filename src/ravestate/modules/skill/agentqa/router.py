@@ -8,8 +8,10 @@ from collections import Counter
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from importlib import import_module
 from typing import TYPE_CHECKING
 
+from ravestate.modules._loading import LOADING
 from ravestate.modules._sentences import Encoder
 
 from .asking import Asked, about_agent, plain
@@ -90,6 +92,8 @@ class Router:
         """
         with self._lock:
             if self._learnt is None:
+                with LOADING:
+                    import_module("numpy")  # for all that follows
                 self._learnt = _Learnt(self.life, self._encoder)
 
     def route(self, utterance: str, names: Collection[str] = (), *, question: bool = False) -> Match | Miss:
