@@ -7,13 +7,14 @@ message, never a traceback.
 from __future__ import annotations
 
 import argparse
+import contextlib
 import sys
 from collections.abc import Sequence
 from importlib import import_module
 
 from ravestate.errors import PlatformError, RavestateError
 
-__all__ = ["main"]
+__all__ = ["main", "script"]
 
 COMMANDS = {
     "chat": "talk with the complete agent on the console",
@@ -66,6 +67,26 @@ def main(argv: Sequence[str] | None = None) -> int:
         return 130
     except BrokenPipeError:
         return 0
+
+
+def script() -> int:
+    """The command ``ravestate``: `main`, and the end of the process.
+
+    The interpreter ends threads that are left in the midst of what they do. Where that is a C++ library (a model that takes
+    long to load on a busy machine), the process would be aborted; so it ends here, with all else in order.
+    """
+    import atexit
+    import os
+    import threading
+
+    code = main()
+    atexit._run_exitfuncs()  # pyright: ignore[reportPrivateUsage]  # they wait for what can be waited for
+    if any(thread.daemon for thread in threading.enumerate()):
+        for stream in (sys.stdout, sys.stderr):
+            with contextlib.suppress(OSError, ValueError):
+                stream.flush()
+        os._exit(code)
+    return code
 
 
 class UsageError(RavestateError):

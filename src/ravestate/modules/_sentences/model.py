@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ravestate.errors import PlatformError
+from ravestate.modules._loading import LOADING
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -85,8 +86,9 @@ class SentenceModel:
             PlatformError: A package or a file is missing or broken.
         """
         try:
-            import onnxruntime  # pyright: ignore[reportMissingTypeStubs]
-            from tokenizers import Tokenizer
+            with LOADING:
+                import onnxruntime  # pyright: ignore[reportMissingTypeStubs]
+                from tokenizers import Tokenizer
         except ImportError as error:
             raise PlatformError(
                 f"sentence models need {error.name or 'onnxruntime'}: {_INSTALL_CODE} and {_INSTALL_FILES}"

@@ -8,6 +8,7 @@ from functools import lru_cache
 from typing import Any
 
 from ravestate.errors import PlatformError
+from ravestate.modules._loading import LOADING
 
 from .entity import Entity
 from .hiding import hidden
@@ -50,7 +51,8 @@ class Pipeline:
         """
         with self._lock:
             if self._nlp is None:
-                self._nlp = self._load()
+                with LOADING:
+                    self._nlp = self._load()
 
     def read(self, text: str) -> tuple[Tree, tuple[Entity, ...]]:
         """Return the tree of the first `LONGEST` characters of `text`, and what is named in them.

@@ -10,6 +10,7 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from ravestate.errors import PlatformError
+from ravestate.modules._loading import LOADING
 
 from .store import FORMAT, RawNode, RawRelation, check_format
 from .types import Types
@@ -52,7 +53,8 @@ class BoltStore:
             PlatformError: The package is missing, or the server is absent, stalls or refuses.
         """
         try:
-            import neo4j
+            with LOADING:
+                import neo4j
         except ImportError as error:
             raise PlatformError(
                 f"ontology needs neo4j for the server {url}: pip install 'ravestate[neo4j]'"

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any, cast
 
 from ravestate.errors import PlatformError
+from ravestate.modules._loading import LOADING
 
 from .copying import copy_database
 from .faults import is_failed_write, is_torn_log, reason, why_not_opened
@@ -56,7 +57,8 @@ class EmbeddedStore:
             PlatformError: The package is missing, or the file is in use, broken, newer, or cannot be written.
         """
         try:
-            import ladybug
+            with LOADING:
+                import ladybug
         except ImportError as error:
             raise PlatformError("ontology needs ladybug: pip install 'ravestate[ontology]'") from error
         self._ladybug = ladybug

@@ -7,6 +7,7 @@ from importlib import import_module
 from typing import Any
 
 from ravestate.errors import PlatformError
+from ravestate.modules._loading import LOADING
 
 __all__ = ["polarity", "valence"]
 
@@ -33,7 +34,8 @@ def valence(word: str) -> float:
 def _analyser() -> Any:
     """Read the lexicon: about 30 ms, once per process."""
     try:
-        vader = import_module("vaderSentiment.vaderSentiment")  # it has no types
+        with LOADING:
+            vader = import_module("vaderSentiment.vaderSentiment")  # it has no types
     except ImportError as error:
         raise PlatformError("emotion needs vaderSentiment: pip install 'ravestate[emotion]'") from error
     return vader.SentimentIntensityAnalyzer()

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from datetime import datetime, timedelta
 
 import ravestate as rs
-from ravestate.errors import PlatformError, RavestateError
+from ravestate.errors import PlatformError, RavestateError, RuleError
 from ravestate.modules import idle, nlp, ontology, rawio, verbaliser
 from ravestate.modules._room import give_back
 from ravestate.modules.meta.verbaliser.intents import Intent
@@ -54,6 +54,8 @@ async def remember(ctx: rs.RuleContext) -> rs.Resign | None:
         return rs.Resign("memory cannot be opened, of which it tells itself")
     try:
         await settle(told, memory)
+    except RuleError as error:
+        return rs.Resign(str(error))  # it has been closed meanwhile: the talk is over
     except RavestateError as error:
         ctx.log.warning("what memory has of the agent may be old: %s", error)
     return None

@@ -13,7 +13,9 @@ JUST_NOW = 60.0
 """Seconds for which a goodbye counts: who leaves after it is not bidden farewell again."""
 
 
-@module.rule(when=interloc.users.added, writes=verbaliser.intent, weight=1.1)  # before a farewell in the same moment
+@module.rule(
+    when=interloc.users.added, writes=verbaliser.intent, weight=1.1
+)  # before a farewell in the same moment
 async def greet_who_comes(ctx: rs.RuleContext) -> None:
     """Somebody is there who was not."""
     name = ctx.payload(interloc.users.added).item

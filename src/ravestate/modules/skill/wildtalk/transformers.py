@@ -16,6 +16,7 @@ from typing import Any, ClassVar, cast
 from weakref import WeakValueDictionary
 
 from ravestate.errors import PlatformError
+from ravestate.modules._loading import LOADING
 
 from .backend import Message, Progress
 
@@ -121,7 +122,8 @@ class _Model:
             raise PlatformError(
                 f"wildtalk needs {' and '.join(missing)} for this model: pip install 'ravestate[transformers]'"
             )
-        import transformers
+        with LOADING:
+            import transformers
 
         library = cast("Any", transformers)
         library.utils.logging.disable_progress_bar()
