@@ -83,7 +83,7 @@ layers: setup
 .PHONY: pages
 pages: setup $(DONE)/frontend
 	@cd frontend && $(NPM) run --silent check && $(NPM) run --silent build > /dev/null
-	@git diff --exit-code --stat -- src/ravestate/modules/platform/webio/page || { \
+	@git diff --exit-code --stat -- src/ravestate/modules/platform/webio/page src/ravestate/board/page || { \
 		echo 'The pages are not what frontend/ builds: commit what was built.'; exit 1; }
 
 .PHONY: format
@@ -145,7 +145,7 @@ $(DONE)/browser: $(DONE)/python
 	@touch $@
 
 $(DONE)/frontend: $(DONE)/dev frontend/package-lock.json
-	@cd frontend && $(NPM) ci --no-audit --no-fund --loglevel=error > /dev/null
+	@cd frontend && $(NPM) install --no-save --no-audit --no-fund --loglevel=error > /dev/null
 	@touch $@
 
 $(DONE)/model: $(DONE)/build
