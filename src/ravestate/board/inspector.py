@@ -139,6 +139,8 @@ class Inspector:
         finally:
             if session is not None:
                 self._sessions.exit(session, self)
+                if isinstance(subject, Live) and not any(isinstance(o, Inspector) for o in session.onlookers):
+                    subject.leave()
 
     async def _until_over(self, subject: Subject, session: Session | None, seen: int) -> None:
         tasks = [

@@ -70,7 +70,7 @@ class Recorder:
         self._context = context
         self._burst = burst
         self._rate = rate
-        self._left = burst
+        self._left = 0  # the first record is granted a burst
         self._granted: float | None = None
         self._spike = 0  # the newest that is known
         self._gap: Gap | None = None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from typing import TYPE_CHECKING, Any, Protocol
 
 from ravestate.board.commands import Command, Emit, Pause, Put, Resume, Say, Step
@@ -165,7 +166,7 @@ class Live:
             case Pause():
                 context.pause()
             case Step():
-                context.step()
+                asyncio.get_running_loop().call_soon(context.step)  # rules are started outside of any task
             case Resume():
                 context.resume()
             case Put():
@@ -177,6 +178,11 @@ class Live:
                 self._session.hear(f"board-{self._recorder.last}-{context.now:.6f}", command.text)
             case _:
                 raise RavestateError(f"{command.type} is not for an agent")
+
+    def leave(self) -> None:
+        """Nobody looks any more: an agent whose clock was halted goes on."""
+        if self._session.ended is None and self._context.paused:
+            self._context.resume()
 
     def _named(self, things: Any, what: str, name: str) -> Any:
         if name not in things:

@@ -230,7 +230,9 @@ class Runner:
             if self._timer is not None:
                 self._timer.cancel()
                 self._timer = None
-            self._pump()
+            if not self._scheduled:  # not at once: a task may be asking, and rules are started outside of any
+                self._scheduled = True
+                self.loop.call_soon(self._pump)
 
     def _arm(self) -> None:
         """Set the one timer, unless it is early enough already: waking for nothing is harmless."""

@@ -1,0 +1,125 @@
+"""Inspectors for tests: clients that speak the board's protocol with the application in memory, in virtual time."""
+
+import asyncio
+import contextlib
+import functools
+from collections.abc import AsyncGenerator, Callable, Coroutine
+from typing import Any
+
+from starlette.applications import Starlette
+
+import ravestate as rs
+from modules.platform.webio.visit import Visit, parrot
+from ravestate.board.application import INSIDE, RecordedAgent, routes
+from ravestate.board.trace_file import Recording
+from ravestate.modules import rawio, webio
+from ravestate.testing.virtual_loop import VirtualLoop
+
+__all__ = ["Look", "board", "gossip", "in_virtual_time"]
+
+gossip = rs.Module("gossip", requires=(rawio,))
+question = gossip.signal("question")
+secret: rs.Slot[object] = gossip.slot("secret", None)
+cheered: rs.Signal[Any] = gossip.signal("cheered", payload=dict)
+
+
+@gossip.rule(when=rawio.input.changed, emits=question)
+async def classify(ctx: rs.RuleContext) -> None:
+    """Tell questions from other things."""
+    await ctx.sleep(0.2)
+    if "?" in ctx.payload(rawio.input.changed):
+        ctx.emit(question)
+
+
+@gossip.rule(when=question, writes=rawio.output)
+async def answer(ctx: rs.RuleContext) -> None:
+    """Answer a question."""
+    ctx[rawio.output] = "Yes."
+
+
+@gossip.rule(when=rawio.input.changed, writes=rawio.output)
+async def talk(ctx: rs.RuleContext) -> None:
+    """Say something in any case."""
+    ctx[rawio.output] = "I see."
+
+
+@gossip.rule(when=cheered)
+async def bow(ctx: rs.RuleContext) -> None:
+    """Take what was cheered."""
+
+
+class Loop(VirtualLoop):
+    """Time jumps to what is due next; what is meant for a thread is done at once."""
+
+    def run_in_executor(self, executor: Any, func: Any, *args: Any) -> Any:
+        """Do it here and now."""
+        future = self.create_future()
+        try:
+            future.set_result(func(*args))
+        except Exception as error:
+            future.set_exception(error)
+        return future
+
+
+def in_virtual_time(test: Callable[..., Coroutine[Any, Any, None]]) -> Callable[..., None]:
+    """Run an async test function on such a loop."""
+
+    @functools.wraps(test)
+    def run(*arguments: Any, **named: Any) -> None:
+        with asyncio.Runner(loop_factory=Loop) as runner:
+            runner.run(test(*arguments, **named))
+
+    return run
+
+
+@contextlib.asynccontextmanager
+async def board(
+    *modules: Any, recording: Recording | None = None, recorded: bool = True, **settings: Any
+) -> AsyncGenerator[Starlette]:
+    """The page of an agent, and the board beside it."""
+    agent = RecordedAgent(*(modules or (gossip, parrot)), webio, settings={"webio": settings})
+    beside = routes(agent.recorders if recorded else None, recording, "Elske")
+    app = webio.app(agent, beside, INSIDE)
+    async with app.router.lifespan_context(app):
+        yield app
+
+
+class Look(Visit):
+    """One inspector: ``async with Look(app) as look``."""
+
+    def __init__(self, app: Starlette, **headers: str) -> None:
+        async def at_board(scope: Any, receive: Any, send: Any) -> None:
+            await app({**scope, "path": "/board/ws", "raw_path": b"/board/ws"}, receive, send)
+
+        super().__init__(at_board, **headers)  # type: ignore[arg-type]  # it is called like one
+        self.records: list[dict[str, Any]] = []
+
+    async def begin(self, **fields: Any) -> dict[str, Any]:
+        """Say hello; the welcome. What is alive has been told after it."""
+        self.tell("hello", v=1, **fields)
+        welcome = await self.next()
+        if welcome["type"] == "welcome":
+            assert (await self.next())["type"] == "state"
+        return welcome
+
+    async def answer(self, type: str) -> dict[str, Any]:
+        """The next frame of a type; records are collected on the way."""
+        while True:
+            frame = await self.next()
+            if frame["type"] == "records":
+                self.records += frame["records"]
+            if frame["type"] == type:
+                return frame
+
+    async def until(self, kind: str, **fields: Any) -> dict[str, Any]:
+        """The next record of a kind with such fields, or the one that has come already."""
+        while (found := self.found(kind, **fields)) is None:
+            await self.answer("records")
+        return found
+
+    def found(self, kind: str, **fields: Any) -> dict[str, Any] | None:
+        """The first of the records that have come that is of a kind and has such fields."""
+        return next(
+            (r for r in self.records if r["kind"] == kind and all(r.get(k) == v for k, v in fields.items())),
+            None,
+        )

@@ -1,0 +1,41 @@
+"""The description of a policy: utilities add up, and everybody is named on both sides."""
+
+import math
+
+import pytest
+
+import ravestate as rs
+from board.looking import gossip
+from modules.platform.webio.visit import parrot
+from ravestate.board.description import describe
+from ravestate.modules import agenda, emotion, fillers, hibye, idle
+
+
+def test_the_terms_and_predicates_of_each_clause_make_up_its_utility() -> None:
+    policy = rs.compile(gossip, parrot, idle, hibye, fillers, emotion, agenda)
+    found = describe(policy)
+    clauses = [clause for rule in found.rules for clause in rule.clauses]
+    assert any(clause.predicates for clause in clauses)
+    for clause in clauses:
+        total = sum(term.nats for term in clause.terms) + clause.predicates * math.log(2)
+        assert total == pytest.approx(clause.utility)
+        for term in clause.terms:
+            assert term.nats == pytest.approx(-math.log(term.rules / len(found.rules)))
+
+
+def test_hearers_and_raisers_readers_and_writers_are_told() -> None:
+    found = describe(rs.compile(gossip, parrot))
+    (question,) = [signal for signal in found.signals if signal.name == "gossip:question"]
+    (output,) = [slot for slot in found.slots if slot.name == "rawio:output"]
+    (said,) = [signal for signal in found.signals if signal.name == "rawio:input:changed"]
+    assert (question.hearers, question.raisers, question.input) == (
+        ("gossip:answer",),
+        ("gossip:classify",),
+        False,
+    )
+    assert {"gossip:answer", "gossip:talk", "parrot:repeat"} <= set(output.writers)
+    assert said.input
+    rule = found.rule("gossip:classify")
+    assert rule is not None
+    assert rule.doc == "Tell questions from other things."
+    assert found.rule("gossip:nobody") is None

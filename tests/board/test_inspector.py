@@ -1,0 +1,350 @@
+"""Inspectors: what they see, ask and do; and what they may not."""
+
+import asyncio
+import json
+from typing import Any
+
+import pytest
+
+import ravestate as rs
+from board.looking import Look, board, in_virtual_time, secret
+from modules.platform.webio.visit import Visit
+from ravestate.board import inspector
+from ravestate.modules import rawio
+
+
+@in_virtual_time
+async def test_it_sees_the_policy_and_what_happens_from_the_beginning() -> None:
+    async with board() as app, Visit(app) as visit:
+        await visit.hello()
+        visit.say("Really?")
+        await visit.messages(3)
+        async with Look(app) as look:
+            welcome = await look.begin(session=visit.session)
+            born = await look.until("born", signal="rawio:input:changed")
+            await look.until("settled", rule="gossip:answer", outcome="done")
+    assert (welcome["v"], welcome["title"], welcome["live"], welcome["whole"]) == (1, "Elske", True, True)
+    assert [rule["name"] for rule in welcome["policy"]["rules"]][:3] == [
+        "gossip:classify",
+        "gossip:answer",
+        "gossip:talk",
+    ]
+    assert born["payload"] == {"text": '"Really?"'}
+    assert look.records[0]["kind"] == "born"
+    assert look.records[0]["signal"] == "core:startup"
+    assert welcome["visitor"].startswith("webio-")
+    assert visit.session not in json.dumps(welcome)
+
+
+@in_virtual_time
+async def test_the_chat_page_is_told_where_to_look_inside() -> None:
+    async with board() as app, Visit(app) as visit:
+        assert (await visit.hello())["inside"] == "board/"
+
+
+@in_virtual_time
+async def test_without_a_name_it_sees_the_newest_conversation_or_begins_one() -> None:
+    async with board() as app:
+        async with Look(app) as look:
+            first = await look.begin()
+        assert len(app.state.sessions) == 1
+        async with Visit(app) as visit:
+            await visit.hello()
+            async with Look(app) as look:
+                second = await look.begin()
+                listed = await look.answer("conversations")
+            async with Look(app) as look:
+                again = await look.begin(visitor=first["visitor"])
+    assert [c["visitor"] for c in listed["conversations"]] == [first["visitor"], second["visitor"]]
+    assert again["visitor"] == first["visitor"] != second["visitor"]
+
+
+@in_virtual_time
+async def test_it_sees_only_the_conversation_that_it_looks_at() -> None:
+    async with board() as app, Visit(app) as one, Visit(app) as other:
+        await one.hello()
+        await other.hello()
+        async with Look(app) as look:
+            await look.begin(session=one.session)
+            other.say("whisper")
+            one.say("shout")
+            await look.until("born", signal="rawio:input:changed")
+            await asyncio.sleep(2)
+            look.tell("ping")
+            await look.answer("pong")
+        assert "whisper" not in json.dumps(look.records)
+
+
+@in_virtual_time
+async def test_why_not_is_answered_with_the_right_reason() -> None:
+    async with board() as app, Look(app) as look:
+        await look.begin()
+        look.tell("say", text="Hello")
+        await look.until("settled", rule="gossip:talk", outcome="done")
+        spike = (await look.until("born", signal="rawio:input:changed"))["spike"]
+        look.tell("why", rule="gossip:answer", spike=spike)
+        found = await look.answer("why")
+    assert found["verdict"] == "untouched"
+    assert found["missing"][0]["raisers"][0]["words"].startswith(
+        "gossip:classify was done without raising it"
+    )
+    assert found["whole"] is True
+
+
+@in_virtual_time
+async def test_a_rule_is_explained_while_it_waits() -> None:
+    async with board() as app, Look(app) as look:
+        await look.begin()
+        look.tell("say", text="Hello")
+        await look.until("waits", rule="gossip:talk")
+        look.tell("explain", rule="gossip:talk")
+        found = await look.answer("explained")
+    (activation,) = found["activations"]
+    assert activation["state"] == "waiting"
+    assert activation["waits_for"][0][0] == "gossip:answer"
+    assert found["clauses"][0]["effective"] > 0
+
+
+async def step_until(look: Look, kind: str, **fields: Any) -> dict[str, Any]:
+    """Do one thing after another until there is such a record."""
+    for _ in range(20):
+        found = look.found(kind, **fields)
+        if found is not None:
+            return found
+        look.tell("step")
+        await asyncio.sleep(1)
+        look.tell("ping")
+        await look.answer("pong")
+    raise AssertionError(f"20 steps have brought no {kind} {fields}")
+
+
+@in_virtual_time
+async def test_the_clock_is_paused_stepped_and_continued() -> None:
+    async with board() as app, Look(app) as look:
+        await look.begin()
+        look.tell("pause")
+        assert (await look.answer("records"))["paused"] is True
+        look.tell("say", text="Hello")
+        await look.until("born", signal="rawio:input:changed")
+        await asyncio.sleep(30)
+        assert not [r for r in look.records if r.get("rule") == "gossip:classify" and r["kind"] == "started"]
+        started = await step_until(look, "started", rule="gossip:classify")
+        assert started["time"] < 1
+        settled = await step_until(look, "settled", rule="gossip:classify")
+        assert settled["time"] == pytest.approx(
+            started["time"] + 0.2
+        )  # nothing was due: the clock was set forward
+        await asyncio.sleep(30)
+        assert not look.found("settled", rule="gossip:talk")
+        look.tell("resume")
+        await look.until("settled", rule="gossip:talk", outcome="done")
+        look.tell("look")
+        assert (await look.answer("state"))["paused"] is False
+
+
+@in_virtual_time
+async def test_slots_are_written_and_signals_raised_by_hand() -> None:
+    async with board() as app, Look(app) as look:
+        await look.begin()
+        look.tell("put", slot="gossip:secret", value={"of": ["Ada", 1]})
+        look.tell("emit", signal="gossip:cheered", payload={"how": "loud"})
+        written = await look.until("set", slot="gossip:secret")
+        await look.until("settled", rule="gossip:bow")
+        look.tell("look")
+        slots = (await look.answer("state"))["slots"]
+    assert written["value"] == {"text": '{"of": ["Ada", 1]}'}
+    assert slots["gossip:secret"] == {"text": '{"of": ["Ada", 1]}'}
+
+
+@pytest.mark.parametrize(
+    ("frame", "words"),
+    [
+        ({"type": "put", "slot": "gossip:sercet", "value": 1}, "no slot 'gossip:sercet'; did you mean"),
+        ({"type": "put", "slot": "rawio:input", "value": 7}, "which takes str, not int"),
+        ({"type": "emit", "signal": "gossip:nothing"}, "this agent has no signal 'gossip:nothing'"),
+        ({"type": "explain", "rule": "gossip:nobody"}, "the policy has no rule 'gossip:nobody'"),
+        ({"type": "why", "rule": "gossip:talk", "spike": 10**9}, "spike 1000000000 is not in the history"),
+        ({"type": "why", "rule": "gossip:talk", "spike": "one"}, "why: spike: Input should be a valid integer"),
+        ({"type": "why", "rule": "gossip:talk"}, "why: spike: Field required"),
+        ({"type": "dance"}, "dance: Input tag 'dance'"),
+        ({"type": "say", "text": ""}, "say: text: String should have at least 1 character"),
+        ({"type": "diagram", "unfolded": "all"}, "diagram: unfolded: Input should be a valid list"),
+        ({"type": "hello", "v": 1}, "hello is said once"),
+        ([], "a frame is an object"),
+    ],
+)  # fmt: skip
+def test_what_it_says_wrongly_is_told_and_harms_nobody(frame: Any, words: str) -> None:
+    @in_virtual_time
+    async def test() -> None:
+        async with board() as app, Look(app) as look:
+            await look.begin()
+            look.send(json.dumps(frame))
+            assert words in (await look.answer("error"))["text"]
+            look.tell("ping")
+            await look.answer("pong")
+
+    test()
+
+
+@in_virtual_time
+async def test_what_is_no_frame_is_told() -> None:
+    async with board() as app, Look(app) as look:
+        await look.begin()
+        for text in ("{", b"\x00", "[" * 5000, '{"type": []}'):
+            look.send(text)
+            assert (await look.answer("error"))["code"] == "malformed"
+
+
+@pytest.mark.parametrize(
+    ("first", "code"),
+    [
+        ({"type": "ping"}, 4400),
+        ({"type": "hello", "v": 2}, 4400),
+        ({"type": "hello", "v": 1, "session": "guessed"}, 4404),
+        ({"type": "hello", "v": 1, "visitor": "webio-nobody"}, 4404),
+        ({"type": "hello", "v": 1, "recording": "lost"}, 4404),
+    ],
+)
+def test_what_cannot_be_looked_at_closes_the_connection(first: dict[str, Any], code: int) -> None:
+    @in_virtual_time
+    async def test() -> None:
+        async with board() as app, Look(app) as look:
+            look.send(json.dumps(first))
+            assert (await look.next())["type"] == "error"
+            assert (await look.next())["type"] == "websocket.close"
+            assert look.closed == code
+
+    test()
+
+
+@in_virtual_time
+async def test_who_says_nothing_is_not_waited_for() -> None:
+    async with board() as app, Look(app) as look:
+        assert (await look.next())["code"] == "silent"
+        await look.next()
+        assert look.closed == 4408
+
+
+@in_virtual_time
+async def test_the_board_asks_for_the_same_token_and_origin() -> None:
+    async with board(token="open sesame, please") as app:
+        async with Look(app) as look:
+            await look.begin()
+            await look.next()
+            assert look.closed == 4401
+        async with Look(app) as look:
+            assert (await look.begin(token="open sesame, please"))["type"] == "welcome"
+        async with Look(app, origin="https://elsewhere.example") as look:
+            await look.next()
+            assert not look.accepted
+
+
+@in_virtual_time
+async def test_a_browser_that_stops_reading_holds_nobody_up_and_misses_what_is_forgotten() -> None:
+    ticks = rs.Module("ticks", requires=(rawio,))
+    tick = ticks.signal("tick")
+
+    @ticks.rule(when=tick)
+    async def count(ctx: rs.RuleContext) -> None: ...
+
+    async with board(ticks) as app, Look(app) as look:
+        await look.begin()
+        (session,) = app.state.sessions
+        look.reading.clear()
+        for _ in range(200):
+            for _ in range(250):
+                session.context.emit(tick)
+            await asyncio.sleep(2)
+        assert session.context.now >= 400  # time went on
+        look.reading.set()
+        missed = 0
+        frame: dict[str, Any] = {}
+        while frame.get("behind") != 0 or not missed:
+            frame = await look.answer("records")
+            missed += frame["missed"]
+    assert missed > 0
+    assert len(look.records) <= 130_000
+
+
+@in_virtual_time
+async def test_who_asks_on_and_on_and_does_not_read_is_dropped() -> None:
+    async with board() as app, Look(app) as look:
+        await look.begin()
+        look.reading.clear()
+        for _ in range(inspector.REPLIES + 60):
+            look.tell("look")
+        await asyncio.sleep(60)
+        look.reading.set()
+        await look.over()
+
+
+@in_virtual_time
+async def test_huge_and_strange_values_are_cut() -> None:
+    class Odd:
+        def __repr__(self) -> str:
+            raise ValueError("no")
+
+    async with board() as app, Look(app) as look:
+        await look.begin()
+        (session,) = app.state.sessions
+        session.context.put(secret, "x" * 10_000_000)
+        large = await look.until("set", slot="gossip:secret")
+        look.records.clear()
+        session.context.put(secret, Odd())
+        odd = await look.until("set", slot="gossip:secret")
+        look.records.clear()
+        session.context.put(secret, {"script": "<script>alert(1)</script>"})
+        markup = await look.until("set", slot="gossip:secret")
+    assert len(large["value"]["text"]) <= 2000
+    assert large["value"]["cut"] is True
+    assert odd["value"] == {"text": "<Odd whose repr fails: ValueError>", "json": False}
+    assert "<script>" in markup["value"]["text"]
+
+
+@in_virtual_time
+async def test_a_rule_that_is_added_is_told() -> None:
+    async with board() as app, Look(app) as look:
+        await look.begin()
+        (session,) = app.state.sessions
+
+        @rs.Module("late").rule(when=rawio.input.changed)
+        async def listen(ctx: rs.RuleContext) -> None: ...
+
+        session.context.add_rule(listen)
+        policy = (await look.answer("policy"))["policy"]
+    assert policy["rules"][-1]["name"] == "late:listen"
+
+
+@in_virtual_time
+async def test_the_diagram_comes_laid_out_folded_or_not() -> None:
+    async with board() as app, Look(app) as look:
+        await look.begin()
+        look.tell("diagram", unfolded=[])
+        folded = await look.answer("diagram")
+        look.tell("diagram", unfolded=["gossip"])
+        partly = await look.answer("diagram")
+    assert {node["kind"] for node in folded["nodes"]} == {"module"}
+    assert "rule gossip:answer" in [node["id"] for node in partly["nodes"]]
+    assert "module rawio" in [node["id"] for node in partly["nodes"]]
+
+
+@in_virtual_time
+async def test_the_end_of_a_conversation_is_told() -> None:
+    async with board() as app, Visit(app) as visit, Look(app) as look:
+        await visit.hello()
+        await look.begin(session=visit.session)
+        visit.tell("bye")
+        assert (await look.answer("ended"))["text"] == "you left"
+        await look.next()
+        assert look.closed == 1000
+
+
+@in_virtual_time
+async def test_looking_keeps_a_conversation() -> None:
+    async with board(keep=5) as app:
+        async with Look(app) as look:
+            await look.begin()
+            await asyncio.sleep(60)
+            assert len(app.state.sessions) == 1
+        await asyncio.sleep(60)
+        assert len(app.state.sessions) == 0

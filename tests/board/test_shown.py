@@ -1,0 +1,75 @@
+"""Values as they are shown: whole where that is possible, cut where it is not, and never a failure."""
+
+import json
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from ravestate.board.shown import Shown, show
+
+JSON = st.recursive(
+    st.none() | st.booleans() | st.integers() | st.floats(allow_nan=False, allow_infinity=False) | st.text(),
+    lambda inner: st.lists(inner, max_size=4) | st.dictionaries(st.text(), inner, max_size=4),
+    max_leaves=12,
+)
+
+
+@given(JSON, st.integers(1, 60))
+def test_text_is_bounded_and_whole_json_can_be_read_back(value: object, most: int) -> None:
+    shown = show(value, most)
+    assert len(shown.text) <= max(most, 40)
+    shown.text.encode()
+    if shown.json:
+        assert not shown.cut
+        json.loads(shown.text)
+
+
+class Loud:
+    def __repr__(self) -> str:
+        raise RuntimeError("no")
+
+
+class Liar(dict[str, int]):
+    def items(self) -> object:  # type: ignore[override]
+        raise RuntimeError("no")
+
+
+def endless() -> list[object]:
+    loop: list[object] = []
+    loop.append(loop)
+    return loop
+
+
+@pytest.mark.parametrize(
+    ("value", "shown"),
+    [
+        ("hello", Shown('"hello"')),
+        (True, Shown("true")),
+        (None, Shown("null")),
+        ((1, 2), Shown("[1, 2]")),
+        ({1: 2}, Shown("{1: 2}", json=False)),
+        (float("inf"), Shown("inf", json=False)),
+        ({1, 2}, Shown("{1, 2}", json=False)),
+        (Loud(), Shown("<Loud whose repr fails: RuntimeError>", json=False)),
+        (Liar(a=1), Shown("<Liar that cannot be shown: RuntimeError>", json=False)),
+        ("<b>", Shown('"<b>"')),
+    ],
+)
+def test_what_is_shown(value: object, shown: Shown) -> None:
+    assert show(value) == shown
+
+
+def test_what_has_no_end_is_shown() -> None:
+    assert show(endless()).text == "[[...]]"
+
+
+@pytest.mark.parametrize(
+    "value",
+    ["x" * 10**7, list(range(10**6)), 10**5000, {"k" * 10**6: 1}],
+    ids=["text", "list", "number", "key"],
+)
+def test_what_is_huge_is_cut(value: object) -> None:
+    shown = show(value, 100)
+    assert len(shown.text) <= 100
+    assert not shown.json

@@ -1,0 +1,119 @@
+"""Recorded traces: what is written is read again, and what is no trace is refused with the place where it is wrong."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import ravestate as rs
+from board.looking import Look, board, gossip, in_virtual_time
+from modules.platform.webio.visit import parrot
+from ravestate.board.description import describe
+from ravestate.board.recorder import Gap
+from ravestate.board.trace_file import open_trace, read_trace, save_trace
+from ravestate.board.why_not import why_not
+from ravestate.board.wire import data_of, record_of, whole_data
+from ravestate.engine.trace import Born, Record
+from ravestate.errors import PlatformError
+from ravestate.modules import rawio
+from ravestate.testing import simulate
+
+
+def recorded(path: Path) -> tuple[list[Record], rs.Policy]:
+    with simulate(gossip, parrot) as sim:
+        sim.say("Hello")
+        sim.advance(2)
+        records, policy = list(sim.trace), sim.context.policy
+    save_trace(path, policy, records, title="Elske")
+    return records, policy
+
+
+def test_records_and_policy_come_back_as_they_were(tmp_path: Path) -> None:
+    records, policy = recorded(tmp_path / "trace.json")
+    found = open_trace(tmp_path / "trace.json")
+    assert (found.title, found.whole) == ("Elske", True)
+    assert found.description == describe(policy)
+    assert [data_of(record) for record in found.records] == [data_of(record) for record in records]
+
+
+def test_why_not_is_answered_without_the_agent(tmp_path: Path) -> None:
+    recorded(tmp_path / "trace.json")
+    found = open_trace(tmp_path / "trace.json")
+    kept = [record for record in found.records if not isinstance(record, Gap)]
+    spike = next(r.spike for r in kept if isinstance(r, Born) and r.signal == str(rawio.input.changed))
+    assert why_not(kept, found.description, "gossip:answer", spike).verdict == "untouched"
+
+
+def test_a_recording_is_looked_at_without_an_agent_and_cannot_be_acted_on(tmp_path: Path) -> None:
+    records, _ = recorded(tmp_path / "trace.json")
+    look_at(tmp_path, len(records))
+
+
+@in_virtual_time
+async def look_at(tmp_path: Path, count: int) -> None:
+    async with board(recording=open_trace(tmp_path / "trace.json")) as app, Look(app) as look:
+        welcome = await look.begin()
+        while len(look.records) < count:
+            await look.answer("records")
+        spike = (await look.until("born", signal="rawio:input:changed"))["spike"]
+        look.tell("why", rule="gossip:answer", spike=spike)
+        found = await look.answer("why")
+        for command in ({"type": "step"}, {"type": "explain", "rule": "gossip:talk"}):
+            look.send(json.dumps(command))
+            assert "this is a recording" in (await look.answer("error"))["text"]
+        assert len(app.state.sessions) == 0
+    assert (welcome["live"], welcome["title"], welcome["visitor"]) == (False, "Elske", None)
+    assert found["verdict"] == "untouched"
+
+
+GOOD: dict[str, Any] = {"format": "ravestate-trace", "v": 1, "records": []}
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("{", "it is not JSON"),
+        ("[" * 100_000, "it is not JSON"),
+        ("[]", 'it lacks "format": "ravestate-trace"'),
+        ({**GOOD, "v": 9}, '"v": 9: this release reads version 1'),
+        ({**GOOD, "records": {}}, '"records" must be a list'),
+        ({**GOOD, "records": [7]}, "record 0: a record is an object"),
+        ({**GOOD, "records": [{"kind": "dance"}]}, "record 0: \"kind\": 'dance' is none of born, "),
+        (
+            {**GOOD, "records": [{"kind": "merged", "time": "late", "group": 1, "into": 2}]},
+            "record 0: time: ",
+        ),
+        ({**GOOD, "records": [{"kind": "merged", "time": 1, "group": 1}]}, "record 0: into: "),
+        ({**GOOD, "policy": {}}, '"policy": modules: Field required'),
+    ],
+)
+def test_what_is_no_trace_is_refused(text: Any, words: str) -> None:
+    with pytest.raises(ValueError) as caught:
+        read_trace(text if isinstance(text, str) else json.dumps(text))
+    assert words in str(caught.value)
+
+
+def test_a_diagram_that_does_not_hang_together_is_refused(tmp_path: Path) -> None:
+    recorded(tmp_path / "trace.json")
+    data = json.loads((tmp_path / "trace.json").read_text("utf-8"))
+    data["policy"]["diagram"]["edges"][0]["target"] = "nowhere"
+    with pytest.raises(ValueError, match="nowhere"):
+        read_trace(json.dumps(data))
+
+
+def test_a_file_that_is_not_there_is_told(tmp_path: Path) -> None:
+    with pytest.raises(PlatformError, match=r"cannot read .*gone\.json: No such file"):
+        open_trace(tmp_path / "gone.json")
+    (tmp_path / "bad.json").write_text("no", "utf-8")
+    with pytest.raises(PlatformError, match=r"bad\.json is no trace: it is not JSON"):
+        open_trace(tmp_path / "bad.json")
+
+
+def test_a_gap_is_carried_along() -> None:
+    assert record_of(data_of(Gap(1.5, 7))) == Gap(1.5, 7)
+
+
+def test_a_description_is_plain_data() -> None:
+    with simulate(gossip, parrot) as sim:
+        json.dumps(whole_data(describe(sim.context.policy)))

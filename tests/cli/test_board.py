@@ -1,0 +1,105 @@
+"""``ravestate board``: what it serves, and what it says when it is used wrongly."""
+
+import re
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import httpx
+import pytest
+
+from board.test_trace_file import recorded
+from ravestate.cli import main
+
+AGENT = """
+import ravestate as rs
+from ravestate.modules import rawio
+
+echo = rs.Module("echo", requires=(rawio,))
+
+@echo.rule(when=rawio.input.changed, writes=rawio.output)
+async def repeat(ctx):
+    ctx[rawio.output] = ctx.payload(rawio.input.changed)
+"""
+
+
+class Command:
+    """The command in a process of its own, on a port of its own."""
+
+    def __init__(self, *arguments: str) -> None:
+        self.process = subprocess.Popen(
+            [sys.executable, "-c", "from ravestate.cli import main; raise SystemExit(main())", "board", *arguments,
+             "--set", "webio.port=0"],
+            stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+        )  # fmt: skip
+
+    def address(self, what: str) -> str:
+        """The address that it prints for the agent, or for the board."""
+        assert self.process.stdout is not None
+        line = self.process.stdout.readline()
+        found = re.match(rf"The {what} is at (http://\S+)", line)
+        if found is None:
+            raise AssertionError(line + self.process.communicate()[1])
+        return found[1]
+
+    def end(self) -> int:
+        """End it as Ctrl-C does; its exit code."""
+        self.process.send_signal(signal.SIGINT)
+        self.process.communicate(timeout=20)
+        return self.process.returncode
+
+
+def test_the_agent_and_the_board_are_served_at_the_printed_addresses(tmp_path: Path) -> None:
+    (tmp_path / "echo.py").write_text(AGENT, "utf-8")
+    command = Command(str(tmp_path / "echo.py"), "--set", "webio.token=open-sesame-please")
+    try:
+        agent, board = command.address("agent"), command.address("board")
+        assert board == agent.replace("/#", "/board/#")
+        assert agent.endswith("/#token=open-sesame-please")
+        page = httpx.get(board.partition("#")[0])
+        assert "board.js" in page.text
+        assert "script-src 'self'" in page.headers["content-security-policy"]
+        assert httpx.get(agent.partition("#")[0]).status_code == 200
+        sent = board.partition("#")[0] + "recordings"
+        assert httpx.post(sent, content=b"{}").status_code == 401
+        authorised = {"authorization": "Bearer open-sesame-please"}
+        assert httpx.post(sent, content=b"{}", headers=authorised).status_code == 422
+        assert (
+            httpx.post(sent, content=b"{}", headers={**authorised, "origin": "https://x.example"}).status_code
+            == 403
+        )
+    finally:
+        assert command.end() == 0
+
+
+def test_a_recorded_trace_is_served_without_an_agent(tmp_path: Path) -> None:
+    recorded(tmp_path / "trace.json")
+    command = Command("--open", str(tmp_path / "trace.json"))
+    try:
+        board = command.address("board")
+        assert httpx.get(board).status_code == 200
+        sent = httpx.post(f"{board}recordings", content=(tmp_path / "trace.json").read_bytes())
+        assert sent.status_code == 201
+        assert sent.json()["recording"]
+        assert httpx.get(f"{board}recordings").status_code in (404, 405)
+    finally:
+        assert command.end() == 0
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code", "words"),
+    [
+        ([], 2, "name a module, an agent file, or a recorded trace"),
+        (["hibye", "--open", "trace.json"], 2, "leave the modules out"),
+        (["--open", "gone.json"], 1, "cannot read gone.json"),
+        (["nothing_like_it"], 2, "there is no module 'nothing_like_it'"),
+        (["hibye", "conio"], 1, "webio has many users, conio has one"),
+        (["hibye", "--set", "webio.host=0.0.0.0"], 1, "a token is needed"),
+    ],
+)  # fmt: skip
+def test_a_mistake_gives_a_message(
+    arguments: list[str], code: int, words: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["board", *arguments]) == code
+    assert words in capsys.readouterr().err
