@@ -145,7 +145,7 @@ $(DONE)/browser: $(DONE)/python
 	@touch $@
 
 $(DONE)/frontend: $(DONE)/dev frontend/package-lock.json
-	@cd frontend && $(NPM) install --no-save --no-audit --no-fund --loglevel=error > /dev/null
+	@cd frontend && $(NPM) ci --no-audit --no-fund --loglevel=error > /dev/null
 	@touch $@
 
 $(DONE)/model: $(DONE)/build
