@@ -8,9 +8,24 @@ import WhyNot from "../src/board/WhyNot.svelte";
 afterEach(cleanup);
 
 const rule = (name: string) => ({
-  name, module: "m", doc: "", origin: "", when: "m:input:changed", until: "", clauses: [], reads: [], writes: ["m:output"],
-  emits: [], raises: [], weight: 1, cooldown: 0, patience: null, timeout: null, detached: false, background: false,
-}); // biome-ignore format: a table
+  name,
+  module: "m",
+  doc: "",
+  origin: "",
+  when: "m:input:changed",
+  until: "",
+  clauses: [],
+  reads: [],
+  writes: ["m:output"],
+  emits: [],
+  raises: [],
+  weight: 1,
+  cooldown: 0,
+  patience: null,
+  timeout: null,
+  detached: false,
+  background: false,
+});
 
 const POLICY: Policy = {
   modules: ["m"],
@@ -69,8 +84,15 @@ class Server {
 }
 
 const input = (spike: number, time: number, text: string): TraceRecord => ({
-  kind: "born", time, spike, signal: "m:input:changed", group: spike, parents: [], source: 0, payload: { text },
-}); // biome-ignore format: a table
+  kind: "born",
+  time,
+  spike,
+  signal: "m:input:changed",
+  group: spike,
+  parents: [],
+  source: 0,
+  payload: { text },
+});
 
 test("it says what it looks at, and asks for the diagram", () => {
   const [server, board] = Server.open();
@@ -94,9 +116,19 @@ test("why not is asked of the newest input, and the answer shows rules that can 
   await Promise.resolve();
   expect(server.sent.at(-1)).toEqual({ type: "why", rule: "m:talk", spike: 3 });
   server.tell({
-    type: "why", rule: "m:talk", spike: 3, signal: "m:input:changed", time: 1, verdict: "outrun",
-    words: "it was ready, and waited for m:answer (1.000 nats ahead)", at: 2, clause: 0, missing: [], moments: [], whole: true,
-  }); // biome-ignore format: a frame
+    type: "why",
+    rule: "m:talk",
+    spike: 3,
+    signal: "m:input:changed",
+    time: 1,
+    verdict: "outrun",
+    words: "it was ready, and waited for m:answer (1.000 nats ahead)",
+    at: 2,
+    clause: 0,
+    missing: [],
+    moments: [],
+    whole: true,
+  });
   await Promise.resolve();
   expect(screen.getByText("Ready, but another answered")).toBeTruthy();
   await fireEvent.click(screen.getByRole("button", { name: "m:answer" }));
@@ -122,8 +154,13 @@ test("an answer to what was asked before is left aside", () => {
 test("what went unseen is counted: by the server's gaps, and by who was too slow", () => {
   const [server, board] = Server.open();
   server.tell({
-    type: "records", records: [{ kind: "gap", time: 1, spikes: 12 }], missed: 30, behind: 0, now: 2, paused: false,
-  }); // biome-ignore format: a frame
+    type: "records",
+    records: [{ kind: "gap", time: 1, spikes: 12 }],
+    missed: 30,
+    behind: 0,
+    now: 2,
+    paused: false,
+  });
   expect(board.missed).toBe(42);
 });
 
@@ -131,9 +168,12 @@ test("a slot is written as JSON or as text; markup in a value is shown as text",
   const [server, board] = Server.open();
   const markup = "<img src=x onerror=alert(1)>";
   server.tell({
-    type: "state", slots: { "m:input": { text: JSON.stringify(markup) }, "m:secret": { text: "<Odd>", json: false } },
-    activations: [], now: 1, paused: false,
-  }); // biome-ignore format: a frame
+    type: "state",
+    slots: { "m:input": { text: JSON.stringify(markup) }, "m:secret": { text: "<Odd>", json: false } },
+    activations: [],
+    now: 1,
+    paused: false,
+  });
   const { container } = render(Slots, { board });
   expect(container.querySelector("img")).toBeNull();
   expect(container.textContent).toContain(markup);

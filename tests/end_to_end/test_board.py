@@ -1,0 +1,439 @@
+"""Raveboard in a real browser: who won and who waited, why not, pause and step, by hand, recordings, for everybody."""
+
+import asyncio
+import contextlib
+import gzip
+import json
+import os
+import struct
+from collections.abc import AsyncGenerator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from playwright.async_api import Locator, Page, expect
+
+import ravestate as rs
+from end_to_end.stage import PHONE, Host, Stage, on_stage
+from end_to_end.test_access import findings
+from ravestate.board.application import INSIDE, PAGE, RecordedAgent, routes
+from ravestate.modules import rawio, webio
+from ravestate.modules.platform.webio.server import Server
+
+SCRIPT = 300_000
+"""Bytes of script, compressed, that the page may load."""
+
+keeper = rs.Module("keeper", requires=(rawio,))
+question = keeper.signal("question", payload=str)
+notebook: rs.Slot[Any] = keeper.slot("notebook", None)
+rung = keeper.signal("rung")
+
+
+class Cue:
+    """When the classifier may end; the test says so, on the same loop."""
+
+    classified = asyncio.Event()
+
+
+@keeper.rule(when=rawio.input.changed, emits=question)
+async def classify(ctx: rs.RuleContext) -> None:
+    """Tell questions from other things."""
+    await Cue.classified.wait()
+    if "?" in ctx.payload(rawio.input.changed):
+        ctx.emit(question, ctx.payload(rawio.input.changed))
+
+
+@keeper.rule(when=question, writes=rawio.output)
+async def answer(ctx: rs.RuleContext) -> rs.Resign | None:
+    """Answer a question."""
+    if "why" in ctx.payload(question):
+        return rs.Resign("nobody knows why")
+    ctx[rawio.output] = "Since 1665."
+    return None
+
+
+@keeper.rule(when=rawio.input.changed, writes=rawio.output)
+async def small_talk(ctx: rs.RuleContext) -> None:
+    """Say something in any case."""
+    ctx[rawio.output] = "I see."
+
+
+@keeper.rule(when=rung.min_age(60.0).max_age(None), writes=notebook)
+async def note(ctx: rs.RuleContext) -> None:
+    """A minute after the bell."""
+    ctx[notebook] = "it rang"
+
+
+@contextlib.asynccontextmanager
+async def served(**settings: Any) -> AsyncGenerator[Host]:
+    """An agent with the board beside its page."""
+    Cue.classified = asyncio.Event()
+    Cue.classified.set()
+    agent = RecordedAgent(keeper, webio, settings={"webio": {"port": 0, "title": "Elske", **settings}})
+    async with Server(agent, routes(agent.recorders, title="Elske"), INSIDE) as server:
+        yield Host(server)
+
+
+async def say(page: Page, text: str) -> None:
+    """Say something by way of the board."""
+    await page.get_by_role("tab", name="Slots").click()
+    await page.get_by_label("Say something to the agent").fill(text)
+    await page.get_by_label("Say something to the agent").press("Enter")
+
+
+def name(page: Page, rule: str) -> Locator:
+    """The name of a rule beside its lane."""
+    return page.locator(f'button.lane[title="{rule}"]')
+
+
+def node(page: Page, id: str) -> Locator:
+    """A node of the diagram."""
+    return page.locator(f'[data-id="{id}"]')
+
+
+async def lane(page: Page, rule: str) -> list[dict[str, Any]]:
+    """What is drawn in the lane of a rule."""
+    return await page.evaluate(
+        """rule => (window.raveboard.trace.lanes.get(rule)?.bars ?? []).map(bar => ({
+            outcome: bar.outcome, states: bar.phases.map(phase => phase.state),
+            waits: bar.phases.flatMap(phase => phase.waits ?? []), ended: bar.to !== null,
+        }))""",
+        rule,
+    )
+
+
+async def until_lane(page: Page, rule: str, outcome: str) -> list[dict[str, Any]]:
+    """The lane of a rule once its last bar has ended so."""
+    await page.wait_for_function(
+        "([rule, outcome]) => window.raveboard.trace.lanes.get(rule)?.bars.at(-1)?.outcome === outcome",
+        arg=[rule, outcome],
+    )
+    return await lane(page, rule)
+
+
+async def painted(page: Page, rule: str) -> set[str]:
+    """The colours in the lane of a rule on the canvas, as names of states."""
+    return set(
+        await page.evaluate(
+            """rule => {
+                const names = [...document.querySelectorAll("button.lane")].map(b => b.title);
+                const top = (names.indexOf(rule) + 1) * 24 + 24;
+                const canvas = document.querySelector("canvas.main");
+                const ratio = canvas.width / canvas.clientWidth;
+                const data = canvas.getContext("2d").getImageData(0, top * ratio, canvas.width, 24 * ratio).data;
+                const style = getComputedStyle(document.documentElement);
+                const seen = new Set();
+                for (let i = 0; i < data.length; i += 4) seen.add([data[i], data[i + 1], data[i + 2]].join());
+                const rgb = hex => [1, 3, 5].map(at => parseInt(hex.slice(at, at + 2), 16)).join();
+                return ["waiting", "running", "done", "resigned", "failed"].filter(
+                    state => seen.has(rgb(style.getPropertyValue(`--${state}-light`).trim())));
+            }""",
+            rule,
+        )
+    )
+
+
+@on_stage
+async def test_the_timeline_shows_the_rule_that_won_and_the_rule_that_waited(stage: Stage) -> None:
+    async with served() as host, stage.open(f"{host.address}board/", color_scheme="light") as page:
+        await expect(page.locator(".status")).to_have_text("live")
+        Cue.classified.clear()
+        await say(page, "Since when?")
+        await page.wait_for_function(
+            "() => window.raveboard.trace.lanes.get('keeper:small_talk')?.bars[0]?.phases.at(-1)?.state === 'waiting'"
+        )
+        await asyncio.sleep(0.4)  # so that the wait is wide enough to be seen
+        assert "waiting" in await painted(page, "keeper:small_talk")
+        assert "running" in await painted(page, "keeper:classify")
+        Cue.classified.set()
+        (won,) = await until_lane(page, "keeper:answer", "done")
+        (lost,) = await until_lane(page, "keeper:small_talk", "consumed")
+        assert won["states"][-1] == "running"
+        assert (lost["states"][-1], lost["waits"]) == ("waiting", ["keeper:answer"])
+        await page.get_by_role("button", name="All", exact=True).click()
+        await page.wait_for_timeout(100)
+        assert "done" in await painted(page, "keeper:answer")
+        assert "waiting" in await painted(page, "keeper:small_talk")
+
+
+@on_stage
+async def test_why_not_is_answered_with_the_right_reason(stage: Stage) -> None:
+    async with served() as host, stage.open(f"{host.address}board/") as page:
+        await say(page, "Since when?")
+        await until_lane(page, "keeper:answer", "done")
+        await name(page, "keeper:small_talk").click()
+        answered = page.locator(".answer")
+        await expect(answered).to_have_attribute("data-verdict", "outrun")
+        await expect(answered).to_contain_text("keeper:answer (2.079 nats ahead)")
+        await answered.get_by_role("button", name="keeper:answer").first.click()
+        await expect(answered).to_have_attribute("data-verdict", "fired")
+        await say(page, "but why?")
+        await until_lane(page, "keeper:answer", "resigned")
+        await name(page, "keeper:answer").click()
+        await page.get_by_role("tab", name="Rule").click()
+        option = await page.locator("#cause option").first.get_attribute("value")
+        await page.locator("#cause").select_option(option)
+        await expect(answered).to_contain_text("resigned: nobody knows why")
+        await say(page, "Nice.")
+        await until_lane(page, "keeper:small_talk", "done")
+        await page.get_by_role("tab", name="Rule").click()
+        await page.wait_for_function(
+            "old => document.querySelector('#cause option')?.value !== old", arg=option
+        )
+        await page.locator("#cause").select_option(index=0)
+        await expect(answered).to_contain_text("keeper:classify was done without raising it")
+
+
+@on_stage
+async def test_utility_is_told_in_nats_and_how_it_is_made_up(stage: Stage) -> None:
+    async with served() as host, stage.open(f"{host.address}board/") as page:
+        await name(page, "keeper:answer").click()
+        table = page.locator(".clause table")
+        terms = await table.locator("tbody tr").all_inner_texts()
+        total = float(await table.locator("tfoot td").last.inner_text())
+        assert len(terms) == 2
+        assert sum(float(term.split("\t")[-1]) for term in terms) == pytest.approx(total, abs=0.002)
+
+
+@on_stage
+async def test_the_clock_pauses_steps_and_goes_on_while_the_view_is_another_thing(stage: Stage) -> None:
+    async with served() as host, stage.open(f"{host.address}board/") as page:
+        await page.get_by_role("button", name="Pause", exact=True).click()
+        await expect(page.locator(".status")).to_have_text("paused")
+        before = await page.evaluate("window.raveboard.now()")
+        await say(page, "Hello.")
+        await page.wait_for_function("() => window.raveboard.trace.occurred.has('rawio:input:changed')")
+        assert await lane(page, "keeper:classify") != []
+        assert not any(bar["ended"] for bar in await lane(page, "keeper:classify"))
+        assert await page.evaluate("window.raveboard.now()") == before
+        for _ in range(12):
+            await page.get_by_role("button", name="Step").click()
+            await page.wait_for_timeout(60)
+        assert (await lane(page, "keeper:small_talk"))[-1]["outcome"] == "done"
+        assert await page.evaluate("window.raveboard.paused")
+        await page.get_by_role("button", name="Continue").click()
+        await expect(page.locator(".status")).to_have_text("live")
+        await page.get_by_role("button", name="Following").click()
+        left = await page.evaluate("window.raveboard.view.left")
+        await page.wait_for_timeout(300)
+        assert await page.evaluate("window.raveboard.view.left") == left
+        assert not await page.evaluate("window.raveboard.paused")
+
+
+@on_stage
+async def test_time_is_stepped_forward_to_what_is_due(stage: Stage) -> None:
+    async with served() as host, stage.open(f"{host.address}board/") as page:
+        await page.get_by_role("tab", name="Signals").click()
+        await page.get_by_role("button", name="Emit keeper:rung").click()
+        await page.get_by_role("button", name="Emit", exact=True).click()
+        await page.wait_for_function("() => window.raveboard.trace.occurred.has('keeper:rung')")
+        await page.get_by_role("button", name="Pause", exact=True).click()
+        await expect(page.locator(".status")).to_have_text("paused")
+        for _ in range(12):
+            await page.get_by_role("button", name="Step").click()
+            await page.wait_for_timeout(60)
+            if await page.evaluate("window.raveboard.now()") > 60:
+                break
+        await until_lane(page, "keeper:note", "done")
+
+
+@on_stage
+async def test_slots_are_written_by_hand_and_markup_in_them_is_shown(stage: Stage) -> None:
+    async with served() as host, stage.open(f"{host.address}board/") as page:
+        await page.get_by_role("tab", name="Slots").click()
+        await page.get_by_role("button", name="Edit keeper:notebook").click()
+        markup = "<img src=x onerror=\"document.title='run'\">"
+        await page.get_by_label("New value of keeper:notebook").fill(markup)
+        await page.get_by_role("button", name="Write").click()
+        await expect(page.get_by_text(json.dumps(markup))).to_be_visible()
+        assert await page.title() == "Elske – Raveboard"
+        (session,) = host.sessions
+        assert session.context.read(notebook) == markup
+        await page.get_by_role("button", name="Edit rawio:input").click()
+        await page.get_by_label("New value of rawio:input").fill("7")
+        await page.get_by_role("button", name="Write").click()
+        await expect(page.get_by_role("alert")).to_contain_text("which takes str, not int")
+
+
+@on_stage
+async def test_the_chat_page_leads_to_the_board_of_its_own_conversation(stage: Stage) -> None:
+    async with served() as host, stage.open(host.address) as page, stage.open(host.address) as other:
+        await expect(page.get_by_role("link", name="Look inside")).to_be_visible()
+        await page.get_by_label("What you say to Elske").fill("It is quiet here.")
+        await page.get_by_label("What you say to Elske").press("Enter")
+        await expect(other.get_by_role("link", name="Look inside")).to_be_visible()
+        async with page.context.expect_page() as opening:
+            await page.get_by_role("link", name="Look inside").click()
+        board = await opening.value
+        await board.wait_for_function("() => window.raveboard?.trace.slots.has('rawio:input')")
+        await board.wait_for_function(
+            "() => window.raveboard.trace.slots.get('rawio:input').shown.text === '\"It is quiet here.\"'"
+        )
+        assert "session" not in board.url
+        await board.reload()
+        await board.wait_for_function(
+            "() => window.raveboard?.trace.slots.get('rawio:input')?.shown.text === '\"It is quiet here.\"'"
+        )
+
+
+@on_stage
+async def test_the_board_asks_for_the_token(stage: Stage) -> None:
+    async with served(token="open-sesame-please") as host:
+        async with stage.open(f"{host.address}board/") as page:
+            await page.get_by_label("This board asks for a token.").fill("open-sesame-please")
+            await page.get_by_role("button", name="Look in").click()
+            await expect(page.locator(".status")).to_have_text("live")
+        async with stage.open(f"{host.address}board/#token=open-sesame-please") as page:
+            await expect(page.locator(".status")).to_have_text("live")
+            assert "token" not in page.url
+
+
+@on_stage
+async def test_a_trace_is_exported_and_opened_again_without_an_agent(stage: Stage, tmp_path: Path) -> None:
+    async with served() as host, stage.open(f"{host.address}board/", complaints=True) as page:
+        await say(page, "Since when?")
+        await until_lane(page, "keeper:answer", "done")
+        async with page.expect_download() as downloading:
+            await page.get_by_role("button", name="Export").click()
+        file = tmp_path / "trace.json"
+        await (await downloading.value).save_as(file)
+        await page.get_by_label("Open a recorded trace").set_input_files(file)
+        await expect(page.locator(".status")).to_have_text("recording")
+        await name(page, "keeper:small_talk").click()
+        await expect(page.locator(".answer")).to_have_attribute("data-verdict", "outrun")
+        (tmp_path / "bad.json").write_text("{}", "utf-8")
+        await page.get_by_label("Open a recorded trace").set_input_files(tmp_path / "bad.json")
+        await expect(page.get_by_role("alert")).to_contain_text("bad.json: this is no trace")
+
+
+@on_stage
+async def test_a_lost_connection_comes_back_with_the_history(stage: Stage) -> None:
+    async with served() as host, stage.open(f"{host.address}board/", complaints=True) as page:
+        await say(page, "Since when?")
+        await until_lane(page, "keeper:answer", "done")
+        with host.away():
+            await expect(page.get_by_text("The agent is out of reach")).to_be_visible()
+        await expect(page.locator(".status")).to_have_text("live")
+        assert [bar["outcome"] for bar in await until_lane(page, "keeper:answer", "done")] == ["done"]
+
+
+@on_stage
+async def test_the_diagram_folds_unfolds_and_shows_what_is_going_on(stage: Stage) -> None:
+    async with served() as host, stage.open(f"{host.address}board/") as page:
+        await page.get_by_role("button", name="Diagram").click()
+        await expect(node(page, "rule keeper:answer")).to_be_visible()
+        Cue.classified.clear()
+        await say(page, "Since when?")
+        await expect(node(page, "rule keeper:classify")).to_have_attribute("data-state", "running")
+        await expect(node(page, "rule keeper:small_talk")).to_have_attribute("data-state", "waiting")
+        Cue.classified.set()
+        await page.get_by_role("button", name="Fold all", exact=True).click()
+        await node(page, "module keeper").press("Enter")
+        await node(page, "rule keeper:answer").press("Enter")
+        await expect(page.get_by_role("heading", name="keeper:answer")).to_be_visible()
+
+
+@on_stage
+async def test_the_keyboard_reaches_the_timeline(stage: Stage) -> None:
+    async with served() as host, stage.open(f"{host.address}board/") as page:
+        await page.keyboard.press("/")
+        await page.keyboard.type("small")
+        await expect(page.locator("button.lane")).to_have_count(1)
+        await page.get_by_label("Filter rules").fill("")
+        timeline = page.get_by_role("application", name="Timeline")
+        await timeline.focus()
+        await page.keyboard.press("ArrowDown")
+        await expect(page.get_by_role("heading", name="keeper:classify")).to_be_visible()
+        span = await page.evaluate("window.raveboard.view.span")
+        await page.keyboard.press("+")
+        assert await page.evaluate("window.raveboard.view.span") < span
+        await page.keyboard.press("ArrowLeft")
+        await expect(page.get_by_role("button", name="Follow", exact=True)).to_be_visible()
+        await page.keyboard.press("End")
+        await expect(page.get_by_role("button", name="Following")).to_be_visible()
+
+
+@on_stage
+async def test_a_thousand_events_a_second_do_not_stutter_and_hold_nobody_up(stage: Stage) -> None:
+    async with served() as host, stage.open(f"{host.address}board/") as page:
+        await expect(page.locator(".status")).to_have_text("live")
+        (session,) = host.sessions
+
+        async def events() -> None:
+            for number in range(150):
+                for _ in range(20):
+                    session.context.emit(question, f"{number}?")
+                await asyncio.sleep(0.02)
+
+        raising = asyncio.create_task(events())
+        frames = await page.evaluate(
+            """() => new Promise(resolve => {
+                const times = [];
+                const tick = time => { times.push(time); times.length < 120 ? requestAnimationFrame(tick) : resolve(times); };
+                requestAnimationFrame(tick);
+            })"""
+        )
+        await raising
+        await page.wait_for_function("() => window.raveboard.trace.spikes.length > 5000")
+        assert len(frames) == 120  # it was painted all the while
+        assert await page.evaluate("window.raveboard.missed") == 0
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+@pytest.mark.parametrize("size", [{}, PHONE], ids=["desk", "phone"])
+@on_stage
+async def test_axe_finds_nothing_serious(stage: Stage, scheme: str, size: dict[str, Any]) -> None:
+    async with (
+        served() as host,
+        stage.open(f"{host.address}board/", complaints=True, color_scheme=scheme, **size) as page,
+    ):
+        found = [f"empty: {finding}" for finding in await findings(page)]
+        await say(page, "Since when?")
+        await until_lane(page, "keeper:answer", "done")
+        found += [f"slots: {finding}" for finding in await findings(page)]
+        await page.get_by_role("tab", name="Signals").click()
+        found += [f"signals: {finding}" for finding in await findings(page)]
+        await name(page, "keeper:small_talk").click()
+        await expect(page.locator(".answer")).to_be_visible()
+        found += [f"rule: {finding}" for finding in await findings(page)]
+        await page.get_by_role("button", name="Diagram").click()
+        await expect(page.get_by_role("application", name="Signal-Rule-Slot diagram")).to_be_visible()
+        found += [f"diagram: {finding}" for finding in await findings(page)]
+    assert not found, "\n".join(found)
+
+
+def test_the_page_has_little_script() -> None:
+    scripts = sum(len(gzip.compress(file.read_bytes())) for file in PAGE.rglob("*.js"))
+    assert 0 < scripts < SCRIPT
+
+
+@on_stage
+async def test_the_pictures_in_the_documentation(stage: Stage, tmp_path: Path) -> None:
+    folder = Path(os.environ.get("PICTURES", tmp_path))
+    size = {"width": 1280, "height": 720}
+    async with (
+        served() as host,
+        stage.open(f"{host.address}board/", viewport=size, color_scheme="light") as page,
+    ):
+        await expect(page.locator(".status")).to_have_text("live")
+        for text in ("Since when?", "Nice."):
+            Cue.classified.clear()
+            await say(page, text)
+            await asyncio.sleep(0.7)
+            Cue.classified.set()
+            await asyncio.sleep(0.4)
+        await name(page, "keeper:small_talk").click()
+        await page.locator("#cause").select_option(index=1)
+        await expect(page.locator(".answer")).to_have_attribute("data-verdict", "outrun")
+        await page.evaluate("window.raveboard.view.fit(0, window.raveboard.now())")
+        await page.get_by_role("button", name="Zoom in").click()
+        await page.get_by_role("button", name="All", exact=True).click()
+        await page.wait_for_timeout(200)
+        await page.screenshot(path=folder / "board.png")
+        await page.get_by_role("button", name="Diagram").click()
+        await expect(node(page, "rule keeper:answer")).to_be_visible()
+        await page.wait_for_timeout(900)
+        await page.screenshot(path=folder / "board-diagram.png")
+    for picture in ("board.png", "board-diagram.png"):
+        head = (folder / picture).read_bytes()[:24]
+        assert struct.unpack(">II", head[16:24]) == (size["width"], size["height"])
