@@ -70,7 +70,11 @@ class Contests(Holdings):
         spike = activation.spikes[0]
         if bench is not None and spike is not None:
             clauses, made, base = bench
-            self._next(clauses, made, base, spike)
+            refused = spike.refused or ()
+            while made < len(clauses) and clauses[made].rule.index in refused:
+                made += 1  # another clause of a rule that gave the spike up for good
+            if made < len(clauses):
+                self._next(clauses, made, base, spike)
 
     def _field(self, clause: Clause, number: int, spike: Spike) -> Activation:
         activation = self._new_activation(clause, number)

@@ -234,7 +234,7 @@ class Engine(Waves):
             self._relinquish(run, spikes)
             self._substitute(run)
         if self.tracer is not None:
-            text = reason or (str(exception) if exception is not None else "")
+            text = reason or (_said(exception) if exception is not None else "")
             self.tracer(trace.Settled(self.now, run.id, rule.name, outcome, text, fired))
         if self.report_ends:
             self._out.append(Ended(run.id, rule.name, outcome, fired))
@@ -366,6 +366,13 @@ class Engine(Waves):
 def _roots(run: Activation) -> list[Group]:
     """The groups of a run as they are now."""
     return list(dict.fromkeys(group.root() for group in run.groups))
+
+
+def _said(exception: BaseException) -> str:
+    try:
+        return str(exception)
+    except Exception:  # foreign code, as a whole
+        return type(exception).__name__
 
 
 def _overdue(rule: RulePlan) -> str:

@@ -34,6 +34,8 @@ class Slots(Pool):
         self.values[slot.index] = value
         if self.tracer is not None:
             self.tracer(trace.Set(self.now, slot.name, value, 0 if run is None else run.id))
+        if len(parents) > 1:
+            self._group_of(parents)  # they merge (L11), whether anybody hears of it or not
         if slot.heard or self.tracer is not None or (self.watched and self._watched(slot)):
             if slot.keep_latest:
                 for signal in slot.signals:

@@ -288,7 +288,7 @@ class Runner:
             log.error(
                 "rule %s failed: %s",
                 effect.rule,
-                effect.exception,
+                _said(effect.exception),
                 exc_info=None if told else effect.exception,
             )
 
@@ -540,6 +540,16 @@ def _nonsense(rule: Rule[Any, Any], result: Any) -> RuleError:
     )
 
 
+def _said(exception: BaseException) -> str:
+    try:
+        return str(exception)
+    except Exception:  # foreign code, as a whole
+        return _short(exception)
+
+
 def _short(value: Any) -> str:
-    text = repr(value)
+    try:
+        text = repr(value)
+    except Exception:  # foreign code, as a whole
+        text = f"<{type(value).__name__} without a repr>"
     return text if len(text) <= 60 else text[:57] + "..."
