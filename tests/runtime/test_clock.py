@@ -198,3 +198,19 @@ def test_observers_come_and_go_while_it_runs() -> None:
         counts = len(first), len(second)
         sim.advance(3.0)
         assert (len(first), len(second)) == counts
+
+
+def test_a_paused_context_may_be_stepped_from_within_a_task() -> None:
+    m, asked, said = story()
+
+    async def talk() -> str:
+        async with rs.Context(m) as context:
+            await asyncio.sleep(0)
+            context.pause()
+            context.emit(asked)
+            for _ in range(6):
+                context.step()
+                await asyncio.sleep(0)
+            return context.read(said)
+
+    assert asyncio.run(talk()).startswith("answer at 2")

@@ -51,11 +51,16 @@ class Nest:
             StopIteration: It has ended; the nest is free for another, unless it is `spoilt`.
             BaseException: What it raised; likewise.
         """
+        around = asyncio.current_task(self._loop)  # who steps a paused context by hand may be a task
+        if around is not None:
+            asyncio.tasks._leave_task(self._loop, around)  # pyright: ignore[reportPrivateUsage]
         asyncio.tasks._enter_task(self._loop, self.task)  # pyright: ignore[reportPrivateUsage]  # documented for task implementations
         try:
             self._first = self._context.run(coroutine.send, None)
         finally:
             asyncio.tasks._leave_task(self._loop, self.task)  # pyright: ignore[reportPrivateUsage]
+            if around is not None:
+                asyncio.tasks._enter_task(self._loop, around)  # pyright: ignore[reportPrivateUsage]
         self._coroutine = coroutine
         self._owner = owner
         if not self._wake.done():
