@@ -11,5 +11,6 @@ QUESTIONS = {
     "threads": "what does a plain function cost, which runs in a thread?",
     "compiling": "how long does it take to compile a policy?",
     "web_users": "how long do many users of the web page wait for an answer?",
+    "watching": "what does an agent cost that is looked into?",
     "text_agent": "how fast is the complete text agent, and how large?",
 }

@@ -49,7 +49,7 @@ async def test_memory_is_bounded_and_the_oldest_goes_first() -> None:
 @in_virtual_time
 async def test_beyond_its_rate_it_stops_listening_and_counts_the_spikes_that_it_missed() -> None:
     context, tick = ticking()
-    recorder = Recorder(context, burst=200, rate=100)
+    recorder = Recorder(context, burst=200, rate=100, spare=0)
     async with context:
         for _ in range(20):
             for _ in range(100):
@@ -71,7 +71,7 @@ async def test_beyond_its_rate_it_stops_listening_and_counts_the_spikes_that_it_
 @in_virtual_time
 async def test_a_long_pause_earns_a_burst_again() -> None:
     context, tick = ticking()
-    recorder = Recorder(context, burst=500, rate=100)
+    recorder = Recorder(context, burst=500, rate=100, spare=0)
     async with context:
         for _ in range(3):
             for _ in range(50):

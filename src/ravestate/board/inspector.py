@@ -12,6 +12,7 @@ from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from ravestate.board import picture
 from ravestate.board.commands import Command, Diagram, Explain, Hello, Look, Ping, Why, parse
+from ravestate.board.leisure import Leisure
 from ravestate.board.recorder import Gap, Recorders
 from ravestate.board.shelf import Shelf
 from ravestate.board.subject import Live, Recorded, Subject
@@ -34,11 +35,17 @@ FRAME = 0.05
 SHARE = 0.02
 """The share of the loop's time that telling one inspector may take: a frame that took long is followed by a long pause."""
 
-MOST = 500
+OF_SPARE = 0.5
+"""Of the time that the process has to spare, the share that it may take besides."""
+
+MOST = 800
 """Records in one frame: more would hold the agent up."""
 
-BACKLOG = 30_000
+BACKLOG = 20_000
 """Records of the past that an inspector gets when it comes."""
+
+LAG = 25_000
+"""Records by which an inspector may be behind; more are left out, so that it sees what happens now."""
 
 SILENT = 10.0
 """Seconds within which a client says hello."""
@@ -260,6 +267,7 @@ class Inspector:
 
     async def _write(self, subject: Subject, session: Session | None, seen: int) -> None:
         """Tell what happens, some twenty times a second at most, and answer."""
+        leisure = Leisure()
         clock: dict[str, Any] = {}
         listed: list[dict[str, Any]] = []
         while True:
@@ -273,7 +281,9 @@ class Inspector:
                 listed = conversations
                 await self._send({"type": "conversations", "conversations": listed})
             missed = max(0, subject.first - 1 - seen)
-            records = subject.since(seen, MOST)
+            if subject.live and subject.last - seen > LAG:
+                missed = subject.last - seen - MOST
+            records = subject.since(seen + missed, MOST)
             paused = subject.clock()["paused"]
             text = ""
             gap = False
@@ -300,7 +310,8 @@ class Inspector:
                 await self._send({"type": "ended", "text": session.ended})
                 await self._socket.close(1000, "ended")
                 return
-            await self._pause(max(FRAME, took / SHARE) if subject.live else 0.0, seen < subject.last)
+            share = SHARE + OF_SPARE * leisure.share()
+            await self._pause(max(FRAME, took / share) if subject.live else 0.0, seen < subject.last)
 
     async def _pause(self, seconds: float, more: bool) -> None:
         """Until the next frame; answers need not wait so long."""

@@ -3,8 +3,9 @@
 Nobody has a queue of their own: records are numbered, and an inspector reads those that it has not seen. One that does
 not read misses what is kept no more; it holds nobody up.
 
-Making records is dear for an agent that does nothing else. So a recorder takes a burst, then so many a second; beyond
-that it stops listening for a moment, in which the engine makes none, and a `Gap` says how many spikes went unseen.
+Making records is dear for an agent that does nothing else. So a recorder takes a burst, then so many a second, more of
+them while the process has time to spare; beyond that it stops listening for a moment, in which the engine makes none,
+and a `Gap` says how many spikes went unseen.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ from dataclasses import dataclass
 from itertools import islice
 from weakref import WeakKeyDictionary
 
+from ravestate.board.leisure import Leisure
 from ravestate.engine.trace import Born, Record
 from ravestate.runtime.context import Context
 
@@ -27,8 +29,11 @@ KEPT = 100_000
 BURST = 20_000
 """Records that are taken at once."""
 
-RATE = 5_000
-"""Records a second that are taken after that."""
+RATE = 4_000
+"""Records a second that are taken after that of an agent that is busy all the time."""
+
+SPARE = 60_000
+"""Records a second that are taken besides, times the share of its time that the process has to spare."""
 
 PAUSE = 0.05
 """Seconds for which a recorder that has taken too much does not listen."""
@@ -55,6 +60,7 @@ class Recorder:
         kept: Records to keep.
         burst: Records to take at once.
         rate: Records a second to take after that.
+        spare: Records a second to take besides, times the share of time that the process has to spare.
         whole: Whether the context has not begun yet, so that nothing is missed.
     """
 
@@ -65,11 +71,14 @@ class Recorder:
         kept: int = KEPT,
         burst: int = BURST,
         rate: float = RATE,
+        spare: float = SPARE,
         whole: bool = False,
     ) -> None:
         self._context = context
         self._burst = burst
         self._rate = rate
+        self._spare = spare
+        self._leisure = Leisure()
         self._left = 0  # the first record is granted a burst
         self._granted: float | None = None
         self._spike = 0  # the newest that is known
@@ -128,7 +137,7 @@ class Recorder:
         """What it may take is used up: go on if there was time enough meanwhile, or else stop listening for a moment."""
         loop = asyncio.get_running_loop()
         now = loop.time()
-        earned = self._burst if self._granted is None else (now - self._granted) * self._rate
+        earned = self._burst if self._granted is None else (now - self._granted) * self._speed()
         self._granted = now
         self._left = min(self._burst, int(earned))
         if self._left > 0:
@@ -143,8 +152,12 @@ class Recorder:
 
     def _listen_again(self) -> None:
         self._granted = asyncio.get_running_loop().time()
-        self._left = max(1, int(self._rate * PAUSE))
+        self._left = max(1, int(self._speed() * PAUSE))
         self._listen()
+
+    def _speed(self) -> float:
+        """Records a second that it may take now."""
+        return self._rate + self._spare * self._leisure.share()
 
 
 class Recorders:

@@ -7,6 +7,7 @@ What each frame means stands in ``docs/reference/board-protocol.md``. Records be
 from __future__ import annotations
 
 import dataclasses
+import json
 from collections.abc import Callable
 from operator import attrgetter
 from typing import Any, cast
@@ -74,6 +75,18 @@ def shown_data(shown: Shown) -> dict[str, Any]:
     return data
 
 
+_PLAIN: dict[Any, dict[str, Any]] = {None: {"text": "null"}, True: {"text": "true"}, False: {"text": "false"}}
+
+
+def _quickly(value: Any) -> dict[str, Any] | None:
+    """The most frequent of values, which need no care: as `show` would have them."""
+    if value is None or value is True or value is False:
+        return _PLAIN[value]
+    if type(value) is str and len(value) < 60 and value.isascii():
+        return {"text": json.dumps(value)}
+    return None
+
+
 def _writer(name: str, kind: type[Any]) -> Callable[[Any], dict[str, Any]]:
     fields = [field.name for field in dataclasses.fields(kind)]
     keys = ("kind", *(field.rstrip("_") for field in fields))
@@ -88,7 +101,9 @@ def _writer(name: str, kind: type[Any]) -> Callable[[Any], dict[str, Any]]:
             data["until"] = round(cast("float", data["until"]), 6)
         if most is not None:
             value = data[most[0]]
-            data[most[0]] = shown_data(value if type(value) is Shown else show(value, most[1]))
+            data[most[0]] = _quickly(value) or shown_data(
+                value if type(value) is Shown else show(value, most[1])
+            )
         return data
 
     return write
