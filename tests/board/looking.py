@@ -13,9 +13,10 @@ from modules.platform.webio.visit import Visit, parrot
 from ravestate.board.application import INSIDE, RecordedAgent, routes
 from ravestate.board.trace_file import Recording
 from ravestate.modules import rawio, webio
+from ravestate.runtime.clock import Clock
 from ravestate.testing.virtual_loop import VirtualLoop
 
-__all__ = ["Look", "board", "gossip", "in_virtual_time"]
+__all__ = ["Look", "board", "gossip", "in_virtual_time", "passing"]
 
 gossip = rs.Module("gossip", requires=(rawio,))
 question = gossip.signal("question")
@@ -46,6 +47,13 @@ async def talk(ctx: rs.RuleContext) -> None:
 @gossip.rule(when=cheered)
 async def bow(ctx: rs.RuleContext) -> None:
     """Take what was cheered."""
+
+
+async def passing(seconds: float) -> None:
+    """Let virtual time pass."""
+    loop = asyncio.get_running_loop()
+    assert isinstance(loop, VirtualLoop)
+    await Clock(loop).sleep(seconds)
 
 
 class Loop(VirtualLoop):

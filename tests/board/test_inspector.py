@@ -1,13 +1,12 @@
 """Inspectors: what they see, ask and do; and what they may not."""
 
-import asyncio
 import json
 from typing import Any
 
 import pytest
 
 import ravestate as rs
-from board.looking import Look, board, in_virtual_time, secret
+from board.looking import Look, board, in_virtual_time, passing, secret
 from modules.platform.webio.visit import Visit
 from ravestate.board import inspector
 from ravestate.modules import rawio
@@ -69,7 +68,7 @@ async def test_it_sees_only_the_conversation_that_it_looks_at() -> None:
             other.say("whisper")
             one.say("shout")
             await look.until("born", signal="rawio:input:changed")
-            await asyncio.sleep(2)
+            await passing(2)
             look.tell("ping")
             await look.answer("pong")
         assert "whisper" not in json.dumps(look.records)
@@ -112,7 +111,7 @@ async def step_until(look: Look, kind: str, **fields: Any) -> dict[str, Any]:
         if found is not None:
             return found
         look.tell("step")
-        await asyncio.sleep(1)
+        await passing(1)
         look.tell("ping")
         await look.answer("pong")
     raise AssertionError(f"20 steps have brought no {kind} {fields}")
@@ -126,7 +125,7 @@ async def test_the_clock_is_paused_stepped_and_continued() -> None:
         assert (await look.answer("records"))["paused"] is True
         look.tell("say", text="Hello")
         await look.until("born", signal="rawio:input:changed")
-        await asyncio.sleep(30)
+        await passing(30)
         assert not [r for r in look.records if r.get("rule") == "gossip:classify" and r["kind"] == "started"]
         started = await step_until(look, "started", rule="gossip:classify")
         assert started["time"] < 1
@@ -134,7 +133,7 @@ async def test_the_clock_is_paused_stepped_and_continued() -> None:
         assert settled["time"] == pytest.approx(
             started["time"] + 0.2
         )  # nothing was due: the clock was set forward
-        await asyncio.sleep(30)
+        await passing(30)
         assert not look.found("settled", rule="gossip:talk")
         look.tell("resume")
         await look.until("settled", rule="gossip:talk", outcome="done")
@@ -254,7 +253,7 @@ async def test_a_browser_that_stops_reading_holds_nobody_up_and_misses_what_is_f
         for _ in range(200):
             for _ in range(250):
                 session.context.emit(tick)
-            await asyncio.sleep(2)
+            await passing(2)
         assert session.context.now >= 400  # time went on
         look.reading.set()
         missed = 0
@@ -273,7 +272,7 @@ async def test_who_asks_on_and_on_and_does_not_read_is_dropped() -> None:
         look.reading.clear()
         for _ in range(inspector.REPLIES + 60):
             look.tell("look")
-        await asyncio.sleep(60)
+        await passing(60)
         look.reading.set()
         await look.over()
 
@@ -344,7 +343,7 @@ async def test_looking_keeps_a_conversation() -> None:
     async with board(keep=5) as app:
         async with Look(app) as look:
             await look.begin()
-            await asyncio.sleep(60)
+            await passing(60)
             assert len(app.state.sessions) == 1
-        await asyncio.sleep(60)
+        await passing(60)
         assert len(app.state.sessions) == 0

@@ -1,9 +1,7 @@
 """The recorder: bounded in memory and in what it costs, and it says what it has missed."""
 
-import asyncio
-
 import ravestate as rs
-from board.looking import in_virtual_time
+from board.looking import in_virtual_time, passing
 from ravestate.board.recorder import Gap, Recorder, Recorders
 from ravestate.engine.trace import Born
 
@@ -24,7 +22,7 @@ async def test_records_are_numbered_and_read_by_whoever_has_not_seen_them() -> N
     recorder = Recorder(context, whole=True)
     async with context:
         context.emit(tick)
-        await asyncio.sleep(1)
+        await passing(1)
         everything = recorder.since(0, 10_000)
         assert len(everything) == recorder.last
         assert recorder.since(recorder.last, 10) == []
@@ -40,7 +38,7 @@ async def test_memory_is_bounded_and_the_oldest_goes_first() -> None:
     async with context:
         for _ in range(100):
             context.emit(tick)
-            await asyncio.sleep(1)
+            await passing(1)
         assert len(recorder.records) == 50
         assert recorder.first == recorder.last - 49
         assert recorder.since(0, 1000) == list(recorder.records)
@@ -54,11 +52,11 @@ async def test_beyond_its_rate_it_stops_listening_and_counts_the_spikes_that_it_
         for _ in range(20):
             for _ in range(100):
                 context.emit(tick)
-            await asyncio.sleep(0.01)
+            await passing(0.01)
         taken = recorder.last
-        await asyncio.sleep(10)
+        await passing(10)
         context.emit(tick)  # whose number tells how many went unseen
-        await asyncio.sleep(1)
+        await passing(1)
         gaps = [record for record in recorder.records if isinstance(record, Gap)]
         born = [record.spike for record in recorder.records if isinstance(record, Born)]
     assert taken < 400
@@ -76,7 +74,7 @@ async def test_a_long_pause_earns_a_burst_again() -> None:
         for _ in range(3):
             for _ in range(50):
                 context.emit(tick)
-            await asyncio.sleep(60)
+            await passing(60)
     assert recorder.missed == 0
 
 
@@ -89,5 +87,5 @@ async def test_who_listens_no_more_costs_nothing() -> None:
         assert recorders.of(context) is recorder
         recorder.close()
         context.emit(tick)
-        await asyncio.sleep(1)
+        await passing(1)
         assert recorder.last == 0

@@ -133,6 +133,18 @@ async def painted(page: Page, rule: str) -> set[str]:
     )
 
 
+async def passing(page: Page, seconds: float) -> None:
+    """Until the page says that the agent's clock is so much further."""
+    await page.evaluate(
+        """seconds => new Promise(resolve => {
+            const until = window.raveboard.now() + seconds;
+            const look = () => window.raveboard.now() >= until ? resolve() : requestAnimationFrame(look);
+            look();
+        })""",
+        seconds,
+    )
+
+
 @on_stage
 async def test_the_timeline_shows_the_rule_that_won_and_the_rule_that_waited(stage: Stage) -> None:
     async with served() as host, stage.open(f"{host.address}board/", color_scheme="light") as page:
@@ -142,7 +154,7 @@ async def test_the_timeline_shows_the_rule_that_won_and_the_rule_that_waited(sta
         await page.wait_for_function(
             "() => window.raveboard.trace.lanes.get('keeper:small_talk')?.bars[0]?.phases.at(-1)?.state === 'waiting'"
         )
-        await asyncio.sleep(0.4)  # so that the wait is wide enough to be seen
+        await passing(page, 0.4)  # so that the wait is wide enough to be seen
         assert "waiting" in await painted(page, "keeper:small_talk")
         assert "running" in await painted(page, "keeper:classify")
         Cue.classified.set()
@@ -363,7 +375,7 @@ async def test_a_thousand_events_a_second_do_not_stutter_and_hold_nobody_up(stag
             for number in range(150):
                 for _ in range(20):
                     session.context.emit(question, f"{number}?")
-                await asyncio.sleep(0.02)
+                await passing(page, 0.02)
 
         raising = asyncio.create_task(events())
         frames = await page.evaluate(
@@ -419,9 +431,9 @@ async def test_the_pictures_in_the_documentation(stage: Stage, tmp_path: Path) -
         for text in ("Since when?", "Nice."):
             Cue.classified.clear()
             await say(page, text)
-            await asyncio.sleep(0.7)
+            await passing(page, 0.7)
             Cue.classified.set()
-            await asyncio.sleep(0.4)
+            await passing(page, 0.4)
         await name(page, "keeper:small_talk").click()
         await page.locator("#cause").select_option(index=1)
         await expect(page.locator(".answer")).to_have_attribute("data-verdict", "outrun")
