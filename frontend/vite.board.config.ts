@@ -6,7 +6,7 @@ import { defineConfig } from "vite";
 export default defineConfig({
   root: "src/board",
   base: "./",
-  publicDir: false,
+  publicDir: "public",
   plugins: [svelte({ configFile: fileURLToPath(new URL("svelte.config.js", import.meta.url)) })],
   build: {
     outDir: fileURLToPath(new URL("../src/ravestate/board/page", import.meta.url)),

@@ -117,10 +117,10 @@ async def painted(page: Page, rule: str) -> set[str]:
         await page.evaluate(
             """rule => {
                 const names = [...document.querySelectorAll("button.lane")].map(b => b.title);
-                const top = (names.indexOf(rule) + 1) * 24 + 24;
+                const top = (names.indexOf(rule) + 1) * 26 + 26;
                 const canvas = document.querySelector("canvas.main");
                 const ratio = canvas.width / canvas.clientWidth;
-                const data = canvas.getContext("2d").getImageData(0, top * ratio, canvas.width, 24 * ratio).data;
+                const data = canvas.getContext("2d").getImageData(0, top * ratio, canvas.width, 26 * ratio).data;
                 const style = getComputedStyle(document.documentElement);
                 const seen = new Set();
                 for (let i = 0; i < data.length; i += 4) seen.add([data[i], data[i + 1], data[i + 2]].join());

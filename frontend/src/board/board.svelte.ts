@@ -1,12 +1,14 @@
 import { type Address, Link, type Status } from "./link";
 import type { Command, Diagram, Explained, Policy, ServerFrame, Shown, TraceRecord, Why } from "./protocol";
-import { Trace } from "./trace";
+import { type Spike, Trace } from "./trace";
 import { View } from "./view";
 
 export interface Conversation {
   visitor: string;
   name: string | null;
 }
+
+const RECENT = 60; // causes that may be chosen from
 
 const EMPTY: Policy = { modules: [], rules: [], signals: [], slots: [], diagram: null };
 
@@ -35,6 +37,23 @@ export class Board {
   explained: Explained | null = $state.raw(null);
   diagram: Diagram | null = $state.raw(null);
   search = $state("");
+  #found = $derived.by(() => {
+    const words = this.search.toLowerCase().split(/\s+/).filter(Boolean);
+    if (words.length === 0) return null;
+    const found = this.policy.rules.filter((rule) => {
+      const text = `${rule.name} ${rule.when} ${rule.writes.join(" ")} ${rule.emits.join(" ")}`.toLowerCase();
+      return words.every((word) => text.includes(word));
+    });
+    return new Set(found.map((rule) => rule.name));
+  });
+  #causes = $derived.by(() => {
+    void this.version;
+    const inputs = this.trace.inputs(RECENT, this.inputs);
+    const pointed = this.spike === null ? undefined : this.trace.spike(this.spike);
+    return pointed === undefined || inputs.some((spike) => spike.id === pointed.id)
+      ? inputs
+      : [pointed, ...inputs];
+  });
   view = new View();
   follows = $state(true);
   trace = new Trace();
@@ -134,6 +153,16 @@ export class Board {
       policy: this.policy,
       records: this.trace.records,
     });
+  }
+
+  /** The rules that the search finds; null while nothing is searched for. */
+  get found(): ReadonlySet<string> | null {
+    return this.#found;
+  }
+
+  /** What one may ask about: what came from outside, the newest first; before it the spike that was pointed at. */
+  get causes(): readonly Spike[] {
+    return this.#causes;
   }
 
   value(slot: string): Shown | undefined {

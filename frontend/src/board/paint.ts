@@ -2,8 +2,8 @@ import type { Bar, Lane, Phase, Spike, Trace } from "./trace";
 import { from } from "./trace";
 import { label, step, type View } from "./view";
 
-export const LANE = 24;
-export const AXIS = 24;
+export const LANE = 26;
+export const AXIS = 26;
 
 /** Colours of the theme, as the style sheet has them. */
 export interface Colours {
@@ -69,17 +69,27 @@ export interface Scene {
 }
 
 const OUTSIDE = "";
+const FONT = '11px "Inter", system-ui, sans-serif';
 
 /** In which lane a spike is drawn: that of the rule that raised it; the first one, if it came from outside. */
 function laneOf(spike: Spike): string {
   return spike.rule;
 }
 
+/** Whether the context itself raised it (its pressure, its activity): it is small, and below what came from outside. */
+function isOwn(spike: Spike): boolean {
+  return spike.rule === OUTSIDE && spike.signal.startsWith("core:") && spike.signal !== "core:startup";
+}
+
+const OWN = 8; // pixels
+
 export function paint(context: CanvasRenderingContext2D, scene: Scene): void {
   const { view, width, height, colours: c } = scene;
   context.clearRect(0, 0, width, height);
   const first = Math.max(0, Math.floor(scene.scroll / LANE));
   const last = Math.min(scene.lanes.length, Math.ceil((scene.scroll + height - AXIS) / LANE));
+  context.font = FONT;
+  context.textBaseline = "middle";
   context.save();
   context.beginPath();
   context.rect(0, AXIS, width, height - AXIS);
@@ -132,8 +142,6 @@ function paintAxis(context: CanvasRenderingContext2D, scene: Scene): void {
   context.fillRect(0, 0, scene.width, AXIS);
   context.fillStyle = c.rule;
   context.fillRect(0, AXIS - 1, scene.width, 1);
-  context.font = "11px system-ui, sans-serif";
-  context.textBaseline = "middle";
   const [times, between] = marks(scene);
   for (const time of times) {
     const x = Math.round(scene.view.x(time, scene.width));
@@ -231,6 +239,15 @@ function paintPhase(
     context.stroke();
     context.restore();
     context.strokeRect(x + 0.5, y + 0.5, Math.max(0, width - 1), height - 1);
+    const room = x + width - Math.max(x, 0) - 16;
+    if (room > 60 && height > 13) {
+      const words = shortened(context, `waits for ${phase.waits?.join(", ") ?? ""}`, room);
+      const left = Math.max(x, 0) + 5;
+      context.fillStyle = c.paper;
+      context.fillRect(left, y + 2, context.measureText(words).width + 8, height - 4);
+      context.fillStyle = c.ink;
+      context.fillText(words, left + 4, middle + 0.5);
+    }
   } else {
     context.strokeStyle = c.gathering;
     context.lineWidth = phase.state === "complete" ? 2.5 : 1.25;
@@ -298,6 +315,7 @@ function paintSpikes(context: CanvasRenderingContext2D, scene: Scene, places: Ma
   const { view, width, height, trace, colours: c } = scene;
   const start = from(trace.spikes, view.left, (spike) => spike.time);
   const drawn = new Map<string, number>();
+  const labels = new Map<string, Label>();
   const special: Spike[] = [];
   for (let i = start; i < trace.spikes.length; i++) {
     const spike = trace.spikes[i] as Spike;
@@ -305,15 +323,29 @@ function paintSpikes(context: CanvasRenderingContext2D, scene: Scene, places: Ma
     const lane = laneOf(spike);
     const y = places.get(lane);
     if (y === undefined || y < AXIS - LANE || y > height + LANE) continue;
+    const x = Math.round(view.x(spike.time, width));
+    const own = isOwn(spike);
+    const label = labels.get(lane);
+    if (own) {
+      // it leaves room for what was said
+    } else if (label === undefined || x > label.x) {
+      if (label !== undefined) paintLabel(context, scene, label, x - 10);
+      labels.set(lane, { spike, x, y });
+    }
     if (scene.kin.has(spike.id) || spike.id === scene.spike) {
       special.push(spike);
       continue;
     }
-    const x = Math.round(view.x(spike.time, width));
+    const colour = groupColour(trace.group(spike.group), c.dark);
+    if (own) {
+      dot(context, x, y + OWN, 2.25, colour, c.paper);
+      continue;
+    }
     if (drawn.get(lane) === x) continue;
     drawn.set(lane, x);
-    dot(context, x, y, 3.25, groupColour(trace.group(spike.group), c.dark), c.paper);
+    dot(context, x, y, 3.25, colour, c.paper);
   }
+  for (const label of labels.values()) paintLabel(context, scene, label, width - 6);
   paintAncestry(context, scene, places);
   for (const spike of special) {
     const y = places.get(laneOf(spike));
@@ -343,26 +375,73 @@ function dot(
 
 function paintAncestry(context: CanvasRenderingContext2D, scene: Scene, places: Map<string, number>): void {
   const { trace, view, width, colours: c } = scene;
-  context.strokeStyle = c.ink;
-  context.lineWidth = 1;
-  context.globalAlpha = 0.55;
-  context.beginPath();
+  const many = scene.kin.size > 12;
+  context.lineWidth = many ? 1 : 1.5;
+  context.globalAlpha = many ? 0.5 : 0.8;
   for (const id of scene.kin) {
     const spike = trace.spike(id);
     const y = spike === undefined ? undefined : places.get(laneOf(spike));
     if (spike === undefined || y === undefined) continue;
     const x = view.x(spike.time, width);
+    context.strokeStyle = groupColour(trace.group(spike.group), c.dark);
+    context.beginPath();
     for (const parent of spike.parents) {
       const other = trace.spike(parent);
       const above = other === undefined || !scene.kin.has(parent) ? undefined : places.get(laneOf(other));
       if (other === undefined || above === undefined) continue;
       const before = view.x(other.time, width);
+      const bend = Math.max(8, Math.min(60, (x - before) / 2));
       context.moveTo(before, above);
-      context.bezierCurveTo(before + 14, (above + y) / 2, x - 14, (above + y) / 2, x, y);
+      context.bezierCurveTo(before + bend, above, x - bend, y, x, y);
+    }
+    context.stroke();
+  }
+  context.globalAlpha = 1;
+}
+
+interface Label {
+  spike: Spike;
+  x: number;
+  y: number;
+}
+
+/** What was said, beside its dot, where nothing else is in the way. */
+function paintLabel(context: CanvasRenderingContext2D, scene: Scene, label: Label, end: number): void {
+  const { spike, x, y } = label;
+  const left = x + 8;
+  if (end - left < 40 || !spike.payload.text.startsWith('"')) return;
+  const lane = scene.trace.lanes.get(laneOf(spike));
+  let right = end;
+  if (lane !== undefined && laneOf(spike) !== OUTSIDE) {
+    for (let i = from(lane.bars, spike.time - lane.longest, (bar) => bar.from); i < lane.bars.length; i++) {
+      const bar = lane.bars[i] as Bar;
+      const begin = scene.view.x(bar.from, scene.width);
+      if (begin > right) break;
+      if (bar.from > spike.time) right = begin - 4;
+      else if (scene.view.x(bar.to ?? scene.now, scene.width) > left) return;
     }
   }
-  context.stroke();
-  context.globalAlpha = 1;
+  if (right - left < 40) return;
+  const text = shortened(context, spoken(spike.payload.text), right - left);
+  context.fillStyle = laneOf(spike) === OUTSIDE ? scene.colours.ink : scene.colours.quiet;
+  context.fillText(text, left, y + 0.5);
+}
+
+/** A text that is written as JSON, as people write it. It may have been cut, and is no JSON then. */
+function spoken(json: string): string {
+  try {
+    return `“${String(JSON.parse(json))}”`;
+  } catch {
+    return `“${json.slice(1)}…`;
+  }
+}
+
+/** As much of a text as fits. */
+function shortened(context: CanvasRenderingContext2D, text: string, room: number): string {
+  const line = text.replace(/\s+/g, " ").slice(0, 200);
+  const whole = context.measureText(line).width;
+  if (whole <= room) return line;
+  return `${line.slice(0, Math.max(1, Math.floor((line.length * room) / whole) - 2)).trimEnd()}…`;
 }
 
 function paintGaps(context: CanvasRenderingContext2D, scene: Scene): void {

@@ -156,6 +156,26 @@ export class Trace {
     return found;
   }
 
+  /** What the rules made of the causal group of a spike, in the order of their beginning; at most so many bars. */
+  made(spike: Spike, most: number): Bar[] {
+    const group = this.group(spike.group);
+    const ofGroup = (id: number) => {
+      const other = this.#spikes.get(id);
+      return other !== undefined && this.group(other.group) === group;
+    };
+    const found: Bar[] = [];
+    for (const lane of this.lanes.values()) {
+      const since = spike.time - lane.longest;
+      for (const bar of lane.open) if (bar.from < since && bar.spikes.some(ofGroup)) found.push(bar);
+      for (let i = from(lane.bars, since, (bar) => bar.from); i < lane.bars.length; i++) {
+        const bar = lane.bars[i] as Bar;
+        if (bar.spikes.some(ofGroup)) found.push(bar);
+        if (found.length > 4 * most) break;
+      }
+    }
+    return found.sort((a, b) => a.from - b.from || a.id - b.id).slice(0, most);
+  }
+
   #add(record: TraceRecord): void {
     if (this.records.length === 0) this.first = record.time;
     this.records.push(record);
