@@ -170,3 +170,27 @@ test("100,000 records are folded", () => {
 test("the first item at or after a time is found", () => {
   expect([-1, 0, 1.5, 9].map((time) => from([0, 1, 2, 3], time, (item) => item))).toEqual([0, 0, 2, 4]);
 });
+
+test("what came of a cause is what took a spike of its group, merged ones too, in order", () => {
+  const trace = new Trace();
+  spikes = 0;
+  trace.add([
+    born(1, "m:s", { group: 1 } as Partial<TraceRecord>),
+    held(1, 1, "m:first", 1),
+    held(1, 2, "m:early", 1, ["m:t"]),
+    born(5, "m:t", { group: 2 } as Partial<TraceRecord>),
+    held(5, 2, "m:early", 2),
+    held(5, 3, "m:late", 2),
+    born(6, "m:s", { group: 3 } as Partial<TraceRecord>),
+    held(6, 4, "m:other", 3),
+  ]);
+  const of = (id: number) => {
+    const spike = trace.spike(id);
+    return spike === undefined ? [] : trace.made(spike, 10).map((bar) => bar.rule);
+  };
+  expect(of(2)).toEqual(["m:early", "m:late"]);
+  expect(of(3)).toEqual(["m:other"]);
+  trace.add([{ kind: "merged", time: 7, group: 2, into: 1 }]);
+  expect(of(1)).toEqual(["m:first", "m:early", "m:late"]);
+  expect(trace.made(trace.spike(1) as never, 2).length).toBe(2);
+});

@@ -1,6 +1,7 @@
 import { cleanup, fireEvent, render, screen } from "@testing-library/svelte";
 import { afterEach, expect, test } from "vitest";
 import { Board } from "../src/board/board.svelte";
+import Cause from "../src/board/Cause.svelte";
 import type { Policy, ServerFrame, TraceRecord } from "../src/board/protocol";
 import Slots from "../src/board/Slots.svelte";
 import WhyNot from "../src/board/WhyNot.svelte";
@@ -205,4 +206,43 @@ test("a conversation that has ended is not tried again", () => {
   expect(board.status).toBe("gone");
   board.send({ type: "pause" });
   expect(board.trouble).toContain("no connection");
+});
+
+test("the search finds rules by all of its words, in what they are called, hear, write or emit", () => {
+  const [, board] = Server.open();
+  expect(board.found).toBe(null);
+  board.search = " Output ANSWER ";
+  expect([...(board.found ?? [])]).toEqual(["m:answer"]);
+  board.search = "nothing like it";
+  expect(board.found?.size).toBe(0);
+});
+
+test("what came of the newest cause is told, and leads to the rules", async () => {
+  const [server, board] = Server.open();
+  const took = (rule: string, activation: number): TraceRecord => ({
+    kind: "held",
+    time: 1,
+    activation,
+    rule,
+    clause: 0,
+    spike: 3,
+    signal: "m:input:changed",
+    lacks: [],
+  });
+  const records: TraceRecord[] = [
+    input(3, 1, '"hi"'),
+    took("m:talk", 1),
+    took("m:answer", 2),
+    { kind: "waits", time: 1, activation: 1, rule: "m:talk", for: ["m:answer"], until: null },
+    { kind: "started", time: 1, run: 2, rule: "m:answer", clause: 0, spikes: [3] },
+    { kind: "settled", time: 1.25, run: 2, rule: "m:answer", outcome: "done", reason: "", fired: true },
+  ];
+  server.tell({ type: "records", records, missed: 0, behind: 0, now: 2, paused: true });
+  const { container } = render(Cause, { board });
+  await Promise.resolve();
+  const rows = () =>
+    [...container.querySelectorAll("li")].map((row) => row.textContent.replace(/\s+/g, " ").trim());
+  expect(rows()).toEqual(["m:talk waits for m:answer", "m:answer ran, 250 ms"]);
+  await fireEvent.click(screen.getByRole("button", { name: /^m:answer/ }));
+  expect([board.rule, board.spike]).toEqual(["m:answer", 3]);
 });

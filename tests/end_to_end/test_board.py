@@ -65,11 +65,12 @@ async def note(ctx: rs.RuleContext) -> None:
 
 
 @contextlib.asynccontextmanager
-async def served(**settings: Any) -> AsyncGenerator[Host]:
-    """An agent with the board beside its page."""
+async def served(*modules: rs.Module, **settings: Any) -> AsyncGenerator[Host]:
+    """An agent (the keeper, if none is given) with the board beside its page."""
     Cue.classified = asyncio.Event()
     Cue.classified.set()
-    agent = RecordedAgent(keeper, webio, settings={"webio": {"port": 0, "title": "Elske", **settings}})
+    options = {"webio": {"port": 0, "title": "Elske", **settings}}
+    agent = RecordedAgent(*(modules or (keeper,)), webio, settings=options)
     async with Server(agent, routes(agent.recorders, title="Elske"), INSIDE) as server:
         yield Host(server)
 
@@ -345,6 +346,84 @@ async def test_the_diagram_folds_unfolds_and_shows_what_is_going_on(stage: Stage
         await expect(page.get_by_role("heading", name="keeper:answer")).to_be_visible()
 
 
+def skill(number: int) -> rs.Module:
+    """One of many modules: four rules, which answer if they are meant."""
+    module = rs.Module(f"skill_{number}", requires=(rawio,))
+    topic, asked, memory = module.signal("topic"), module.signal("asked"), module.slot("memory", 0)
+    heard = rawio.input.changed.where(lambda text: str(number) in text)
+
+    @module.rule(when=heard, emits=topic)
+    async def notice(ctx: rs.RuleContext) -> None:
+        ctx.emit(topic)
+
+    @module.rule(when=topic & rawio.input.changed, emits=asked)
+    async def classify(ctx: rs.RuleContext) -> None:
+        ctx.emit(asked)
+
+    @module.rule(when=asked, reads=memory, writes=rawio.output)
+    async def answer(ctx: rs.RuleContext) -> None:
+        ctx[rawio.output] = f"{number}!"
+
+    @module.rule(when=topic, writes=memory)
+    async def remember(ctx: rs.RuleContext) -> None:
+        ctx[memory] = number
+
+    return module
+
+
+@on_stage
+async def test_a_policy_of_more_than_a_hundred_rules_can_be_read(stage: Stage) -> None:
+    skills = [skill(number) for number in range(30)]
+    async with (
+        served(*skills) as host,
+        stage.open(f"{host.address}board/", viewport={"width": 1280, "height": 720}) as page,
+    ):
+        lanes = page.locator('button.lane[title*=":"]')
+        await say(page, "7")
+        await until_lane(page, "skill_7:answer", "done")
+        assert 4 <= await lanes.count() < 50  # of those that did something, if only to wait for a topic
+        await page.get_by_role("button", name="more did nothing").click()
+        await expect(lanes).to_have_count(124)
+        await page.get_by_label("Filter rules").fill("skill_12 output")
+        await expect(lanes).to_have_count(1)
+        await page.get_by_role("button", name="Diagram").click()
+        await expect(page.locator(".node.module")).to_have_count(33)
+        await expect(page.locator(".node:not(.faint)")).to_have_count(1)
+        await page.get_by_role("button", name="Unfold all").click()
+        await expect(page.locator(".node.rule")).to_have_count(124)
+        await expect(page.locator(".node.rule:not(.faint)")).to_have_count(1)
+        await page.get_by_label("Filter rules").fill("")
+        await expect(page.locator(".node.faint")).to_have_count(0)
+        boxes = await page.evaluate("window.raveboard.diagram.nodes.map(({ box }) => box)")
+        assert not any(
+            ax < bx + bw and bx < ax + aw and ay < by + bh and by < ay + ah
+            for number, (ax, ay, aw, ah) in enumerate(boxes)
+            for bx, by, bw, bh in boxes[:number]
+        )
+        await page.get_by_role("tab", name="Rule").click()
+        await page.get_by_role("button", name="remember", exact=True).nth(3).click()
+        chosen = page.locator(".node.chosen")
+        await expect(chosen).to_be_in_viewport()
+        shown = await chosen.bounding_box()
+        assert shown is not None
+        assert shown["height"] > 20  # pixels, for two lines
+        joined = page.locator(".node:not(.faint)")
+        await expect(joined).to_have_count(3)  # its signal, and its slot
+
+
+@on_stage
+async def test_what_came_of_the_newest_input_leads_to_the_rules_and_back(stage: Stage) -> None:
+    async with served() as host, stage.open(f"{host.address}board/") as page:
+        await say(page, "Since when?")
+        await until_lane(page, "keeper:answer", "done")
+        await page.get_by_role("tab", name="Rule").click()
+        lost = page.get_by_role("button", name="keeper:small_talk keeper:answer answered")
+        await lost.click()
+        await expect(page.locator(".answer")).to_have_attribute("data-verdict", "outrun")
+        await page.get_by_role("button", name="Choose no rule").click()
+        await expect(lost).to_be_visible()
+
+
 @on_stage
 async def test_the_keyboard_reaches_the_timeline(stage: Stage) -> None:
     async with served() as host, stage.open(f"{host.address}board/") as page:
@@ -410,6 +489,7 @@ async def test_axe_finds_nothing_serious(stage: Stage, scheme: str, size: dict[s
         found += [f"rule: {finding}" for finding in await findings(page)]
         await page.get_by_role("button", name="Diagram").click()
         await expect(page.get_by_role("application", name="Signal-Rule-Slot diagram")).to_be_visible()
+        await page.get_by_role("button", name="Modules").click()
         found += [f"diagram: {finding}" for finding in await findings(page)]
     assert not found, "\n".join(found)
 

@@ -1,0 +1,95 @@
+import { expect, test } from "vitest";
+import { type Colours, paint, type Scene } from "../src/board/paint";
+import type { TraceRecord } from "../src/board/protocol";
+import { Trace } from "../src/board/trace";
+import { View } from "../src/board/view";
+
+/** A canvas that remembers which words are written on it, and where; each character is 6 pixels wide. */
+function canvas() {
+  const written: [string, number, number][] = [];
+  const kept: Record<string, unknown> = {
+    fillText: (text: string, x: number, y: number) => written.push([text, Math.round(x), Math.round(y)]),
+    measureText: (text: string) => ({ width: 6 * text.length }),
+  };
+  const context = new Proxy(kept, { get: (found, name: string) => found[name] ?? (() => {}) });
+  return { written, context: context as unknown as CanvasRenderingContext2D };
+}
+
+function scene(records: TraceRecord[], more: Partial<Scene> = {}): Scene {
+  const trace = new Trace();
+  trace.add(records);
+  const view = new View();
+  view.left = 0;
+  view.span = 10;
+  return {
+    trace,
+    view,
+    now: 20,
+    lanes: ["", "m:wait", "m:answer"],
+    scroll: 0,
+    width: 1000,
+    height: 300,
+    colours: {} as Colours,
+    rule: null,
+    kin: new Set(),
+    spike: null,
+    ...more,
+  };
+}
+
+function born(spike: number, time: number, text: string, signal = "m:heard"): TraceRecord {
+  return {
+    kind: "born",
+    time,
+    spike,
+    signal,
+    group: 1,
+    parents: [],
+    source: 0,
+    payload: { text },
+  } as TraceRecord;
+}
+
+function words(records: TraceRecord[], more: Partial<Scene> = {}): string[] {
+  const { written, context } = canvas();
+  paint(context, scene(records, more));
+  return written.map(([text]) => text).filter((text) => !/^\d+ s$/.test(text));
+}
+
+test("what was said stands beside its dot", () => {
+  expect(words([born(1, 1, '"Who is there?"'), born(2, 5, "null"), born(3, 8, "7")])).toEqual([
+    "“Who is there?”",
+  ]);
+});
+
+test("it is shortened where the next dot comes soon, and left out where there is no room", () => {
+  expect(words([born(1, 1, '"Who is there, and why?"'), born(2, 2, "null")])).toEqual(["“Who is the…"]);
+  expect(words([born(1, 1, '"Who is there, and why?"'), born(2, 1.4, "null")])).toEqual([]);
+});
+
+test("what the context itself raises leaves room for it", () => {
+  const own = born(2, 1.1, "true", "core:pressure:changed");
+  expect(words([born(1, 1, '"Who is there?"'), own])).toEqual(["“Who is there?”"]);
+});
+
+test("a text that was cut is shown as far as it goes", () => {
+  expect(words([born(1, 1, '"Who is th')])).toEqual(["“Who is th…"]);
+});
+
+test("a bar that waits says for whom, if it is wide enough", () => {
+  const waits: TraceRecord[] = [
+    {
+      kind: "held",
+      time: 1,
+      activation: 1,
+      rule: "m:wait",
+      clause: 0,
+      spike: 9,
+      signal: "m:heard",
+      lacks: [],
+    },
+    { kind: "waits", time: 1, activation: 1, rule: "m:wait", for: ["m:answer"], until: null },
+  ];
+  expect(words(waits)).toEqual(["waits for m:answer"]);
+  expect(words(waits, { now: 1.2 })).toEqual([]);
+});
