@@ -299,6 +299,15 @@ def test_a_server_that_stalls(converse: Conversation, spoken: bool) -> None:
         converse(answer, read_timeout=0.05)
 
 
+def test_a_server_that_only_keeps_the_connection_open_has_stalled(converse: Conversation) -> None:
+    async def answer(talk: Any) -> None:
+        await talk.head()
+        await talk.gone()  # comments, for ever
+
+    with pytest.raises(PlatformError, match=r"stalled: nothing for 0\.05 s"):
+        converse(answer, read_timeout=0.05)
+
+
 def test_a_server_that_is_not_there(converse: Conversation) -> None:
     with pytest.raises(PlatformError, match=r"no server at http://127.0.0.1:1/v1 .*ollama serve"):
         converse(hello, base_url="http://127.0.0.1:1/v1")

@@ -224,6 +224,31 @@ def test_it_makes_up_no_facts_unless_it_may() -> None:
     sim.__exit__(None, None, None)
 
 
+def test_the_agent_ends_at_once_while_its_model_is_still_loading() -> None:
+    ended: list[float] = []
+
+    class Loading(Model):
+        """Cannot be let go of while it loads, as a model in a thread."""
+
+        def __init__(self) -> None:
+            super().__init__()
+            self.busy = asyncio.Lock()
+
+        async def load(self, progress: Progress | None = None) -> None:
+            async with self.busy:
+                await asyncio.Event().wait()
+
+        async def close(self) -> None:
+            async with self.busy:
+                ended.append(asyncio.get_running_loop().time())
+
+    sim = talk(Loading())
+    sim.say("Hello!")
+    sim.advance(10.0)
+    sim.__exit__(None, None, None)
+    assert ended == [10.0]
+
+
 def test_without_a_model_others_may_answer() -> None:
     with simulate(wildtalk) as sim:
         sim.put(wildtalk.model, None)

@@ -86,6 +86,16 @@ def test_a_model_with_a_chat_template_is_given_the_turns_in_it(tiny: Path, tmp_p
     )
 
 
+def test_a_chat_template_that_refuses_the_conversation_is_told_of(tiny: Path, tmp_path: Path) -> None:
+    folder = tmp_path / "strict"
+    folder.mkdir()
+    for part in tiny.iterdir():
+        (folder / part.name).write_bytes(part.read_bytes())
+    (folder / "chat_template.jinja").write_text("{{ raise_exception('System role not supported') }}")
+    with pytest.raises(PlatformError, match=r"the model '.*strict' failed: System role not supported"):
+        asyncio.run(answer(TransformersBackend(str(folder))))
+
+
 def test_contexts_share_a_model_until_the_last_lets_go_of_it(tiny: Path) -> None:
     async def story() -> None:
         one, other = TransformersBackend(str(tiny)), TransformersBackend(str(tiny))

@@ -129,11 +129,7 @@ class OpenAIBackend:
                 f"check wildtalk.base_url, and whether something is in between (a firewall, a proxy)"
             ) from error
         except httpx.TimeoutException as error:
-            raise PlatformError(
-                f"wildtalk: the server at {self._place} stalled: nothing for {self._read_timeout:g} s. Is it "
-                f"overloaded, or loading model {self._model!r}? Give it longer: wildtalk.read_timeout="
-                f"{2 * self._read_timeout:g}"
-            ) from error
+            raise self._stalled() from error
         except httpx.ConnectError as error:
             raise PlatformError(
                 f"wildtalk: no server at {self._place} ({self._safe(str(error))}): is it running? With Ollama: "
@@ -199,9 +195,18 @@ class OpenAIBackend:
                 f"OpenAI-compatible API. Such an address mostly ends in /v1"
             )
         events, finished = Events(), False
+        clock = asyncio.get_running_loop().time
+        spoken = clock()
         try:
             async for received in answer.aiter_bytes():
-                for payload in events.feed(received):
+                payloads = events.feed(received)
+                if payloads:
+                    spoken = clock()
+                elif (
+                    clock() - spoken > self._read_timeout
+                ):  # comments that keep the connection open say nothing
+                    raise self._stalled()
+                for payload in payloads:
                     if payload == "[DONE]":
                         return
                     document = self._document(payload)
@@ -250,6 +255,13 @@ class OpenAIBackend:
                 f"{self._safe(_short(json.dumps(document)))}"
             )
         return content
+
+    def _stalled(self) -> PlatformError:
+        return PlatformError(
+            f"wildtalk: the server at {self._place} stalled: nothing for {self._read_timeout:g} s. Is it "
+            f"overloaded, or loading model {self._model!r}? Give it longer: wildtalk.read_timeout="
+            f"{2 * self._read_timeout:g}"
+        )
 
     def _refused(self, answer: httpx.Response, body: str) -> PlatformError:
         status, reason = answer.status_code, self._safe(_reason(body))

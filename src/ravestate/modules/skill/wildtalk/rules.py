@@ -66,7 +66,7 @@ async def note(ctx: rs.RuleContext) -> None:
     reads=model,
     writes=(rawio.output, rawio.speaking, history, trouble),
     emits=rawio.piece,
-    until=rawio.input.changed,
+    until=rawio.input.changed | rs.shutdown,  # a model that is still loading would hold up the end
 )
 async def chat(ctx: rs.RuleContext) -> rs.Resign | None:
     """Answer with small talk, piece by piece; a new utterance interrupts it."""

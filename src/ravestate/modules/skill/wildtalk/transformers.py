@@ -84,7 +84,10 @@ class TransformersBackend:
             except RuntimeError:  # the loop is closed: nobody listens any more
                 left.set()
 
-        prompt, ends = model.prompt(messages)
+        try:
+            prompt, ends = await asyncio.to_thread(model.prompt, messages)
+        except Exception as error:  # a template may refuse a conversation, e.g. one with a system's turn
+            raise self._failed(error) from error
         arguments = (prompt, max_tokens, temperature, seed, tell, left)
         threading.Thread(target=model.write, args=arguments, name="ravestate-model").start()
         stops = (*stop, *ends)
@@ -99,7 +102,7 @@ class TransformersBackend:
                         "(--set wildtalk.read_timeout=300) or take a smaller one"
                     ) from None
                 if isinstance(piece, BaseException):
-                    raise PlatformError(f"wildtalk: the model {self._name!r} failed: {piece}") from piece
+                    raise self._failed(piece) from piece
                 written += piece or ""
                 safe, over = cut(written, stops, last=piece is None)
                 if safe[shown:]:
@@ -109,6 +112,9 @@ class TransformersBackend:
                     return
         finally:
             left.set()
+
+    def _failed(self, error: BaseException) -> PlatformError:
+        return PlatformError(f"wildtalk: the model {self._name!r} failed: {_first_line(error)}")
 
 
 class _Model:
@@ -153,7 +159,7 @@ class _Model:
             return found
 
     def prompt(self, messages: Sequence[Message]) -> tuple[str, tuple[str, ...]]:
-        """What the model is to go on with, and the texts by which its answer ends."""
+        """What the model is to go on with, and the texts by which its answer ends. Blocks: a template must be compiled."""
         if self.tokenizer.chat_template is None:
             return transcript(messages), ("\n",)
         turns = [{"role": message.role, "content": message.text} for message in messages]
