@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 import ravestate as rs
-from ravestate.modules import agentqa, idle, nlp, ontology, rawio, verbaliser
+from ravestate.modules import agenda, agentqa, idle, nlp, ontology, rawio, verbaliser
 from ravestate.modules.meta.verbaliser.intents import Intent
 from ravestate.modules.skill.agentqa import Router
 from ravestate.testing import Simulation, simulate
@@ -223,6 +223,18 @@ def test_it_takes_turns_with_others_who_use_the_silence(tmp_path: Path) -> None:
     with start(tmp_path, asker, bored=5.0) as sim:
         sim.advance(11.0)
         assert len(sim.said) == 2 and sim.said[0] == "What is your name?" != sim.said[1]
+
+
+def test_an_offer_that_another_goal_goes_before_comes_at_the_next_silence(tmp_path: Path) -> None:
+    guide = rs.Module("guide", requires=[agenda])
+    agenda.goal(guide, "game", say="Shall we play?")
+    with start(tmp_path, guide, bored=5.0) as sim:
+        sim.advance(5.5)
+        assert sim.said == ["Shall we play?"]
+        assert sim.read(agentqa.prompted) is None
+        sim.advance(5.0)
+        assert len(sim.said) == 2
+        assert sim.read(agentqa.prompted) == pytest.approx(10.0)
 
 
 def test_answers_are_phrases_of_the_topic(tmp_path: Path) -> None:

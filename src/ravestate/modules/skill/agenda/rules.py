@@ -28,8 +28,11 @@ async def yield_to_the_user(ctx: rs.RuleContext) -> None:
 
 
 @module.rule(when=rs.startup.detached(), background=True)
-async def adopt_wishes(ctx: rs.RuleContext) -> None:
-    """Add the goals from the settings to this context, and to no other that shares the policy."""
+def adopt_wishes(ctx: rs.RuleContext) -> None:
+    """Add the goals from the settings to this context, and to no other that shares the policy.
+
+    In a thread: each rule costs the loop some milliseconds, and others are to have their turn between two.
+    """
     from .goal import goal
 
     settings: Settings = ctx.settings

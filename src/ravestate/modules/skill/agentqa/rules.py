@@ -99,7 +99,13 @@ async def answer(ctx: rs.RuleContext) -> rs.Resign | None:
     return None
 
 
-@module.rule(when=idle.bored, reads=prompted, writes=(verbaliser.intent, prompted), weight=0.9)
+@module.rule(
+    when=idle.bored,
+    reads=prompted,
+    writes=(verbaliser.intent, rawio.output, prompted),  # the output too: else a goal might be said instead
+    weight=0.9,
+    detached=True,  # thus the intent, in a causal group of its own, may still be worded
+)
 async def offer(ctx: rs.RuleContext) -> rs.Resign | None:
     """It is silent: invite the user to ask, now and then."""
     last, every = ctx[prompted], ctx.settings.prompt_every
