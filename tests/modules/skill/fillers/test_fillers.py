@@ -1,7 +1,7 @@
 """fillers fills a pause, and takes nobody's turn."""
 
 import ravestate as rs
-from ravestate.modules import fillers, rawio
+from ravestate.modules import fillers, idle, rawio
 from ravestate.testing import simulate
 
 slow = rs.Module("slow", requires=[rawio])
@@ -37,17 +37,49 @@ def test_a_long_wait_is_filled_once_and_the_answer_comes_all_the_same() -> None:
 
 
 def test_a_short_wait_is_not_filled() -> None:
-    with simulate(fillers, slow, settings={"idle": {"impatient_after": 4.0}}) as sim:
+    patient = {"idle": {"impatient_after": 4.0}, "fillers": {"unanswered_after": 4.0}}
+    with simulate(fillers, slow, settings=patient) as sim:
         sim.say("It rains.")
         sim.advance(10.0)
         assert sim.said == ["talk"]
 
 
-def test_who_speaks_is_not_interrupted() -> None:
+def test_who_speaks_is_not_interrupted_and_no_filler_follows_the_answer() -> None:
     with simulate(fillers, slow) as sim:
         sim.put(rawio.speaking, True)
         sim.say("What is that?")
-        sim.advance(2.5)
-        assert sim.said == []
+        sim.advance(3.5)
+        assert sim.said == ["answer"]
         sim.put(rawio.speaking, False)
+        sim.say("It rains.")
+        sim.advance(0.9)
+        assert sim.said == ["answer"]
+
+
+def test_an_answer_of_which_nothing_is_heard_yet_is_a_pause_although_nobody_waits() -> None:
+    model = rs.Module("model", requires=[rawio])
+
+    @model.rule(when=rawio.input.changed, writes=(rawio.output, rawio.speaking), until=rawio.input.changed)
+    async def think(ctx: rs.RuleContext) -> None:
+        await ctx.sleep(8.0)
+        ctx[rawio.speaking] = True
+        await ctx.sleep(8.0)
+        ctx[rawio.output] = "thought"
+        ctx[rawio.speaking] = False
+
+    with simulate(fillers, model) as sim:
+        sim.say("Hm?")
+        sim.advance(1.9)
+        assert sim.said == []
+        sim.advance(0.2)
+        assert len(sim.said) == 1
+        sim.advance(30.0)
+        assert sim.said[1:] == ["thought"]
+
+
+def test_one_filler_is_enough_for_a_pause_that_goes_on_for_another_reason() -> None:
+    with simulate(fillers, slow) as sim:
+        sim.say("What is that?")
+        sim.advance(1.5)
+        sim.emit(idle.impatient)
         assert len(sim.said) == 1
