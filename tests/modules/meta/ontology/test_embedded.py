@@ -101,6 +101,22 @@ def test_a_second_process_is_told_who_has_the_file(writer: tuple[Path, subproces
     assert "--set ontology.path=FILE" in said
 
 
+def test_who_opens_a_memory_that_is_open_asks_nothing_of_the_file(
+    tmp_path: Path, open_here: Open, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    open_here(path=tmp_path / "memory.lbug").opened().result()
+    asked: list[str] = []
+    execute = EmbeddedStore._execute
+
+    def note(store: EmbeddedStore, statement: str, *parameters: Any) -> list[list[Any]]:
+        asked.append(statement)
+        return execute(store, statement, *parameters)
+
+    monkeypatch.setattr(EmbeddedStore, "_execute", note)
+    open_here(path=tmp_path / "memory.lbug").opened().result()
+    assert asked == []
+
+
 def test_one_process_opens_a_file_once_however_it_is_named(tmp_path: Path, open_here: Open) -> None:
     (tmp_path / "link").symlink_to(tmp_path, target_is_directory=True)
     first = open_here(path=tmp_path / "memory.lbug")

@@ -7,7 +7,7 @@ import pydantic
 import pytest
 
 from ravestate.modules import ontology
-from ravestate.modules.meta.ontology.places import default_path, open_memory
+from ravestate.modules.meta.ontology.places import default_path, open_memory, types_of
 
 
 def test_the_users_data_folder_is_that_of_the_platform(
@@ -50,3 +50,14 @@ def test_a_users_home_may_be_written_short(monkeypatch: pytest.MonkeyPatch, tmp_
     memory.opened().result(60)
     memory.close().result(60)
     assert (tmp_path / "m.lbug").is_file()
+
+
+def test_types_are_read_once_for_all_who_open_a_memory_and_again_when_a_file_changes(tmp_path: Path) -> None:
+    own = tmp_path / "mine.yaml"
+    own.write_text("Boat: {is: Thing}")
+    settings = ontology.Settings(types=(own,))
+    first = types_of(settings)
+    assert types_of(ontology.Settings(types=(own,))) is first
+    own.write_text("Boat: {is: Thing}\nPort: {is: Place}")
+    assert "Port" in types_of(settings)
+    assert "Port" not in first

@@ -68,6 +68,7 @@ class EmbeddedStore:
         self._log_good = 0
         self._stuck = ""
         self._within = False
+        self._prepared: Types | None = None
         try:
             path.parent.mkdir(parents=True, exist_ok=True, mode=0o700)
         except OSError as error:
@@ -130,11 +131,14 @@ class EmbeddedStore:
 
     def prepare(self, types: Types) -> None:
         """Make room for all types, properties and relations that are not there yet."""
+        if types is self._prepared:  # as those before have asked for; nobody else writes this file
+            return
         missing = list(missing_tables(self._execute, types, str(self._path)))
         if missing:  # else nothing is written: a memory may be read from a full disk
             with self.transaction():
                 for statement in missing:
                     self._execute(statement)
+        self._prepared = types
 
     def undeclared(self, types: Types) -> list[str]:
         """The types of nodes in the file that `types` do not have."""
@@ -143,6 +147,7 @@ class EmbeddedStore:
     # ------------------------------------------------------------------------------------ the file
 
     def _open(self) -> None:
+        self._prepared = None
         try:
             self._connect()
         except RuntimeError as error:

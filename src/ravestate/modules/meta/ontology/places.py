@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
+from functools import lru_cache
 from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -32,14 +33,28 @@ def default_path(agent: str) -> Path:
 
 
 def types_of(settings: Settings) -> Types:
-    """The types that come with the module, and the user's.
+    """The types that come with the module, and the user's. Files are read once, unless one has changed since.
 
     Raises:
         DeclarationError: A file is no file of types, or contradicts another.
         PlatformError: A file cannot be read.
     """
+    return _types_in(tuple((path.expanduser(), _state_of(path.expanduser())) for path in settings.types))
+
+
+@lru_cache(maxsize=8)  # each visitor of a page opens memory
+def _types_in(own: tuple[tuple[Path, object], ...]) -> Types:
     built_in = files("ravestate.modules.meta.ontology") / "types.yaml"
-    return read_types([built_in, *(path.expanduser() for path in settings.types)])
+    return read_types([built_in, *(path for path, _ in own)])
+
+
+def _state_of(path: Path) -> object:
+    """What tells whether a file has changed."""
+    try:
+        stat = path.stat()
+    except OSError:  # which is said when it is read
+        return None
+    return stat.st_ino, stat.st_size, stat.st_mtime_ns
 
 
 def path_of(settings: Settings) -> Path | None:
