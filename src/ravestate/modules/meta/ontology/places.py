@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import os
-import sys
 from functools import lru_cache
 from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+from ravestate.modules._folders import user_folder
 
 from .keeper import Keeper
 from .memory import Memory
@@ -21,15 +22,8 @@ __all__ = ["default_path", "open_memory", "path_of", "types_of"]
 
 
 def default_path(agent: str) -> Path:
-    """The file of an agent's memory in the user's data folder, as the platform has it."""
-    if sys.platform == "win32":
-        base = Path(os.environ.get("LOCALAPPDATA") or Path.home() / "AppData" / "Local")
-    elif sys.platform == "darwin":
-        base = Path.home() / "Library" / "Application Support"
-    else:
-        given = os.environ.get("XDG_DATA_HOME", "")  # a relative one does not count, says its standard
-        base = Path(given) if Path(given).is_absolute() else Path.home() / ".local" / "share"
-    return base / "ravestate" / agent / "memory.lbug"
+    """The file of an agent's memory in the user's data folder."""
+    return user_folder("data") / agent / "memory.lbug"
 
 
 def types_of(settings: Settings) -> Types:

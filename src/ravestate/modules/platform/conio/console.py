@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import errno
 import importlib
-import os
 import sys
 from collections.abc import AsyncIterator, Callable
 from pathlib import Path
@@ -13,6 +12,7 @@ from types import TracebackType
 from typing import Literal, Protocol, TextIO
 
 from ravestate.errors import PlatformError
+from ravestate.modules._folders import user_folder
 from ravestate.modules._text import printable, without_controls
 
 __all__ = ["Console", "Screen", "history_file", "prepare"]
@@ -205,12 +205,4 @@ def _screen(prompt: str, history: Path | None, stdin: TextIO | None, stdout: Tex
 
 def history_file() -> Path:
     """Return where the lines typed are kept from session to session: in the user's folder for state."""
-    if os.name == "nt":
-        base = os.environ.get("LOCALAPPDATA") or str(Path.home() / "AppData" / "Local")
-    elif sys.platform == "darwin":
-        base = str(Path.home() / "Library" / "Application Support")
-    else:
-        base = os.environ.get("XDG_STATE_HOME") or ""
-        if not os.path.isabs(base):  # so the specification
-            base = str(Path.home() / ".local" / "state")
-    return Path(base) / "ravestate" / "history"
+    return user_folder("state") / "history"

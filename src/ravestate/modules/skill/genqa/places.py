@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import os
-import sys
 import threading
 from pathlib import Path
 from typing import TYPE_CHECKING
+
+from ravestate.modules._folders import user_folder
 
 from .answering import Answerer
 
@@ -20,17 +20,10 @@ _making = threading.Lock()
 
 
 def path_of(settings: Settings) -> Path:
-    """The file of the index: what the settings say, or one in the user's data folder, as the platform has it."""
+    """The file of the index: what the settings say, or one in the user's data folder."""
     if settings.index is not None:
         return settings.index.expanduser().absolute()
-    if sys.platform == "win32":
-        base = Path(os.environ.get("LOCALAPPDATA") or Path.home() / "AppData" / "Local")
-    elif sys.platform == "darwin":
-        base = Path.home() / "Library" / "Application Support"
-    else:
-        given = os.environ.get("XDG_DATA_HOME", "")  # a relative one does not count, says its standard
-        base = Path(given) if Path(given).is_absolute() else Path.home() / ".local" / "share"
-    return base / "ravestate" / "genqa.sqlite"
+    return user_folder("data") / "genqa.sqlite"
 
 
 def answerer_of(settings: Settings) -> Answerer:
