@@ -21,6 +21,7 @@ from .application import ENDING, make_app
 from .connection import LONGEST
 from .door import Door, Line
 from .gate import is_local
+from .pace import at_pace
 
 if TYPE_CHECKING:
     from starlette.routing import BaseRoute
@@ -66,6 +67,7 @@ class Server:
         self._socket: socket.socket | None = None
         self._uvicorn: _Uvicorn | None = None
         self._task: asyncio.Task[None] | None = None
+        self._pace = contextlib.ExitStack()
 
     async def __aenter__(self) -> Server:
         """Listen.
@@ -100,6 +102,7 @@ class Server:
         listening.cancel()
         if self._task.done():
             self._task.result()
+        self._pace.enter_context(at_pace())
         return self
 
     async def __aexit__(
@@ -107,9 +110,10 @@ class Server:
     ) -> None:
         """Tell the visitors, end their conversations in order, and close."""
         assert self._uvicorn is not None and self._task is not None  # it was entered
-        await self._app.state.sessions.close(ENDING)
-        self._uvicorn.told.set()
-        await self._task
+        with self._pace:
+            await self._app.state.sessions.close(ENDING)
+            self._uvicorn.told.set()
+            await self._task
 
     @property
     def port(self) -> int:
