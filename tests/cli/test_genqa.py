@@ -121,7 +121,8 @@ def test_an_index_that_is_none_is_an_error_in_words(
     (docs / "index.txt").write_text("This is a letter and no index of anything.", encoding="utf-8")
     code, _, errors = call(capsys, "genqa", "--index", str(docs / "index.txt"), *action)
     assert code == 1
-    assert "it is no index, or damaged" in errors
+    assert errors.startswith(f"ravestate genqa: the index {docs / 'index.txt'}: it is no index, or damaged")
+    assert "--index /path/to/index.sqlite" in errors
 
 
 def test_an_index_of_a_newer_version_is_an_error_in_words(

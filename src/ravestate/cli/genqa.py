@@ -44,6 +44,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Carry the command out."""
+    try:
+        return _run(options)
+    except PlatformError as error:  # in an agent's words: here the index is named in another way
+        said = str(error).removeprefix("genqa: ").replace("--set genqa.index=", "--index ")
+        raise PlatformError(said) from error
+
+
+def _run(options: argparse.Namespace) -> int:
     settings = _settings(options.index)
     if options.action == "ask":
         return _ask(settings, " ".join(options.question))
@@ -72,13 +80,13 @@ def _settings(index: str | None) -> Settings:
 
 
 def _index(index: Index, paths: Iterable[str]) -> int:
-    from ravestate.modules.skill.genqa.collecting import collect, find
+    from ravestate.modules.skill.genqa.collecting import find
 
     found = find((Path(path) for path in paths), index)
     counts: Counter[str] = Counter()
     passages = 0
     try:
-        for outcome in _with_bar(collect(found, index), found):
+        for outcome in _collected(found, index):
             counts[outcome.kind] += 1
             if outcome.kind in ("added", "replaced"):
                 passages += outcome.passages
@@ -92,8 +100,10 @@ def _index(index: Index, paths: Iterable[str]) -> int:
     return 1 if counts["unreadable"] else 0
 
 
-def _with_bar(outcomes: Iterator[Outcome], found: Found) -> Iterator[Outcome]:
-    """Show how far it is, in bytes, to a person who watches."""
+def _collected(found: Found, index: Index) -> Iterator[Outcome]:
+    """Collect, and show a person who watches how far it is, in bytes, and what is being read."""
+    from ravestate.modules.skill.genqa.collecting import collect
+
     try:
         from tqdm import tqdm
     except ImportError as error:
@@ -107,8 +117,12 @@ def _with_bar(outcomes: Iterator[Outcome], found: Found) -> Iterator[Outcome]:
     with tqdm(
         total=sum(sizes.values()), unit="B", unit_scale=True, disable=not sys.stderr.isatty(), leave=False
     ) as bar:
-        for outcome in outcomes:
-            bar.set_postfix_str(outcome.path.name[-40:])
+
+        def reading(path: Path, number: int) -> None:
+            bar.set_postfix_str(f"{path.name[-40:]}, part {number + 1}", refresh=False)
+            bar.update(0)  # draws now and then
+
+        for outcome in collect(found, index, reading):
             bar.update(sizes.get(outcome.path, 0))
             yield outcome
 

@@ -44,6 +44,15 @@ def test_a_folder_with_all_that_can_be_read(index: Index, folder: Path) -> None:
     assert rows == {"The tram is red.": "docs/tram.txt", "The ship is grey.": "docs/deep/ship.md"}
 
 
+def test_who_watches_is_told_of_each_document_of_a_large_file(index: Index, folder: Path) -> None:
+    (folder / "many.jsonl").write_text('{"text": "The ferry is white."}\n' * 3, encoding="utf-8")
+    told: list[tuple[str, int]] = []
+    many = find([folder / "many.jsonl"], index)
+    [outcome] = collect(many, index, lambda path, number: told.append((path.name, number)))
+    assert outcome.passages == 3
+    assert told == [("many.jsonl", 0), ("many.jsonl", 1), ("many.jsonl", 2)]
+
+
 def test_what_has_not_changed_is_not_read_again(
     index: Index, folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -120,6 +120,11 @@ def test_html_in_another_encoding(tmp_path: Path) -> None:
     assert passages(write(tmp_path / "cafe.htm", page)) == {"cafe": ["Das Café ist geschlossen."]}
 
 
+def test_an_empty_page_is_nothing_to_warn_of(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
+    assert passages(write(tmp_path / "empty.html", b"")) == {}
+    assert caplog.text == ""
+
+
 def test_each_page_of_a_pdf_is_a_source(tmp_path: Path) -> None:
     path = write_pdf(
         tmp_path / "manual.pdf", "Grease the pump each month.", "The warranty is two years.", title="Pump"

@@ -4,15 +4,19 @@ from __future__ import annotations
 
 import hashlib
 import os
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
 
+from .document import Document
 from .index import Index, IndexedFile
 from .reading import Unreadable, kind_of, read
 
-__all__ = ["Found", "Outcome", "collect", "find", "name_of", "within"]
+__all__ = ["Found", "Outcome", "Reading", "collect", "find", "name_of", "within"]
+
+Reading = Callable[[Path, int], object]
+"""Told of each document that is read: of which file, and how many of it have been read before."""
 
 Kind = Literal["added", "replaced", "unchanged", "removed", "unreadable"]
 
@@ -60,8 +64,13 @@ def find(paths: Iterable[Path], index: Index) -> Found:
     return found
 
 
-def collect(found: Found, index: Index) -> Iterator[Outcome]:
+def collect(found: Found, index: Index, reading: Reading | None = None) -> Iterator[Outcome]:
     """Bring `index` up to what was found, file by file; each is complete, or as it was before.
+
+    Args:
+        found: The files.
+        index: Takes them in.
+        reading: A file may hold millions of documents: is told of each.
 
     Yields:
         What became of each file, in order; those that are gone come last.
@@ -73,7 +82,7 @@ def collect(found: Found, index: Index) -> Iterator[Outcome]:
     seen: set[str] = set()
     for path, source in found.files:
         seen.add(name_of(path))
-        yield _take_in(path, source, index)
+        yield _take_in(path, source, index, reading)
     blocked = [outcome.path for outcome in found.unreadable]
     for known in list(index.files()):
         gone = any(within(known.path, root) for root in found.roots) and known.path not in seen
@@ -110,7 +119,7 @@ def _walk(root: Path, found: Found) -> None:
                 found.files.append((file, name_of(file.relative_to(root.parent))))
 
 
-def _take_in(path: Path, source: str, index: Index) -> Outcome:
+def _take_in(path: Path, source: str, index: Index, reading: Reading | None) -> Outcome:
     name = name_of(path)
     try:
         state = path.stat()
@@ -121,12 +130,19 @@ def _take_in(path: Path, source: str, index: Index) -> Outcome:
         if known is not None and known.digest == now.digest:
             index.touch(now)
             return Outcome(path, "unchanged", known.passages)
-        passages = index.put(now, read(path, source))
+        passages = index.put(now, _watched(path, read(path, source), reading))
     except Unreadable as error:
         return Outcome(path, "unreadable", why=str(error))
     except OSError as error:
         return Outcome(path, "unreadable", why=error.strerror or str(error))
     return Outcome(path, "added" if known is None else "replaced", passages)
+
+
+def _watched(path: Path, documents: Iterator[Document], reading: Reading | None) -> Iterator[Document]:
+    for number, document in enumerate(documents):
+        if reading is not None:
+            reading(path, number)
+        yield document
 
 
 def _digest(path: Path) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import warnings
 from collections.abc import Iterator
 from pathlib import Path
@@ -49,6 +50,9 @@ def documents_in(content: bytes | str, title: str, source: str) -> Iterator[Docu
         import bs4
     except ImportError as error:
         raise Unreadable("genqa needs beautifulsoup4 to read HTML: pip install 'ravestate[genqa]'") from error
+    logging.getLogger("bs4.dammit").setLevel(
+        logging.ERROR
+    )  # it warns of characters, and does not say of which file
     with warnings.catch_warnings():
         warnings.simplefilter(
             "ignore"
