@@ -40,6 +40,10 @@ help: ## this list
 
 # ------------------------------------------------------------------------------------------------ to use
 
+.PHONY: demo
+demo: $(DONE)/demo $(DONE)/model ## set up and open a page with the agent, and what goes on inside it
+	@$(BIN)/ravestate board $(ARGS)
+
 .PHONY: chat
 chat: $(DONE)/chat $(DONE)/model ## set up and talk with the agent on the console
 	@$(BIN)/ravestate chat $(ARGS)
@@ -59,7 +63,7 @@ setup: $(DONE)/dev $(DONE)/model ## make the environment for development, run no
 	@:
 
 .PHONY: test
-test: setup $(DONE)/browser ## set up and run the whole test suite
+test: setup $(DONE)/browser $(DONE)/frontend ## set up and run the whole test suite
 	@$(BIN)/python -m pytest $(ARGS)
 
 .PHONY: check
@@ -132,9 +136,13 @@ $(DONE)/chat: $(DONE)/build pyproject.toml
 	@$(PIP) --no-build-isolation -e '.[chat]'
 	@touch $@
 
+$(DONE)/demo: $(DONE)/build pyproject.toml
+	@$(PIP) --no-build-isolation -e '.[chat,web]'
+	@touch $@ $(DONE)/chat
+
 $(DONE)/dev: $(DONE)/build pyproject.toml
 	@$(PIP) --no-build-isolation -e '.[chat,dev]'
-	@touch $@ $(DONE)/chat
+	@touch $@ $(DONE)/chat $(DONE)/demo
 
 $(DONE)/docs: $(DONE)/build pyproject.toml
 	@$(PIP) --no-build-isolation -e '.[chat,docs]'

@@ -1,5 +1,6 @@
 """``ravestate board``: what it serves, and what it says when it is used wrongly."""
 
+import json
 import re
 import signal
 import subprocess
@@ -8,6 +9,7 @@ from pathlib import Path
 
 import httpx
 import pytest
+from websockets.sync.client import connect
 
 from board.test_trace_file import recorded
 from ravestate.cli import main
@@ -73,6 +75,21 @@ def test_the_agent_and_the_board_are_served_at_the_printed_addresses(tmp_path: P
         assert command.end() == 0
 
 
+def test_the_complete_agent_is_served_if_nothing_is_named(tmp_path: Path) -> None:
+    command = Command("--without", "wildtalk")
+    try:
+        agent = command.address("agent")
+        command.address("board")
+        with connect(agent.replace("http", "ws", 1) + "ws") as socket:
+            socket.send(json.dumps({"type": "hello", "v": 1}))
+            socket.send(json.dumps({"type": "say", "id": "1", "text": "Hello"}))
+            frames = (json.loads(frame) for frame in socket)
+            answer = next(f for f in frames if f["type"] == "message" and f["from"] == "agent")
+            assert answer["text"]
+    finally:
+        assert command.end() == 0
+
+
 def test_a_recorded_trace_is_served_without_an_agent(tmp_path: Path) -> None:
     recorded(tmp_path / "trace.json")
     command = Command("--open", str(tmp_path / "trace.json"))
@@ -90,7 +107,8 @@ def test_a_recorded_trace_is_served_without_an_agent(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("arguments", "code", "words"),
     [
-        ([], 2, "name a module, an agent file, or a recorded trace"),
+        (["--without", "nlpp"], 2, "the agent has no such module; did you mean 'nlp'?"),
+        (["hibye", "--without", "nlp"], 2, "--without is for the complete agent"),
         (["hibye", "--open", "trace.json"], 2, "leave the modules out"),
         (["--open", "gone.json"], 1, "cannot read gone.json"),
         (["nothing_like_it"], 2, "there is no module 'nothing_like_it'"),

@@ -10,7 +10,7 @@ import pytest
 
 from cli.examples import HELLO, call, complaints, write
 from ravestate.cli import chat
-from ravestate.cli.chat import COMPLETE
+from ravestate.cli.complete import COMPLETE
 from ravestate.modules import BUILT_IN
 from ravestate.runtime import run as run_file
 
@@ -32,9 +32,9 @@ def started(monkeypatch: pytest.MonkeyPatch) -> list[tuple[list[str], dict[str, 
 def test_the_complete_agent_takes_part(started: Any, capsys: Capture) -> None:
     assert call(capsys, "chat") == (0, "", "")
     ((names, options),) = started
-    assert tuple(names) == chat.COMPLETE
+    assert names == ["conio", *COMPLETE]
     assert options["settings"] == {}
-    assert set(chat.COMPLETE) <= set(BUILT_IN)
+    assert set(names) <= set(BUILT_IN)
 
 
 def test_modules_and_settings_may_be_added_and_left_out(folder: Path, started: Any, capsys: Capture) -> None:
@@ -52,7 +52,7 @@ def test_modules_and_settings_may_be_added_and_left_out(folder: Path, started: A
     )
     ((names, options),) = started
     assert code == 0
-    assert names == [*(name for name in COMPLETE if name not in ("wildtalk", "fillers")), "hello"]
+    assert names == ["conio", *(name for name in COMPLETE if name not in ("wildtalk", "fillers")), "hello"]
     assert options["settings"] == {"hello": {"pause": 2}}
 
 
@@ -60,7 +60,8 @@ def test_only_what_takes_part_can_be_left_out(started: Any, capsys: Capture) -> 
     code, out, errors = call(capsys, "chat", "--without", "wildtlk")
     assert (code, out, started) == (2, "", [])
     assert (
-        errors == "ravestate chat: --without wildtlk: the chat has no such module; did you mean 'wildtalk'?\n"
+        errors
+        == "ravestate chat: --without wildtlk: the agent has no such module; did you mean 'wildtalk'?\n"
     )
 
 

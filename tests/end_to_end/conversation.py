@@ -9,7 +9,7 @@ from types import TracebackType
 from typing import Any
 
 from ravestate import modules
-from ravestate.cli.chat import COMPLETE
+from ravestate.cli.complete import COMPLETE
 from ravestate.engine.trace import Born, Set, Started
 from ravestate.modules import rawio, wildtalk
 from ravestate.modules.skill.wildtalk.backend import Message, Progress
@@ -57,7 +57,7 @@ class Conversation:
         without: Sequence[str] = (),
         seed: int = 0,
     ) -> None:
-        self.parts = [name for name in COMPLETE if name not in ("conio", *without)]
+        self.parts = [name for name in COMPLETE if name not in without]
         chosen: dict[str, dict[str, Any]] = {
             "idle": {"bored_after": 5.0},
             "ontology": {"path": folder / "memory.lbug"},

@@ -19,7 +19,7 @@ __all__ = ["main", "script"]
 COMMANDS = {
     "chat": "talk with the complete agent on the console",
     "run": "run an agent from modules or an agent file",
-    "board": "look into an agent while it runs, or into a recorded trace",
+    "board": "talk with an agent on a page and look inside it, or into a recorded trace",
     "check": "print an agent's faults, ties, rules that can never win, and signals nobody hears",
     "graph": "draw an agent's Signal-Rule-Slot diagram",
     "nlp": "show what the agent sees in a text: words, names, triples, yes or no, signals",

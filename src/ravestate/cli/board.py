@@ -1,4 +1,4 @@
-"""``ravestate board``: an agent on a page, and the debugger that looks into it; or a recorded trace without an agent."""
+"""``ravestate board``: an agent on a page, and the debugger that looks into it; or a recorded trace without one."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ravestate.cli import agent as agents
+from ravestate.cli import complete as whole
 from ravestate.errors import PlatformError
 
 if TYPE_CHECKING:
@@ -25,6 +26,7 @@ __all__ = ["add_arguments", "run"]
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The command's options."""
     agents.add_arguments(parser, modules="*")
+    whole.add_arguments(parser)
     parser.add_argument(
         "--open",
         dest="recording",
@@ -44,6 +46,8 @@ def run(options: argparse.Namespace) -> int:
     from ravestate.modules import webio
 
     named = bool(options.modules or options.file)
+    if options.without and (named or options.recording):
+        raise agents.UsageError("--without is for the complete agent, which is shown if nothing is named")
     if options.recording and named:
         raise agents.UsageError("--open shows a recording, which has no agent: leave the modules out")
     try:
@@ -52,13 +56,12 @@ def run(options: argparse.Namespace) -> int:
     except ModuleNotFoundError as error:
         raise PlatformError(f"the board needs {error.name}: pip install 'ravestate[web]'") from error
     recording = open_trace(Path(options.recording)) if options.recording else None
-    if recording is None and not named:
-        raise agents.UsageError("name a module, an agent file, or a recorded trace (--open trace.json)")
-    chosen = agents.load_agent(options, ["webio"])
+    talks = recording is None
+    chosen = agents.load_agent(options, ["webio", *(whole.complete(options) if talks and not named else ())])
     made = RecordedAgent(*chosen.modules, **chosen.options())
     title = getattr(made.settings[webio.module.name], "title", "Ravestate")
     beside = routes(made.recorders, recording, title)
-    asyncio.run(_serve(made, beside, INSIDE, recording is None, options.browser))
+    asyncio.run(_serve(made, beside, INSIDE, talks, options.browser))
     return 0
 
 
