@@ -108,6 +108,19 @@ def test_the_largest_is_not_the_second_largest(tmp_path: Path) -> None:
     answerer.close()
 
 
+def test_the_largest_is_found_behind_many_that_are_the_second_largest(tmp_path: Path) -> None:
+    path = tmp_path / "index.sqlite"
+    ranked = [f"The second largest pump of shed {number} is old." for number in range(60)]
+    put(
+        path,
+        *ranked,
+        "The largest pump, which everybody knows, stands in the cellar under the kitchen, by the door.",
+    )
+    answerer = Answerer(path, collection=False)
+    assert "cellar" in answerer.answer("Where is the largest pump?").text
+    answerer.close()
+
+
 def test_of_what_is_about_as_good_that_is_taken_which_says_least_besides(collection: Answerer) -> None:
     assert collection.answer("What is the life expectancy in Italy?").text.startswith(
         "The life expectancy of Italy is"

@@ -167,9 +167,10 @@ class Answerer:
         rare = [
             word for word in stem_of if standing(word) <= (COMMON_KIND if word in question.kinds else COMMON)
         ]
-        found = index.search(rare or list(stem_of), RETRIEVED)
+        others = _other_ranks(question.text)
+        found = index.search(rare or list(stem_of), RETRIEVED, others)
         # What has them all may be hidden behind many that have the rarest one twice.
-        found += [each for each in index.search_all(asked, RETRIEVED) if each not in found]
+        found += [each for each in index.search_all(asked, RETRIEVED, others) if each not in found]
 
         # What each word that is asked for weighs, and the forms in which it may stand in a passage.
         size = index.size()
@@ -185,10 +186,6 @@ class Answerer:
         covered = [
             sum(weight for weight, forms in wanted if any(form <= have for form in forms)) / total
             for have in map(set, self._stems(*(f"{each.title} {each.text} {each.hints}" for each in found)))
-        ]
-        covered = [
-            share / 2 if _ranks_otherwise(question.text, each.text) else share
-            for share, each in zip(covered, found, strict=True)
         ]
         # The sort is stable: BM25 decides between equals.
         order = sorted(
@@ -228,15 +225,15 @@ def _readable(found: Found) -> str:
 
 
 _SUPERLATIVE = re.compile(r"\b(?:\w{3,}est|most|least)\b", re.IGNORECASE)
-_RANK = re.compile(r"\b(?:second|third|fourth|fifth|sixth|seventh|eighth|ninth|tenth)\b", re.IGNORECASE)
+_RANKS = ("second", "third", "fourth", "fifth", "sixth", "seventh", "eighth", "ninth", "tenth")
 
 
-def _ranks_otherwise(question: str, text: str) -> bool:
-    """Whether the question is for the largest, and the passage is about the second largest; or the other way round."""
-    if not _SUPERLATIVE.search(question) or not _SUPERLATIVE.search(text):
-        return False
-    asked, said = ({rank.lower() for rank in _RANK.findall(where)} for where in (question, text))
-    return asked != said
+def _other_ranks(question: str) -> list[str]:
+    """Who asks for the largest does not ask for the second largest, nor the other way round: words that answers lack."""
+    if not _SUPERLATIVE.search(question):
+        return []
+    asked = set(question.lower().split())
+    return [rank for rank in _RANKS if rank not in asked]
 
 
 def _besides(text: str, asked: set[str]) -> int:

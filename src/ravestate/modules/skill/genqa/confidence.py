@@ -6,7 +6,7 @@ import math
 
 __all__ = ["confidence"]
 
-INTERCEPT, SCORE, COVERED = -6.975, 0.683, 5.616
+INTERCEPT, SCORE, COVERED = -6.419, 0.634, 5.337
 
 
 def confidence(score: float, covered: float) -> float:

@@ -162,19 +162,22 @@ class Index:
                 self._base.execute(f"SELECT term, doc FROM words WHERE term IN ({marks})", tuple(stems))
             )
 
-    def search(self, words: Sequence[str], limit: int) -> list[Found]:
+    def search(self, words: Sequence[str], limit: int, without: Sequence[str] = ()) -> list[Found]:
         """The passages that share most with `words` by BM25, the rarer the word the more, best first.
 
         Args:
             words: Any text; what could be taken for an operator of the query language is not.
             limit: So many passages at most.
+            without: Passages that have one of these words are left out.
         """
-        return self._matching(_any_of(words), limit)
+        return self._matching(_any_of(words), limit, without)
 
-    def search_all(self, groups: Sequence[Sequence[str]], limit: int) -> list[Found]:
+    def search_all(
+        self, groups: Sequence[Sequence[str]], limit: int, without: Sequence[str] = ()
+    ) -> list[Found]:
         """Like `search`, but only passages that have a word of each group."""
         each = [any_of for group in groups if (any_of := _any_of(group))]
-        return self._matching(" AND ".join(f"({any_of})" for any_of in each), limit)
+        return self._matching(" AND ".join(f"({any_of})" for any_of in each), limit, without)
 
     # ------------------------------------------------------------------------------------ writing
 
@@ -222,9 +225,11 @@ class Index:
 
     # ---------------------------------------------------------------------------------- internals
 
-    def _matching(self, query: str, limit: int) -> list[Found]:
+    def _matching(self, query: str, limit: int, without: Sequence[str]) -> list[Found]:
         if not query:
             return []
+        if without:
+            query = f"({query}) NOT ({_any_of(without)})"
         with self._lock, self._told():
             rows = self._base.execute(
                 f"SELECT rowid, title, text, hints FROM passages WHERE passages MATCH ? ORDER BY {_RANK} LIMIT ?",
