@@ -11,6 +11,8 @@ def test_example_1_small_talk_and_a_question_of_fact(tmp_path: Path) -> None:
     with Conversation(tmp_path) as talk:
         assert spoken_by(talk.say("will it rain today")) == ["wildtalk"]
         assert spoken_by(talk.say("know if it's gonna rain today")) == ["wildtalk"]
+        (answer,) = talk.say("when did it start to rain")
+        assert (answer.module, "billion years" in answer.text) == ("genqa", True)
         (answer,) = talk.say("what is the capital of peru")
         assert (answer.module, "Lima" in answer.text) == ("genqa", True)
 

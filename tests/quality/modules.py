@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+import re
 import tempfile
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
-from quality.measure import Reply
+from quality.measure import Reply, labelled
 from ravestate.modules import emotion
 from ravestate.modules import genqa as genqa_module
 from ravestate.modules.meta.nlp import QuestionWord, Settings
 from ravestate.modules.meta.nlp.analysis import Analysis, analyse
 from ravestate.modules.meta.nlp.pipeline import pipeline
+from ravestate.modules.skill.agentqa.life import Life
 from ravestate.modules.skill.agentqa.life_file import read_life
-from ravestate.modules.skill.agentqa.router import Match, router_of
+from ravestate.modules.skill.agentqa.router import Match, Router
 from ravestate.modules.skill.genqa.answering import Answerer
 
 
@@ -58,7 +61,21 @@ def agentqa(text: str) -> str:
     return {"abilities": "can_do"}.get(topic, topic)
 
 
-_router = cache(lambda: router_of(read_life()))
+def plain(text: str) -> str:
+    """The words of a text alone, for telling whether two are the same."""
+    return " ".join(re.findall(r"[a-z0-9]+", text.lower().replace("'", "")))
+
+
+@cache
+def _router() -> Router:
+    """A router that has not learnt from any sentence of the set: everyday questions stand among its examples, too."""
+    life, measured = read_life(), {plain(text) for text, _ in labelled("agentqa")}
+
+    def others(examples: tuple[str, ...]) -> tuple[str, ...]:
+        return tuple(example for example in examples if plain(example) not in measured)
+
+    topics = {name: replace(t, questions=others(t.questions)) for name, t in life.topics.items()}
+    return Router(Life(life.facts, topics, others(life.others)))
 
 
 def genqa(text: str) -> Reply | None:

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from quality import measure
+from quality import measure, modules
 from quality.measure import Fact, Reply
 
 LABELS = {
@@ -52,6 +52,20 @@ def test_a_set_is_large_enough_and_says_nothing_twice(name: str) -> None:
 @pytest.mark.parametrize("name", measure.LABELLED)
 def test_each_label_is_known_and_each_known_label_occurs(name: str) -> None:
     assert {label for _, label in measure.labelled(name)} == LABELS[name]
+
+
+def test_the_agents_questions_are_measured_without_their_likes_among_the_examples() -> None:
+    life = modules._router().life
+    examples = {modules.plain(q) for topic in life.topics.values() for q in topic.questions}
+    examples |= set(map(modules.plain, life.others))
+    assert len(examples) > 500
+    assert examples.isdisjoint(map(modules.plain, texts("agentqa")))
+
+
+def test_no_question_to_the_world_is_among_those_of_the_calibration() -> None:
+    calibration = Path(__file__).parents[1] / "modules" / "skill" / "genqa" / "questions.yaml"
+    known = set(map(modules.plain, measure.yaml.safe_load(calibration.read_text(encoding="utf-8"))))
+    assert known.isdisjoint(map(modules.plain, texts("genqa")))
 
 
 def test_half_of_the_agents_questions_are_for_others() -> None:
