@@ -170,6 +170,15 @@ def everything(one: socket.socket) -> bytes:
     return received
 
 
+def until_closed(one: socket.socket) -> bytes:
+    """What a WebSocket receives until it is closed, in order or not."""
+    received = b""
+    with contextlib.suppress(ConnectionResetError):
+        while b"\x88" not in received and (more := one.recv(1000)):
+            received += more
+    return received
+
+
 @contextlib.contextmanager
 def upgraded(served: Served) -> Iterator[socket.socket]:
     """A WebSocket by hand, with little room for what is not read."""
@@ -217,4 +226,21 @@ async def test_any_bytes_on_the_line_are_survived() -> None:
                     await reader.read()
                 writer.close()
         assert served.end() == 0
-        assert "Traceback" not in served.errors
+        assert served.errors == ""
+
+
+@on_loop
+async def test_frames_that_are_none_are_survived_and_do_not_fill_the_log() -> None:
+    no_text = b"\x81\x82\0\0\0\0\xff\xfe"
+    unmasked = b"\x81\x02{}"
+    reserved = b"\xf1\x80\0\0\0\0"
+    unknown = b"\x83\x80\0\0\0\0"
+    endless = b"\x81\xff" + (2**63 - 1).to_bytes(8, "big") + b"\0\0\0\0"
+    with Served() as served:
+        async with unharmed(served, megabytes=8):
+            for frame in (no_text, unmasked, reserved, unknown, endless):
+                with upgraded(served) as visit:
+                    visit.sendall(masked('{"type": "hello", "v": 1}') + frame)
+                    assert b"\x88" in await asyncio.to_thread(until_closed, visit)
+        assert served.end() == 0
+        assert served.errors == ""

@@ -67,13 +67,31 @@ async def test_a_bad_frame_later_is_told_and_the_conversation_goes_on() -> None:
         visit.say("x" * 10_001)
         assert (await visit.next())["text"] == 'say: "text" has at most 10,000 characters, not 10,001'
         visit.say("  \n ")
-        assert await visit.next() == {
-            "type": "error",
-            "code": "empty",
-            "text": 'say: "text" has nothing in it',
-        }
+        error = await visit.next()
+        assert (error["code"], error["text"]) == ("empty", 'say: "text" has nothing in it')
         visit.say("hello")
         assert await visit.messages(2) == ["user: hello", "agent: hello"]
+
+
+@in_virtual_time
+async def test_what_is_not_taken_is_named_so_that_it_is_not_said_again_and_again() -> None:
+    async with page() as app, Visit(app) as visit:
+        await visit.hello()
+        await visit.messages(1)
+        for text, code in (("x" * 10_001, "too-long"), ("\x85\x00", "empty")):
+            visit.say(text, id=f"it-is-{code}")
+            error = await visit.next()
+            assert (error["code"], error["id"]) == (code, f"it-is-{code}")
+
+
+@in_virtual_time
+async def test_the_longest_text_is_taken_however_json_writes_it() -> None:
+    text = "\U0001f98a" * 10_000  # twelve bytes each
+    async with page() as app, Visit(app) as visit:
+        await visit.hello()
+        await visit.messages(1)
+        visit.send(json.dumps({"type": "say", "id": "fox", "text": text}, ensure_ascii=True))
+        assert await visit.messages(2) == [f"user: {text}", f"agent: {text}"]
 
 
 @in_virtual_time

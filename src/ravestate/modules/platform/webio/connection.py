@@ -36,8 +36,8 @@ if TYPE_CHECKING:
 
 __all__ = ["LONGEST", "Connection"]
 
-LONGEST = 64 * 1024
-"""Bytes that a frame may have."""
+LONGEST = 128 * 1024
+"""Bytes that a frame may have: JSON may write a character with twelve, and the longest text has 10,000."""
 
 SILENT = 10.0
 """Seconds within which a client says hello."""
@@ -162,12 +162,12 @@ class Connection:
             try:
                 self._take(parse(text, CLIENT), session)
             except ProtocolError as error:
-                self._reply(Error(error.code, str(error)))
+                self._reply(Error(error.code, str(error), error.id))
 
     def _take(self, frame: Frame, session: Session) -> None:
         if isinstance(frame, Say):
             if not frame.text.strip():
-                raise ProtocolError("empty", 'say: "text" has nothing in it')
+                raise ProtocolError("empty", 'say: "text" has nothing in it', frame.id)
             session.hear(frame.id, frame.text)
         elif isinstance(frame, Ping):
             self._reply(Pong())

@@ -7,11 +7,13 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import logging
 import socket
 import struct
 from typing import Any, cast
 
 from uvicorn.protocols.http.h11_impl import H11Protocol
+from uvicorn.protocols.utils import ClientDisconnected
 from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
 
 __all__ = ["Door", "Line"]
@@ -24,6 +26,17 @@ STALLED = 20.0
 
 FULL = b"HTTP/1.1 503 Service Unavailable\r\nconnection: close\r\ncontent-type: text/plain\r\ncontent-length: %d\r\n\r\n%s"
 
+FOREIGN = (
+    "Invalid HTTP request received.",
+    "Invalid UTF-8 sequence received from client.",
+    "Unsupported upgrade request.",
+)
+"""What clients do wrong, in uvicorn's words. They are told; in the log anybody could write as much of it as they like."""
+
+log = logging.getLogger("ravestate.webio.door")
+log.setLevel(logging.WARNING)
+log.addFilter(lambda record: record.msg not in FOREIGN)
+
 
 class Door(H11Protocol):
     """HTTP: bounds the number of connections, in all and from one address, and does not wait for the silent.
@@ -35,6 +48,7 @@ class Door(H11Protocol):
 
     def __init__(self, *args: Any, per_address: int, most: int, **kwargs: Any) -> None:
         super().__init__(*args, **kwargs)
+        self.logger = log
         self._per_address = per_address
         self._most = most
         self._answered: object = None
@@ -74,6 +88,16 @@ class Line(WebSocketsSansIOProtocol):
     """WebSockets: drops who does not read, instead of keeping what is meant for them."""
 
     _stalled: asyncio.TimerHandle | None = None
+
+    def __init__(self, *args: Any, **kwargs: Any) -> None:
+        super().__init__(*args, **kwargs)
+        self.logger = log
+
+    async def send(self, message: Any) -> None:
+        """Send what the application has for the client; one that was closed for what it has sent is gone."""
+        if self.close_sent:
+            raise ClientDisconnected
+        await super().send(message)
 
     async def run_asgi(self) -> None:
         """Run the application; who has not closed its end some time after that is hung up on."""

@@ -57,11 +57,13 @@ class ProtocolError(PlatformError, ValueError):
 
     Attributes:
         code: One word for programs, e.g. ``malformed``; the message is for people.
+        id: Of the `Say` that is not taken, if it is one.
     """
 
-    def __init__(self, code: str, message: str) -> None:
+    def __init__(self, code: str, message: str, id: str | None = None) -> None:
         super().__init__(message)
         self.code = code
+        self.id = id
 
 
 # ------------------------------------------------------------------------------------ from a client
@@ -172,10 +174,11 @@ class Ended:
 
 @dataclass(frozen=True, slots=True)
 class Error:
-    """What was wrong with a frame or a connection."""
+    """What was wrong with a frame or a connection; `id` is that of the `Say` that was not taken, if it was one."""
 
     code: str
     text: str
+    id: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -258,7 +261,9 @@ def parse(text: str | bytes, frames: Mapping[str, type[Any]]) -> Any:
         raise ProtocolError("version", f'"v": {values["v"]}: this side speaks version {VERSION} only')
     if len(values.get("text", "")) > LONGEST_TEXT and kind is Say:
         raise ProtocolError(
-            "too-long", f'say: "text" has at most {LONGEST_TEXT:,} characters, not {len(values["text"]):,}'
+            "too-long",
+            f'say: "text" has at most {LONGEST_TEXT:,} characters, not {len(values["text"]):,}',
+            values["id"],
         )
     return kind(**values)
 
