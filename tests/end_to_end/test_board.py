@@ -445,6 +445,34 @@ async def test_the_keyboard_reaches_the_timeline(stage: Stage) -> None:
 
 
 @on_stage
+async def test_the_keyboard_reaches_every_rule_of_the_diagram(stage: Stage) -> None:
+    async with (
+        served(*(skill(number) for number in range(12))) as host,
+        stage.open(f"{host.address}board/", viewport={"width": 900, "height": 600}) as page,
+    ):
+        await page.get_by_role("button", name="Diagram").click()
+        await page.get_by_role("button", name="Unfold all").click()
+        await expect(page.locator(".node.rule")).to_have_count(52)
+        drawing = page.get_by_role("application", name="Signal-Rule-Slot diagram")
+        await drawing.focus()
+        place = page.locator("svg[role=application] > g")
+        before = await place.get_attribute("transform")
+        await page.keyboard.press("ArrowDown")
+        moved = await place.get_attribute("transform")
+        assert moved != before
+        await page.keyboard.press("+")
+        assert await place.get_attribute("transform") != moved
+        focused = page.locator(".node:focus")
+        for _ in range(15):
+            await page.keyboard.press("Tab")
+            await expect(focused).to_be_in_viewport()
+        rule = await focused.get_attribute("data-id")
+        assert rule is not None
+        await page.keyboard.press("Enter")
+        await expect(page.get_by_role("heading", name=rule.removeprefix("rule "))).to_be_visible()
+
+
+@on_stage
 async def test_a_thousand_events_a_second_do_not_stutter_and_hold_nobody_up(stage: Stage) -> None:
     async with served() as host, stage.open(f"{host.address}board/") as page:
         await expect(page.locator(".status")).to_have_text("live")
@@ -517,15 +545,21 @@ async def test_the_pictures_in_the_documentation(stage: Stage, tmp_path: Path) -
         await name(page, "keeper:small_talk").click()
         await page.locator("#cause").select_option(index=1)
         await expect(page.locator(".answer")).to_have_attribute("data-verdict", "outrun")
-        await page.evaluate("window.raveboard.view.fit(0, window.raveboard.now())")
-        await page.get_by_role("button", name="Zoom in").click()
         await page.get_by_role("button", name="All", exact=True).click()
+        await page.mouse.move(600, 600)
         await page.wait_for_timeout(200)
         await page.screenshot(path=folder / "board.png")
+        await page.get_by_role("button", name="Choose no rule").click()
         await page.get_by_role("button", name="Diagram").click()
         await expect(node(page, "rule keeper:answer")).to_be_visible()
-        await page.wait_for_timeout(900)
+        Cue.classified.clear()
+        await say(page, "By whom?")
+        await expect(node(page, "rule keeper:small_talk")).to_have_attribute("data-state", "waiting")
+        await page.get_by_role("tab", name="Rule").click()
+        await expect(page.get_by_text("waits for keeper:answer")).to_be_visible()
+        await page.wait_for_timeout(600)
         await page.screenshot(path=folder / "board-diagram.png")
+        Cue.classified.set()
     for picture in ("board.png", "board-diagram.png"):
         head = (folder / picture).read_bytes()[:24]
         assert struct.unpack(">II", head[16:24]) == (size["width"], size["height"])

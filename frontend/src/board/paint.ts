@@ -316,6 +316,7 @@ function paintSpikes(context: CanvasRenderingContext2D, scene: Scene, places: Ma
   const start = from(trace.spikes, view.left, (spike) => spike.time);
   const drawn = new Map<string, number>();
   const labels = new Map<string, Label>();
+  const ready: [Label, number][] = [];
   const special: Spike[] = [];
   for (let i = start; i < trace.spikes.length; i++) {
     const spike = trace.spikes[i] as Spike;
@@ -329,7 +330,7 @@ function paintSpikes(context: CanvasRenderingContext2D, scene: Scene, places: Ma
     if (own) {
       // it leaves room for what was said
     } else if (label === undefined || x > label.x) {
-      if (label !== undefined) paintLabel(context, scene, label, x - 10);
+      if (label !== undefined) ready.push([label, x - 10]);
       labels.set(lane, { spike, x, y });
     }
     if (scene.kin.has(spike.id) || spike.id === scene.spike) {
@@ -345,8 +346,9 @@ function paintSpikes(context: CanvasRenderingContext2D, scene: Scene, places: Ma
     drawn.set(lane, x);
     dot(context, x, y, 3.25, colour, c.paper);
   }
-  for (const label of labels.values()) paintLabel(context, scene, label, width - 6);
+  for (const label of labels.values()) ready.push([label, width - 6]);
   paintAncestry(context, scene, places);
+  for (const [label, end] of ready) paintLabel(context, scene, label, end);
   for (const spike of special) {
     const y = places.get(laneOf(spike));
     if (y === undefined) continue;
@@ -423,6 +425,10 @@ function paintLabel(context: CanvasRenderingContext2D, scene: Scene, label: Labe
   }
   if (right - left < 40) return;
   const text = shortened(context, spoken(spike.payload.text), right - left);
+  context.strokeStyle = laneOf(spike) === scene.rule ? scene.colours.selected : scene.colours.paper;
+  context.lineWidth = 3;
+  context.lineJoin = "round";
+  context.strokeText(text, left, y + 0.5); // it stands out from lines
   context.fillStyle = laneOf(spike) === OUTSIDE ? scene.colours.ink : scene.colours.quiet;
   context.fillText(text, left, y + 0.5);
 }

@@ -10,6 +10,8 @@ export interface Line {
   time?: number;
   /** The first of a conversation that follows on one that is lost. */
   anew?: boolean;
+  /** The server did not take it, and would not if it were said again. */
+  refused?: boolean;
 }
 
 /** A conversation as a window shows it: what was said, what is being said, and how the connection is. */
@@ -113,8 +115,10 @@ export class Conversation {
     } else if (frame.type === "message") this.#hear(frame);
     else if (frame.type === "piece") this.partial = this.partial.slice(0, frame.at) + frame.text;
     else if (frame.type === "typing") this.typing = frame.on;
-    else if (frame.type === "error") this.trouble = frame.text;
-    else if (frame.type === "ended") {
+    else if (frame.type === "error") {
+      this.trouble = frame.text;
+      if (frame.id !== undefined) this.#giveUp(frame.id);
+    } else if (frame.type === "ended") {
       this.ending = frame.text;
       this.#forget();
     }
@@ -140,10 +144,21 @@ export class Conversation {
     this.lines.splice(end >= 0 ? end : this.lines.length, 0, line);
     if (message.from === "agent") {
       this.partial = "";
-    } else {
-      this.#outbox = this.#outbox.filter((say) => say.id !== message.id);
-      this.#keep({ outbox: this.#outbox });
-    }
+    } else if (message.id !== undefined) this.#settle(message.id);
+  }
+
+  /** What was said under an id need not be said again. */
+  #settle(id: string): void {
+    this.#outbox = this.#outbox.filter((say) => say.id !== id);
+    this.#keep({ outbox: this.#outbox });
+  }
+
+  #giveUp(id: string): void {
+    this.#settle(id);
+    const line = this.lines.find((other) => other.key === id);
+    if (line === undefined) return;
+    line.refused = true;
+    line.time = Date.now();
   }
 
   /** A link to what shows this conversation from inside; the secrets are in its fragment, which is sent nowhere. */

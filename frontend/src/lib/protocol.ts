@@ -40,13 +40,19 @@ export type ServerFrame =
   | { type: "piece"; at: number; text: string }
   | { type: "typing"; on: boolean }
   | { type: "ended"; text: string }
-  | { type: "error"; code: string; text: string }
+  | { type: "error"; code: string; text: string; id?: string }
   | { type: "pong" };
 
 /** With which code the server closes a connection, where that says more than that it is closed. */
 export const CLOSED = { ended: 1000, tokenNeeded: 4401, notUnderstood: 4400 } as const;
 
 type Shape = Record<string, "string" | "number" | "boolean">;
+
+/** How many characters are taken at once, at least: those outside of the first plane count twice here. */
+export const LONGEST = 10_000;
+
+/** How many characters are taken at once, at least: what JavaScript counts as two may count as one. */
+export const LONGEST = 10_000;
 
 const SHAPES: Record<ServerFrame["type"], Shape> = {
   welcome: { v: "number", session: "string", resumed: "boolean", first: "number", agent: "string" },

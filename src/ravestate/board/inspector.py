@@ -32,7 +32,7 @@ __all__ = ["Inspector"]
 FRAME = 0.05
 """Seconds between two frames of records."""
 
-SHARE = 0.02
+SHARE = 0.015
 """The share of the loop's time that telling one inspector may take: a frame that took long is followed by a long pause."""
 
 OF_SPARE = 0.5

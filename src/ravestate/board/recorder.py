@@ -29,7 +29,7 @@ KEPT = 100_000
 BURST = 20_000
 """Records that are taken at once."""
 
-RATE = 4_000
+RATE = 3_000
 """Records a second that are taken after that of an agent that is busy all the time."""
 
 SPARE = 60_000
