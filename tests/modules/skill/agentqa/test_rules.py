@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import logging
+from collections.abc import AsyncGenerator, Sequence
 from datetime import date
 from pathlib import Path
 from typing import Any
@@ -11,9 +12,21 @@ from typing import Any
 import pytest
 
 import ravestate as rs
-from ravestate.modules import agenda, agentqa, idle, nlp, ontology, rawio, verbaliser
+from ravestate.modules import (
+    agenda,
+    agentqa,
+    emotion,
+    idle,
+    interloc,
+    nlp,
+    ontology,
+    rawio,
+    verbaliser,
+    wildtalk,
+)
 from ravestate.modules.meta.verbaliser.intents import Intent
 from ravestate.modules.skill.agentqa import Router
+from ravestate.modules.skill.wildtalk.backend import Message
 from ravestate.testing import Simulation, simulate
 
 pytestmark = pytest.mark.usefixtures("router")  # the model is loaded, and the topics are learnt
@@ -223,6 +236,34 @@ def test_it_takes_turns_with_others_who_use_the_silence(tmp_path: Path) -> None:
     with start(tmp_path, asker, bored=5.0) as sim:
         sim.advance(11.0)
         assert len(sim.said) == 2 and sim.said[0] == "What is your name?" != sim.said[1]
+
+
+def test_all_who_call_the_agent_by_its_name_have_it_from_its_life(tmp_path: Path) -> None:
+    told: list[str] = []
+
+    class Model:
+        async def load(self, progress: Any = None) -> None: ...
+
+        async def close(self) -> None: ...
+
+        async def stream(self, messages: Sequence[Message], **_: Any) -> AsyncGenerator[str, None]:
+            told.append(messages[0].text)
+            yield "Robin: Thank you."
+
+    listener = rs.Module("listener", requires=[nlp, emotion])
+    noticed: rs.Slot[tuple[str, ...]] = listener.slot("noticed", ())
+
+    @listener.rule(when=nlp.about_agent & emotion.shy, writes=noticed)
+    async def notice(ctx: rs.RuleContext) -> None:
+        ctx[noticed] = (*ctx[noticed], "praise")
+
+    with start(tmp_path, wildtalk, listener, own="facts: {name: Robin}") as sim:
+        assert sim.read(interloc.agent) == "Robin"
+        sim.put(wildtalk.model, Model())
+        sim.say("Robin is clever.")
+        assert sim.read(noticed) == ("praise",)
+        assert sim.said[0] == "Thank you."
+        assert "You are Robin," in told[0]
 
 
 def test_an_offer_that_another_goal_goes_before_comes_at_the_next_silence(tmp_path: Path) -> None:

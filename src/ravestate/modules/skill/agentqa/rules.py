@@ -9,7 +9,7 @@ from datetime import datetime, timedelta
 
 import ravestate as rs
 from ravestate.errors import PlatformError, RavestateError, RuleError
-from ravestate.modules import idle, nlp, ontology, rawio, verbaliser
+from ravestate.modules import idle, interloc, nlp, ontology, rawio, verbaliser
 from ravestate.modules._room import give_back
 from ravestate.modules.meta.verbaliser.intents import Intent
 
@@ -24,12 +24,14 @@ DAY = 86_400.0
 """Seconds."""
 
 
-@module.rule(when=rs.startup.detached(), writes=(life, today), detached=True)
+@module.rule(when=rs.startup.detached(), writes=(life, today, interloc.agent), detached=True)
 async def be_born(ctx: rs.RuleContext) -> None:
-    """Read who the agent is, and what day it is."""
+    """Read who the agent is, and what day it is; tell its name to whoever calls it by that."""
     settings: Settings = ctx.settings
     ctx[today] = datetime.now().astimezone().date()  # where the user is
-    ctx[life] = read_life(settings.life)
+    told = read_life(settings.life)
+    ctx[interloc.agent] = told.name
+    ctx[life] = told
 
 
 @module.rule(when=life.changed.detached(), background=True)

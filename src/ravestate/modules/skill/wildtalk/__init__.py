@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 from pydantic import ConfigDict, Field, SecretStr
 
 import ravestate as rs
-from ravestate.modules import rawio
+from ravestate.modules import interloc, rawio
 
 from .backend import Backend, Message
 from .history import EXAMPLES, PERSONA
@@ -43,8 +43,8 @@ class Settings(rs.Settings):
     read_timeout: Seconds = 60.0
     """Seconds of silence after which a model counts as stuck."""
 
-    name: str = "Ravestate"
-    """The agent's name."""
+    name: str | None = None
+    """What the agent is called, by default ``interloc.agent``."""
     persona: str = PERSONA
     """Who the agent is, told to the model; ``{name}`` stands for the name."""
     examples: tuple[tuple[str, str], ...] = EXAMPLES
@@ -68,7 +68,7 @@ class Settings(rs.Settings):
     """They have at most so many characters; four make about a token."""
 
 
-module = rs.Module("wildtalk", requires=[rawio], settings=Settings)
+module = rs.Module("wildtalk", requires=[rawio, interloc], settings=Settings)
 
 history: rs.Collection[Message] = module.collection("history")
 """What was said lately, by whomever, oldest first; the keys begin with the time."""

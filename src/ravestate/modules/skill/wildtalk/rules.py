@@ -7,7 +7,7 @@ from contextlib import aclosing
 
 import ravestate as rs
 from ravestate.errors import PlatformError
-from ravestate.modules import rawio
+from ravestate.modules import interloc, rawio
 
 from . import Settings, history, model, module, trouble
 from .backend import Backend, Message, Role
@@ -63,7 +63,7 @@ async def note(ctx: rs.RuleContext) -> None:
 
 @module.rule(
     when=rawio.input.changed,
-    reads=model,
+    reads=(model, interloc.agent),
     writes=(rawio.output, rawio.speaking, history, trouble),
     emits=rawio.piece,
     until=rawio.input.changed | rs.shutdown,  # a model that is still loading would hold up the end
@@ -89,7 +89,8 @@ async def chat(ctx: rs.RuleContext) -> rs.Resign | None:
         past.add(message)
     if list(ctx[history].values())[-1:] != [newest]:  # `hear` may come after
         past.add(newest)
-    utterance = Utterance(settings.name, sentences=settings.sentences)
+    name = settings.name or ctx[interloc.agent]
+    utterance = Utterance(name, sentences=settings.sentences)
     shown = ""
 
     def show() -> None:
@@ -102,7 +103,7 @@ async def chat(ctx: rs.RuleContext) -> rs.Resign | None:
         shown = utterance.text
 
     answer = backend.stream(
-        past.prompt(settings.persona, settings.name, settings.examples),
+        past.prompt(settings.persona, name, settings.examples),
         max_tokens=settings.max_tokens,
         temperature=settings.temperature,
         seed=ctx.random.getrandbits(31),
