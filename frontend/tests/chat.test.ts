@@ -20,6 +20,32 @@ test("Enter says it, Shift-Enter begins a line, and while a character is compose
   expect(field).toHaveProperty("value", "");
 });
 
+test("in Safari the Enter that ends a composition says nothing", async () => {
+  const onsay = vi.fn();
+  render(Composer, { agent: "Elske", closed: false, onsay });
+  const field = screen.getByLabelText("What you say to Elske");
+  await fireEvent.input(field, { target: { value: "東京" } });
+  await fireEvent.keyDown(field, { key: "Enter", keyCode: 229 });
+  expect(onsay).not.toHaveBeenCalled();
+});
+
+test("what is too long is neither cut nor said, and one is told why", async () => {
+  const onsay = vi.fn();
+  render(Composer, { agent: "Elske", closed: false, onsay });
+  const field = screen.getByLabelText("What you say to Elske");
+  const text = "x".repeat(10_001);
+  await fireEvent.input(field, { target: { value: text } });
+  await fireEvent.keyDown(field, { key: "Enter" });
+  expect(onsay).not.toHaveBeenCalled();
+  expect(field).toHaveProperty("value", text);
+  expect(screen.getByRole("alert").textContent).toContain("10,001 characters; at most 10,000");
+  expect(field.getAttribute("aria-invalid")).toBe("true");
+  await fireEvent.input(field, { target: { value: text.slice(1) } });
+  expect(screen.queryByRole("alert")).toBeNull();
+  await fireEvent.keyDown(field, { key: "Enter" });
+  expect(onsay).toHaveBeenCalledExactlyOnceWith(text.slice(1));
+});
+
 test("nothing is not said", async () => {
   const onsay = vi.fn();
   render(Composer, { agent: "Elske", closed: false, onsay });

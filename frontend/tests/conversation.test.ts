@@ -172,3 +172,33 @@ test("a browser that keeps nothing loses nothing but the reload", () => {
   expect(texts()).toEqual(["hello"]);
   refuse.mockRestore();
 });
+
+test("what the server does not take is not said again, and is seen not to be taken", () => {
+  TestSocket.newest.welcome("s");
+  conversation.say("\u0085");
+  const text = 'say: "text" has nothing in it';
+  TestSocket.newest.tell({ type: "error", code: "empty", text, id: lastSaid() });
+  expect(conversation.lines).toMatchObject([{ text: "\u0085", refused: true }]);
+  expect(conversation.trouble).toBe(text);
+  reload();
+  TestSocket.newest.welcome("s", true);
+  expect(TestSocket.newest.sent).toHaveLength(1);
+  expect(texts()).toEqual([]);
+});
+
+test("what was said before a reload is told apart from what comes after it", () => {
+  TestSocket.newest.welcome("s");
+  expect(conversation.recalling).toBe(false);
+  TestSocket.newest.tell(message(1, "agent", "Hi!"), message(2, "agent", "Welcome."));
+  reload();
+  TestSocket.newest.welcome("s", true, 2);
+  expect(conversation.recalling).toBe(true);
+  TestSocket.newest.tell(message(1, "agent", "Hi!"));
+  expect(conversation.recalling).toBe(true);
+  TestSocket.newest.tell(message(2, "agent", "Welcome."));
+  expect(conversation.recalling).toBe(false);
+  TestSocket.newest.lose();
+  vi.advanceTimersByTime(1000);
+  TestSocket.newest.welcome("s", true, 3); // one was missed, and is news
+  expect(conversation.recalling).toBe(false);
+});

@@ -43,9 +43,9 @@ export class TestSocket implements Socket {
     }
   }
 
-  welcome(session: string, resumed = false): void {
+  welcome(session: string, resumed = false, last = 0): void {
     this.open();
-    this.tell({ type: "welcome", v: 1, session, resumed, first: 1, agent: "Elske" });
+    this.tell({ type: "welcome", v: 1, session, resumed, first: 1, agent: "Elske", last });
   }
 
   lose(code = 1006): void {

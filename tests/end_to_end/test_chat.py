@@ -198,6 +198,70 @@ async def test_on_a_phone_everything_fits(stage: Stage) -> None:
 
 
 @on_stage
+async def test_on_a_phone_what_is_being_written_fits_too(stage: Stage) -> None:
+    async with stage.serve(host, title="Elske") as served, stage.open(served.address, **PHONE) as page:
+        await said(page, "Good evening.")
+        await page.get_by_label("What you say to Elske").fill("https://museum.example/" + "w" * 300)
+        send = await page.get_by_role("button", name="Send").bounding_box()
+        assert send is not None
+        assert send["x"] + send["width"] <= PHONE["viewport"]["width"]
+
+
+@on_stage
+async def test_what_is_too_long_is_not_cut(stage: Stage) -> None:
+    async with stage.serve(host, title="Elske") as served, stage.open(served.address) as page:
+        await said(page, "Good evening.")
+        field, text = page.get_by_label("What you say to Elske"), "word " * 2_000 + "end"
+        await field.fill(text)
+        await field.press("Enter")
+        await expect(page.get_by_role("alert")).to_have_text(
+            "10,003 characters; at most 10,000 can be said at once."
+        )
+        await expect(field).to_have_value(text)
+        await field.fill(text[5:])
+        await field.press("Enter")
+        await expect(page.locator(".agent").last).to_have_text(f"Elske: You said: {text[5:]}")
+
+
+@on_stage
+async def test_what_is_not_taken_is_not_said_for_ever(stage: Stage) -> None:
+    async with (
+        stage.serve(host, title="Elske") as served,
+        stage.open(served.address, complaints=True) as page,
+    ):
+        await said(page, "Good evening.")
+        await say(page, "\u0085")  # white space to the server alone
+        await expect(page.locator(".pending")).to_contain_text("(not taken)")
+        await say(page, "hello")
+        await expect(log(page)).to_contain_text("You said: hello")
+        served.drop()
+        await say(page, "again")
+        await expect(log(page)).to_contain_text("You said: again")
+        await page.reload()
+        await said(page, "Good evening.", "> hello", "You said: hello", "> again", "You said: again")
+
+
+@on_stage
+async def test_two_windows_of_one_conversation_show_the_same(stage: Stage) -> None:
+    async with stage.serve(host, title="Elske") as served, stage.open(served.address) as page:
+        await said(page, "Good evening.")
+        async with page.expect_popup() as opened:  # it begins with what this window remembers
+            await page.evaluate("window.open(location.href)")
+        other = await opened.value
+        await said(other, "Good evening.")
+        await say(page, "one")
+        await expect(log(other)).to_contain_text("You said: one")
+        await say(other, "two")
+        whole = ("Good evening.", "> one", "You said: one", "> two", "You said: two")
+        await said(page, *whole)
+        await said(other, *whole)
+        assert len(served.sessions) == 1
+        await page.close()
+        await say(other, "three")
+        await expect(log(other)).to_contain_text("You said: three")
+
+
+@on_stage
 async def test_with_the_keyboard_alone(stage: Stage) -> None:
     async with stage.serve(host, title="Elske") as served, stage.open(served.address) as page:
         await said(page, "Good evening.")

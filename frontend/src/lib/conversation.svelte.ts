@@ -21,6 +21,8 @@ export class Conversation {
   typing = $state(false);
   agent = $state("Ravestate");
   status: Status = $state("connecting");
+  /** What was said before the page was loaded is still coming: nothing that has to be read out. */
+  recalling = $state(false);
   /** Where one may look inside of the agent, with what it takes to be let in; empty: nowhere. */
   inside = $state("");
   /** Why it has ended, once it has. */
@@ -31,6 +33,7 @@ export class Conversation {
   #kept: Kept = recall();
   #outbox: Say[];
   #last = 0;
+  #recalled = 0;
   #anew = false;
   #epoch = 0;
   #connection: Connection;
@@ -108,6 +111,8 @@ export class Conversation {
         this.#last = 0;
         this.#epoch += 1;
       }
+      this.#recalled = frame.resumed && this.#last === 0 ? (frame.last ?? 0) : 0;
+      this.recalling = this.#recalled > 0;
       this.#keep({ session: frame.session });
       this.inside = frame.inside === undefined ? "" : this.#linkInside(frame.inside);
       this.partial = "";
@@ -127,6 +132,7 @@ export class Conversation {
   #hear(message: Message): void {
     if (message.n <= this.#last) return;
     this.#last = message.n;
+    if (message.n >= this.#recalled) this.recalling = false;
     const line: Line = {
       key: message.id ?? `${this.#epoch}/${message.n}`,
       from: message.from,

@@ -32,6 +32,8 @@ export interface Welcome {
   agent: string;
   /** Where one may look inside of the agent, relative to the page. */
   inside?: string;
+  /** The number of the newest message. */
+  last?: number;
 }
 
 export type ServerFrame =
@@ -47,9 +49,6 @@ export type ServerFrame =
 export const CLOSED = { ended: 1000, tokenNeeded: 4401, notUnderstood: 4400 } as const;
 
 type Shape = Record<string, "string" | "number" | "boolean">;
-
-/** How many characters are taken at once, at least: those outside of the first plane count twice here. */
-export const LONGEST = 10_000;
 
 /** How many characters are taken at once, at least: what JavaScript counts as two may count as one. */
 export const LONGEST = 10_000;

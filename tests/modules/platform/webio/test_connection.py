@@ -214,6 +214,7 @@ def test_frames_on_the_wire_are_what_the_reference_shows() -> None:
                 "resumed": False,
                 "first": 1,
                 "agent": "Elske",
+                "last": 0,
             }
             hello = await visit.next()
             visit.say("hi", id="a1")

@@ -76,6 +76,8 @@ async def test_a_foreign_origin_is_refused() -> None:
         async with served.connect(origin=f"http://{served.host}") as visit:
             await hello(visit)
             await talk(visit, ["hello"])
+        assert served.end() == 0
+        assert served.errors == ""
 
 
 @on_loop

@@ -108,8 +108,8 @@ class Connection:
         self._sessions.enter(session, self)
         try:
             last = hello.last if resumed and hello.last <= session.history.last else 0
-            first = session.history.first
-            await self._send(Welcome(VERSION, session.id, resumed, first, self._agent, self._inside))
+            first, newest = session.history.first, session.history.last
+            await self._send(Welcome(VERSION, session.id, resumed, first, self._agent, self._inside, newest))
             tasks = [
                 asyncio.create_task(self._read(session)),
                 asyncio.create_task(self._write(session, max(last, first - 1))),

@@ -98,6 +98,8 @@ class Line(WebSocketsSansIOProtocol):
         if self.close_sent:
             raise ClientDisconnected
         await super().send(message)
+        if self.close_sent:
+            self.handshake_complete = True  # also where it was refused, which uvicorn takes for an oversight
 
     async def run_asgi(self) -> None:
         """Run the application; who has not closed its end some time after that is hung up on."""

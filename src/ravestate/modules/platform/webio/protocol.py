@@ -120,6 +120,7 @@ class Welcome:
         first: The number of the oldest message that is kept.
         agent: What the agent is called.
         inside: Where its user may look inside of it, relative to the page; None: nowhere.
+        last: The number of the newest message; 0 if nothing was said yet.
     """
 
     v: int
@@ -128,6 +129,7 @@ class Welcome:
     first: int
     agent: str
     inside: str | None = None
+    last: int = 0
 
 
 @dataclass(frozen=True, slots=True)
