@@ -167,6 +167,28 @@ def test_without_an_answer_it_resigns(pieces: tuple[str, ...], text: str) -> Non
     assert not sim.failures
 
 
+@pytest.mark.parametrize("text", ["\x00", "<|im_end|>", "\x1b[31m"])
+def test_the_model_is_not_asked_for_an_answer_to_nothing(text: str) -> None:
+    model = Model("Fine.")
+    sim = talk(model)
+    sim.say("Hello!")
+    sim.advance(2.0)
+    sim.say(text)
+    sim.advance(2.0)
+    assert len(model.asked) == 1
+    assert sim.said == ["Fine."]
+    sim.__exit__(None, None, None)
+
+
+def test_the_beginning_of_a_long_utterance_is_told_once() -> None:
+    model = Model("Fine.")
+    sim = talk(model)
+    sim.say("Hear me: " + "x" * 100_000)
+    sim.advance(2.0)
+    assert model.asked[0][-1].text.startswith("Hear me: xxx")
+    sim.__exit__(None, None, None)
+
+
 @pytest.mark.parametrize(("pieces", "said"), [((), "Not now."), (("Hel",), "Hel…")])
 def test_of_a_model_that_fails_the_log_tells_once_and_the_conversation_goes_on(
     pieces: tuple[str, ...], said: str, caplog: pytest.LogCaptureFixture

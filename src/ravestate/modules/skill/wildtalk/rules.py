@@ -25,6 +25,9 @@ INTERRUPTED = "…"
 KEPT = 64
 """Messages that are remembered at most; the settings say how many of them the model is told."""
 
+LONGEST = 20_000
+"""Characters of a message that are remembered: an utterance of megabytes is cut."""
+
 
 @module.rule(when=rs.startup, writes=(model, trouble))
 async def choose_model(ctx: rs.RuleContext) -> None:
@@ -84,12 +87,15 @@ async def chat(ctx: rs.RuleContext) -> rs.Resign | None:
         return None
 
     past = History(turns=settings.history_turns, characters=settings.history_characters)
-    newest = Message("user", heard)
+    newest = Message("user", heard[:LONGEST])
     for message in ctx[history].values():
         past.add(message)
     if list(ctx[history].values())[-1:] != [newest]:  # `hear` may come after
         past.add(newest)
     name = settings.name or ctx[interloc.agent]
+    told = past.prompt(settings.persona, name, settings.examples)
+    if told[-1].role != "user":
+        return rs.Resign("nothing was said but control characters, or marks of a template")
     utterance = Utterance(name, sentences=settings.sentences)
     shown = ""
 
@@ -103,7 +109,7 @@ async def chat(ctx: rs.RuleContext) -> rs.Resign | None:
         shown = utterance.text
 
     answer = backend.stream(
-        past.prompt(settings.persona, name, settings.examples),
+        told,
         max_tokens=settings.max_tokens,
         temperature=settings.temperature,
         seed=ctx.random.getrandbits(31),
@@ -146,12 +152,12 @@ def tell(ctx: rs.RuleContext, error: PlatformError) -> None:
 
 
 def remember(ctx: rs.RuleContext, role: Role, text: str) -> None:
-    """Add to the history what was said, an utterance of megabytes cut; forget what is older than is kept.
+    """Add to the history what was said; forget what is older than is kept.
 
     Each message has a key of its own, so that none is lost when several are said at once (L13).
     """
     items = ctx[history]
-    items.add(f"{ctx.now:.6f}/{ctx.random.getrandbits(32):08x}", Message(role, text[:20_000]))
+    items.add(f"{ctx.now:.6f}/{ctx.random.getrandbits(32):08x}", Message(role, text[:LONGEST]))
     for oldest in list(items)[:-KEPT]:
         items.remove(oldest)
 
