@@ -14,13 +14,13 @@ from ravestate.modules._folders import user_folder
     [
         ("data", "linux", {"XDG_DATA_HOME": "/d", "XDG_STATE_HOME": "/s"}, "/d/ravestate"),
         ("state", "linux", {"XDG_DATA_HOME": "/d", "XDG_STATE_HOME": "/s"}, "/s/ravestate"),
-        ("data", "linux", {"XDG_DATA_HOME": ""}, "/home/ada/.local/share/ravestate"),
-        ("data", "linux", {"XDG_DATA_HOME": "not/absolute"}, "/home/ada/.local/share/ravestate"),
-        ("state", "linux", {"XDG_STATE_HOME": "not/absolute"}, "/home/ada/.local/state/ravestate"),
-        ("data", "darwin", {"XDG_DATA_HOME": "/d"}, "/home/ada/Library/Application Support/ravestate"),
-        ("state", "darwin", {"XDG_STATE_HOME": "/s"}, "/home/ada/Library/Application Support/ravestate"),
+        ("data", "linux", {"XDG_DATA_HOME": ""}, "/ada/.local/share/ravestate"),
+        ("data", "linux", {"XDG_DATA_HOME": "not/absolute"}, "/ada/.local/share/ravestate"),
+        ("state", "linux", {"XDG_STATE_HOME": "not/absolute"}, "/ada/.local/state/ravestate"),
+        ("data", "darwin", {"XDG_DATA_HOME": "/d"}, "/ada/Library/Application Support/ravestate"),
+        ("state", "darwin", {"XDG_STATE_HOME": "/s"}, "/ada/Library/Application Support/ravestate"),
         ("data", "win32", {"LOCALAPPDATA": "/local"}, "/local/ravestate"),
-        ("state", "win32", {"LOCALAPPDATA": ""}, "/home/ada/AppData/Local/ravestate"),
+        ("state", "win32", {"LOCALAPPDATA": ""}, "/ada/AppData/Local/ravestate"),
     ],
 )
 def test_the_folder_is_that_of_the_platform(
@@ -31,7 +31,7 @@ def test_the_folder_is_that_of_the_platform(
     expected: str,
 ) -> None:
     monkeypatch.setattr(sys, "platform", platform)
-    monkeypatch.setenv("HOME", "/home/ada")
+    monkeypatch.setenv("HOME", "/ada")
     for name, value in variables.items():
         monkeypatch.setenv(name, value)
     assert user_folder(kind) == Path(expected)
