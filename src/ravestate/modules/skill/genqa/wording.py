@@ -37,6 +37,9 @@ _NUMBER_WORDS = """
     one two three four five six seven eight nine ten eleven twelve dozen twenty thirty forty fifty hundred thousand million
     billion trillion half twice first second third
 """
+_DENIAL = re.compile(
+    r"\b(?:not|no|never|none|nobody|nothing|neither|nor|without|cannot)\b|n['’]t\b", re.IGNORECASE
+)
 _PLAIN = frozenset(_PLAIN_WORDS.split())
 _NUMBERS = frozenset(_NUMBER_WORDS.split())
 
@@ -101,7 +104,8 @@ def prompt(question: str, passages: Sequence[str]) -> list[tuple[str, str]]:
 def is_supported(text: str, passages: Sequence[str], question: str) -> bool:
     """Whether `text` says nothing that `passages` do not: their numbers, their names, mostly their words.
 
-    Numbers must stand in the passages, names in the passages or the question.
+    Numbers must stand in the passages, names in the passages or the question; and it denies something if, and only if,
+    the first passage, which is the answer, does.
 
     Example:
         >>> told = ["The capital of Peru is Lima."]
@@ -115,7 +119,7 @@ def is_supported(text: str, passages: Sequence[str], question: str) -> bool:
     known = known_told | {word.lower() for word in asked}
     said = _words(text)
     content = [word for word in said if word.lower() not in _PLAIN]
-    if not content:
+    if not content or bool(_DENIAL.search(text)) != bool(_DENIAL.search(passages[0])):
         return False
     for word in content:
         lower = word.lower()
