@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 
 import ravestate as rs
+from ravestate.errors import PlatformError
 from ravestate.modules import conio, interloc, rawio
 from ravestate.modules.platform.conio.console import Console
 from ravestate.testing import simulate
@@ -147,6 +148,15 @@ def test_what_never_becomes_an_utterance_is_ended(keys: Keys) -> None:
         keys.type("hello")
         sim.settle()
         assert keys.log == ["I, I…", "end"]
+
+
+def test_an_agent_whose_console_cannot_be_opened_ends_and_says_why(monkeypatch: pytest.MonkeyPatch) -> None:
+    def missing(**_: Any) -> Console:
+        raise PlatformError("conio on a terminal needs prompt_toolkit")
+
+    monkeypatch.setattr(conio.rules, "Console", missing)
+    with pytest.raises(PlatformError, match="needs prompt_toolkit"):
+        rs.run(conio)
 
 
 def test_lines_of_a_pipe_are_answered_one_by_one(keys: Keys) -> None:

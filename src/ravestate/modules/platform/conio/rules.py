@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 
 import ravestate as rs
+from ravestate.errors import PlatformError
 from ravestate.modules import interloc, rawio
 
 from . import module, screen
@@ -23,7 +24,12 @@ USER = "conio"
 async def listen(ctx: rs.RuleContext) -> None:
     """Hear each line that is typed; end the agent when there are no more."""
     await asyncio.to_thread(prepare)
-    console = Console(prompt=ctx.settings.prompt, history=history_file() if ctx.settings.history else None)
+    history = history_file() if ctx.settings.history else None
+    try:
+        console = Console(prompt=ctx.settings.prompt, history=history)
+    except PlatformError as error:
+        ctx.stop(error)  # else the agent would run on, and nobody could talk with it
+        return
     async with console:
         ctx[screen] = console
         ctx[interloc.users].add(USER, ctx.settings.name)
