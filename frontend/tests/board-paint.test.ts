@@ -1,5 +1,5 @@
 import { expect, test } from "vitest";
-import { type Colours, paint, type Scene } from "../src/board/paint";
+import { AXIS, at, type Colours, paint, type Scene } from "../src/board/paint";
 import type { TraceRecord } from "../src/board/protocol";
 import { Trace } from "../src/board/trace";
 import { View } from "../src/board/view";
@@ -92,4 +92,11 @@ test("a bar that waits says for whom, if it is wide enough", () => {
   ];
   expect(words(waits)).toEqual(["waits for m:answer"]);
   expect(words(waits, { now: 1.2 })).toEqual([]);
+});
+
+test("what is pointed at is what was said, and what the context raises where that is drawn, below it", () => {
+  const both = scene([born(1, 1, '"Who is there?"'), born(2, 1.01, "true", "core:activity:true")]);
+  expect(at(both, 100, AXIS + 13).spike?.id).toBe(1);
+  expect(at(both, 100, AXIS + 22).spike?.id).toBe(2);
+  expect(at(both, 300, AXIS + 13)).toEqual({});
 });

@@ -469,15 +469,16 @@ export function at(scene: Scene, x: number, y: number): { spike?: Spike; bar?: B
   const { view, width, trace } = scene;
   const reach = (7 / width) * view.span;
   const time = view.time(x, width);
+  const middle = AXIS + index * LANE - scene.scroll + LANE / 2;
+  // The dots of the context itself are drawn below the others.
+  const below = name === OUTSIDE && y > middle + OWN / 2;
+  const away = (spike: Spike) => Math.abs(spike.time - time) + (isOwn(spike) === below ? 0 : reach);
   let best: Spike | undefined;
   for (let i = from(trace.spikes, time - reach, (spike) => spike.time); i < trace.spikes.length; i++) {
     const spike = trace.spikes[i] as Spike;
     if (spike.time > time + reach) break;
-    if (laneOf(spike) === name && Math.abs(spike.time - time) <= Math.abs((best?.time ?? Infinity) - time)) {
-      best = spike;
-    }
+    if (laneOf(spike) === name && (best === undefined || away(spike) <= away(best))) best = spike;
   }
-  const middle = AXIS + index * LANE - scene.scroll + LANE / 2;
   const lane = trace.lanes.get(name);
   if (best !== undefined && (lane === undefined || Math.abs(y - middle) < 7)) return { spike: best };
   if (lane === undefined) return {};

@@ -29,13 +29,13 @@ KEPT = 100_000
 BURST = 20_000
 """Records that are taken at once."""
 
-RATE = 3_000
+RATE = 2_000
 """Records a second that are taken after that of an agent that is busy all the time."""
 
 SPARE = 60_000
 """Records a second that are taken besides, times the share of its time that the process has to spare."""
 
-PAUSE = 0.05
+PAUSE = 0.1
 """Seconds for which a recorder that has taken too much does not listen."""
 
 
