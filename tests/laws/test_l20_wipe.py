@@ -89,6 +89,32 @@ def test_a_running_rule_that_stands_on_a_descendant_is_cancelled(play: Any) -> N
         assert (ends, written(sim, out)) == (["2"], [])
 
 
+def test_what_came_from_a_cause_that_nobody_holds_any_more_is_withdrawn(play: Any) -> None:
+    m = rs.Module("m")
+    i, x, never, out = m.signal("i"), m.signal("x"), m.signal("never", input=True), output(m)
+    emitter(m, "cause", i, x)
+    writer(m, "both", x & never, out)
+    with play(m) as sim:
+        sim.emit(i)
+        sim.wipe(i)
+        assert sim.snapshot()["spikes"] == []
+        sim.emit(never)
+        assert written(sim, out) == []
+
+
+def test_who_stands_on_the_rest_may_answer_if_the_wiped_rule_has_said_nothing(play: Any) -> None:
+    m = rs.Module("m")
+    i, x, out, ends = m.signal("i"), m.signal("x"), output(m), list[str]()
+    emitter(m, "cause", i, x)
+    interrupted(m, x, out, ends)
+    writer(m, "otherwise", i, out)
+    with play(m) as sim:
+        sim.emit(i)
+        sim.advance(2.0)
+        sim.wipe(x)
+        assert (ends, written(sim, out)) == (["2"], ["otherwise"])
+
+
 def test_a_rule_that_runs_for_another_cause_goes_on(play: Any) -> None:
     m = rs.Module("m")
     i, j, out, ends = m.signal("i"), m.signal("j"), output(m), list[str]()

@@ -226,3 +226,34 @@ def test_every_run_that_watches_is_ended(play: Any) -> None:
         sim.emit(i)
         sim.advance(1.0)
         assert len(outcomes(sim)) == 3
+
+
+@pytest.mark.parametrize("held", [True, False])
+def test_what_is_wiped_before_it_is_old_enough_interrupts_nobody(play: Any, held: bool) -> None:
+    m, i, stop, hush, _, out = talker(lambda stop, hush, mood: stop.min_age(2.0))
+    if held:
+        hearer(m, "hold", stop & hush, stop, [])
+    with play(m) as sim:
+        sim.emit(i)
+        sim.emit(stop)
+        sim.advance(1.0)
+        sim.wipe(stop)
+        sim.advance(20.0)
+        assert outcomes(sim)[-1] == ("talk", "done")
+        assert len(written(sim, out)) == 10
+        assert sim.snapshot()["spikes"] == []
+
+
+def test_what_is_superseded_before_it_is_old_enough_interrupts_nobody(play: Any) -> None:
+    m = rs.Module("m")
+    i, gesture, out = m.signal("i"), m.signal("gesture", keep="latest"), output(m)
+    writer(m, "talk", i, out, after=4.0, until=gesture.min_age(2.0))
+    with play(m) as sim:
+        sim.emit(i)
+        sim.emit(gesture)
+        sim.advance(1.5)
+        sim.emit(gesture)
+        sim.advance(1.5)
+        assert outcomes(sim) == []
+        sim.advance(1.0)
+        assert (outcomes(sim), written(sim, out)) == ([("talk", "interrupted")], [])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import math
 from typing import Any
 
 import pytest
@@ -59,6 +60,12 @@ def test_who_sleeps_does_not_sleep_the_time_for_which_it_stands(bench: Bench) ->
     bench.pass_by(10.0)
     assert bench.woken == [("b", 1.5), ("a", 2.0)]
     assert bench.clock.now() == 10.5
+    bench.loop.close()
+
+
+def test_nobody_sleeps_for_nan_seconds(bench: Bench) -> None:
+    with pytest.raises(ValueError, match="nan"):
+        bench.loop.run_until_complete(bench.clock.sleep(math.nan))
     bench.loop.close()
 
 

@@ -518,6 +518,131 @@ def test_a_rule_for_shutdown_may_be_kept_waiting_first() -> None:
     assert ending.told == ["farewell at 1 s"]
 
 
+def test_a_farewell_is_not_cut_off_when_shutdown_interrupts_another() -> None:
+    ending = Ending()
+
+    @ending.rule(ending.go, until=rs.shutdown)
+    async def long(ctx: rs.RuleContext) -> None:
+        await ctx.sleep(3600)
+
+    @ending.rule(rs.shutdown)
+    async def farewell(ctx: rs.RuleContext) -> None:
+        await ctx.sleep(1)
+        ending.told.append("farewell")
+
+    with simulate(ending.module) as sim:
+        sim.emit(ending.go)
+    assert ending.told == ["farewell"]
+
+
+def test_a_farewell_is_not_cut_off_when_it_has_waited_longer_than_what_runs() -> None:
+    ending = Ending()
+    never = ending.module.signal("never")
+
+    @ending.rule(ending.go & rs.shutdown, emits=never)
+    async def farewell(ctx: rs.RuleContext) -> None:
+        await ctx.sleep(1)
+        ending.told.append("farewell")
+
+    @ending.rule(ending.then)
+    async def long(ctx: rs.RuleContext) -> None:
+        await ctx.sleep(3600)
+
+    with simulate(ending.module) as sim:
+        sim.emit(ending.go)
+        sim.emit(ending.then)
+    assert ending.told == ["farewell"]
+
+
+def test_the_end_waits_for_no_loop_in_the_background() -> None:
+    ending = Ending()
+
+    @ending.rule(rs.startup | ending.go, emits=ending.go, detached=True, background=True)
+    async def tick(ctx: rs.RuleContext) -> None:
+        await ctx.sleep(0.1)
+        ctx.emit(ending.go)
+
+    @ending.rule(rs.shutdown)
+    async def farewell(ctx: rs.RuleContext) -> None:
+        await ctx.sleep(0.35)
+        ending.told.append("farewell")
+
+    @ending.rule(rs.startup)
+    async def long(ctx: rs.RuleContext) -> None:
+        try:
+            await ctx.sleep(3600)
+        finally:
+            ending.told.append(f"{ctx.now:g} s")
+
+    with simulate(ending.module) as sim:
+        sim.advance(1)
+    assert ending.told == ["farewell", "1.35 s"]
+
+
+def test_nothing_begins_while_the_last_clean_up(caplog: pytest.LogCaptureFixture) -> None:
+    ending = Ending()
+
+    @ending.rule(ending.go, emits=ending.then)
+    async def long(ctx: rs.RuleContext) -> None:
+        try:
+            await ctx.sleep(3600)
+        finally:
+            ctx.emit(ending.then)
+            await ctx.sleep(1)
+            ending.told.append("cleaned up")
+
+    @ending.rule(ending.then)
+    async def too_late(ctx: rs.RuleContext) -> None:
+        ending.told.append("begun")
+        await ctx.sleep(3600)
+
+    with simulate(ending.module) as sim:
+        sim.emit(ending.go)
+    assert ending.told == ["cleaned up"]
+    assert not caplog.records
+
+
+@on_loop
+async def test_the_others_go_on_when_a_rule_interrupts_the_process() -> None:
+    ending = Ending()
+
+    @ending.rule(ending.go)
+    async def interrupt(ctx: rs.RuleContext) -> None:
+        raise KeyboardInterrupt
+
+    @ending.rule(ending.go)
+    async def other(ctx: rs.RuleContext) -> None:
+        ending.told.append("other")
+
+    async with rs.Context(ending.module) as context:
+        await context.quiet()
+        runner = context._runner  # pyright: ignore[reportPrivateUsage]
+        assert runner is not None
+        context.emit(ending.go)
+        with pytest.raises(KeyboardInterrupt):
+            runner._pump()  # as the loop does, which ends by it
+        await context.quiet()
+        assert ending.told == ["other"]
+
+
+@on_loop
+async def test_an_interruption_leaves_no_timer_behind() -> None:
+    ending = Ending()
+
+    @ending.rule(ending.go, until=ending.then)
+    async def long(ctx: rs.RuleContext) -> None:
+        await ctx.sleep(3600)
+
+    async with rs.Context(ending.module) as context:
+        runner = context._runner  # pyright: ignore[reportPrivateUsage]
+        assert runner is not None
+        context.emit(ending.go)
+        await turns(3)
+        context.emit(ending.then)
+        await context.quiet()
+        assert not runner._patience  # pyright: ignore[reportPrivateUsage]
+
+
 def test_shutdown_is_given_so_much_time_and_no_more() -> None:
     ending = Ending()
 

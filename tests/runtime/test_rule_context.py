@@ -1,5 +1,6 @@
 """What a rule function is given: views, acts, and refusals that say what to write."""
 
+import contextlib
 import re
 from collections.abc import Callable
 from typing import Any
@@ -8,6 +9,7 @@ import pytest
 
 import ravestate as rs
 from ravestate.testing import simulate
+from ravestate.testing.virtual_loop import VirtualLoop
 
 HERE = re.escape(__file__)
 
@@ -210,6 +212,62 @@ def test_a_view_of_a_collection_does_not_forget_what_another_wrote(scene: Scene)
 
     scene.run(act, writes=scene.people)
     assert scene.outcome() == {"a": 1, "b": 2}
+
+
+def test_a_collection_may_be_changed_while_one_goes_through_it(scene: Scene) -> None:
+    def act(ctx: rs.RuleContext) -> Any:
+        people = ctx[scene.people]
+        for key in "abc":
+            people.add(key, key.upper())
+        passed = []
+        for key, item in people.items():
+            passed.append(item)
+            people.remove("c")
+            people.add(f"{key}{key}", item)
+        return passed, list(people), list(people.values()), len(people)
+
+    scene.run(act, writes=scene.people)
+    assert scene.outcome() == (["A", "B", "C"], ["a", "b", "aa", "bb", "cc"], ["A", "B", "A", "B", "C"], 5)
+
+
+def test_who_has_read_a_collection_does_not_see_what_is_changed_later(scene: Scene) -> None:
+    seen: list[Any] = []
+
+    @scene.module.rule(when=scene.people.added, reads=scene.people)
+    async def look(ctx: rs.RuleContext) -> None:
+        before = dict(ctx[scene.people])
+        await ctx.sleep(10)
+        seen.append((before, dict(ctx[scene.people])))
+
+    async def fill(ctx: rs.RuleContext) -> None:
+        for key in "ab":
+            ctx[scene.people].add(key, key.upper())
+            await ctx.sleep(1)
+
+    scene.module.rule(when=scene.go, writes=scene.people)(fill)
+
+    async def run() -> None:
+        async with rs.Context(scene.module) as context:  # which keeps no trace
+            context.emit(scene.go)
+            await context.quiet()
+            before = context.read(scene.people)
+            context.put(scene.people, {})
+            await context.quiet()
+            seen.append(dict(before))
+
+    with contextlib.closing(VirtualLoop()) as loop:
+        loop.run_until_complete(run())
+    assert seen == [({"a": "A"},) * 2, ({"a": "A", "b": "B"},) * 2, {"a": "A", "b": "B"}]
+
+
+@pytest.mark.parametrize("value", [1, "yes", [], 0])
+def test_a_flag_is_read_as_it_is_written(scene: Scene, value: Any) -> None:
+    def act(ctx: rs.RuleContext) -> Any:
+        ctx[scene.lit] = value
+        return ctx[scene.lit]
+
+    scene.run(act, writes=scene.lit)
+    assert scene.outcome() is bool(value)
 
 
 @pytest.mark.parametrize("act", [lambda p: p.add("a", 1), lambda p: p.remove("a")])

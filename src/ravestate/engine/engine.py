@@ -160,11 +160,8 @@ class Engine(Waves):
         if signal is None:
             raise UndeclaredError(self._unknown("signal", event.signal, self.policy.signals))
         wiper = self._run(event.run)
-        wiped = {spike.id for spike in self.live.get(signal.index, ())}
-        doomed = (
-            [s for spikes in self.live.values() for s in spikes if s.has_ancestor(wiped)] if wiped else []
-        )
-        for spike in doomed:
+        known = dict.fromkeys(spike for spikes in self.live.values() for spike in spikes)
+        for spike in [s for s in {**known, **self._watched_by} if s.comes_from(signal.name)]:
             for holder in list(spike.holders):
                 if holder.state == RUNNING and holder is not wiper and holder.clause.rule.interruptible:
                     self._cancel(holder, "wiped")
@@ -185,7 +182,7 @@ class Engine(Waves):
         for activations in self.active.values():
             for activation in activations:
                 activation.clause = clauses[activation.clause.index]
-        for spikes in self.live.values():
+        for spikes in (*self.live.values(), self._watched_by):
             for spike in spikes:
                 spike.signal = event.policy.signal_plans[spike.signal.index]
         self.lacking = {
@@ -217,7 +214,9 @@ class Engine(Waves):
             )
         elif told and outcome != "failed":
             outcome = told if outcome != "retired" else outcome
-        fired = outcome not in ("resigned", "failed") or run.wrote or told in ("interrupted", "wiped")
+        # What it stood on was withdrawn before it had said anything: whoever stands on the rest may answer.
+        unheard = told == "wiped" and not run.wrote
+        fired = (outcome not in ("resigned", "failed") and not unheard) or run.wrote or told == "interrupted"
         if rule.cooldown and fired:
             self.ran[rule.index] = self.now
             self._asking.update(
@@ -225,8 +224,10 @@ class Engine(Waves):
             )  # it is worth less now
         spikes = run.stands_on
         for clause in rule.until:
-            self._watches.get(clause, {}).pop(run, None)
-            if not self._watches.get(clause, True):
+            watch = self._watches[clause].pop(run)
+            for spike in filter(None, watch.spikes):
+                self._unwatch(watch, spike)
+            if not self._watches[clause]:
                 del self._watches[clause]
         if fired:
             self._consume(run, spikes)

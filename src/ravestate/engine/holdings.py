@@ -60,6 +60,8 @@ class Holdings:
         self.tracer: Tracer | None = None
         self.values: dict[int, Any] = {}
         """Slots that were written or read: index to value."""
+        self._unseen: dict[int, dict[str, Any]] = {}
+        """Of collections that were changed and that nobody has read since: what can be changed further without a copy."""
         self.live: dict[int, dict[Spike, None]] = {}
         """Live spikes by signal, oldest first."""
         self.active: dict[int, dict[Activation, None]] = {}
@@ -90,6 +92,9 @@ class Holdings:
         self._dirty: dict[Group, None] = {}  # groups in which something ended
         self._stirred = False  # something ended that those who wait on patience may have waited for
         self._watches: dict[Clause, dict[Activation, Watch]] = {}
+        self._watched_by: dict[
+            Spike, dict[Watch, None]
+        ] = {}  # spikes that watches keep, until they are old enough
         self._errors: list[RuleFailure] = []  # failures of which ``core:error`` is still to tell
         self._blamed: set[int] = set()  # predicates whose failure has been reported
         self._deadlines = Deadlines(self._stands)
@@ -133,6 +138,8 @@ class Holdings:
 
     def read(self, slot: int) -> Any:
         """The value of a slot, by its number."""
+        if self._unseen:
+            self._unseen.pop(slot, None)
         try:
             return self.values[slot]
         except KeyError:
@@ -449,6 +456,8 @@ class Holdings:
             live.pop(spike, None)
             if not live:
                 del self.live[spike.signal.index]
+        for watch in self._watched_by.pop(spike, ()):
+            watch.lose(spike)
         for holder in list(spike.holders):
             if holder.state < RUNNING:
                 self._lose(holder, self._of_spike(holder, spike), "withdrawn")
@@ -457,8 +466,9 @@ class Holdings:
 
     def _withdraw(self, signal: SignalPlan, reason: str) -> None:
         live = self.live.get(signal.index)
-        if live:
-            for spike in list(live):
+        if live or self._watched_by:
+            watched = [s for s in self._watched_by if s.signal is signal and (not live or s not in live)]
+            for spike in [*(live or ()), *watched]:
                 self._kill(spike, reason)
 
     def _of_spike(self, activation: Activation, spike: Spike) -> list[Need]:

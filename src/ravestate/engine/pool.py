@@ -145,7 +145,17 @@ class Pool(Contests):
                     held = watch.spikes[need.index]
                     if held is None or not need.min_age or held.born + need.max_age < self.now:
                         watch.spikes[need.index] = spike  # else the older one ripens first
+                        self._watched_by.setdefault(spike, {})[watch] = None
+                        if held is not None and held not in watch.spikes:
+                            self._unwatch(watch, held)
                     self._judge(watch)
+
+    def _unwatch(self, watch: Watch, spike: Spike) -> None:
+        """A watch keeps a spike no longer."""
+        watches = self._watched_by.get(spike, {})
+        watches.pop(watch, None)
+        if not watches:
+            self._watched_by.pop(spike, None)
 
     def _judge(self, watch: Watch) -> None:
         due = watch.met_at(self.now)

@@ -57,11 +57,16 @@ class Slots(Pool):
         run: Activation | None,
         origin: tuple[tuple[Spike, ...], Group],
     ) -> None:
-        old: Mapping[str, Any] = self.read(slot.index)
+        items = self._unseen.get(slot.index)
+        old: Mapping[str, Any] = self.read(slot.index) if items is None else items
         known = old.get(key, ABSENT)
         if known is item or (known is not ABSENT and item is not ABSENT and equal(known, item)):
             return
-        items = dict(old)
+        if items is None:
+            items = dict(old)
+            self.values[slot.index] = MappingProxyType(items)
+        if self.tracer is None:
+            self._unseen[slot.index] = items
         changed, added, removed = slot.signals
         raised = (changed,)
         if item is ABSENT:
@@ -71,8 +76,8 @@ class Slots(Pool):
             if known is ABSENT:
                 raised = (changed, added)
             items[key] = item
-        self.values[slot.index] = MappingProxyType(items)
         if self.tracer is not None:
+            self._unseen.pop(slot.index, None)
             self.tracer(trace.Set(self.now, slot.name, items, 0 if run is None else run.id))
         entry = Entry(key, known if item is ABSENT else item)
         for signal in raised:

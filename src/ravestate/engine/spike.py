@@ -97,19 +97,5 @@ class Spike:
                     stack.append(parent)
         return False
 
-    def has_ancestor(self, ancestors: set[int]) -> bool:
-        """Whether it is, or descends from, a spike whose id is among `ancestors`."""
-        stack: list[Spike] = [self]
-        seen: set[int] = set()
-        while stack:
-            spike = stack.pop()
-            if spike.id in ancestors:
-                return True
-            for parent in spike.parents:
-                if parent.id not in seen:
-                    seen.add(parent.id)
-                    stack.append(parent)
-        return False
-
     def __repr__(self) -> str:
         return f"{self.signal.name}#{self.id}"

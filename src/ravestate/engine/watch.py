@@ -28,3 +28,8 @@ class Watch:
                 return None
             due = max(due, spike.born + need.min_age)
         return due
+
+    def lose(self, spike: Spike) -> None:
+        """A spike has been withdrawn (L20)."""
+        self.spikes = [None if held is spike else held for held in self.spikes]
+        self.due = NEVER

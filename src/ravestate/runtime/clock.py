@@ -36,7 +36,13 @@ class Clock:
         return self._halted is not None
 
     async def sleep(self, seconds: float) -> None:
-        """Wait until so many seconds have passed on this clock; 0 or less lets others have a turn."""
+        """Wait until so many seconds have passed on this clock; 0 or less lets others have a turn.
+
+        Raises:
+            ValueError: NaN is no time.
+        """
+        if seconds != seconds:
+            raise ValueError("cannot sleep for nan seconds")
         if seconds <= 0:
             await asyncio.sleep(0)
             return

@@ -122,11 +122,10 @@ class Context:
         runner = self._running()
         self.ask_to_stop()
         runner.resume()
-        last = runner.newest()
+        known = set(runner.alive())
         runner.receive(Stop())
         try:
-            await asyncio.sleep(0)  # the pump runs: whoever hears rs.shutdown starts
-            await runner.wait_for_runs(last, grace)
+            await runner.wait_for_others(known, grace)
             await runner.close()
         except asyncio.CancelledError:
             await runner.close(at_once=True)

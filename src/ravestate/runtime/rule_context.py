@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 import random
-from collections.abc import Iterator, Mapping
+from collections.abc import ItemsView, Iterator, KeysView, Mapping, ValuesView
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Generic, NoReturn, TypeVar, overload
 
@@ -60,7 +60,7 @@ class RuleContext:
         except (KeyError, AttributeError):
             self._refuse("read", "reads", slot, (*self.rule.reads, *self.rule.writes))
         if slot.kind == "collection":
-            return Items(self, slot, value)  # type: ignore[arg-type]  # its kind says so
+            return Items(self, slot)  # type: ignore[arg-type]  # its kind says so
         return value
 
     def __setitem__(self, slot: Slot[T], value: T) -> None:
@@ -83,6 +83,8 @@ class RuleContext:
                     f"{slot.name}: write a mapping of keys to items, or ctx[{self._spelt(slot)}].add(key, item)"
                 )
             value = MappingProxyType(dict(value))  # type: ignore[assignment]  # its kind says so
+        elif slot.kind == "flag":
+            value = bool(value)  # type: ignore[assignment]  # its kind says so
         self._values[slot.name] = value
         self._runner.receive(Write(slot.name, value, self._run))
 
@@ -208,14 +210,20 @@ class RuleContext:
 
 
 class Items(Mapping[str, V], Generic[V]):
-    """A collection as a rule sees it: a mapping of keys to items, with `add` and `remove`."""
+    """A collection as a rule sees it: a mapping of keys to items, with `add` and `remove`.
 
-    __slots__ = ("_ctx", "_items", "_slot")
+    It shows what the rule itself has changed; who goes through it goes through what it was when that began.
+    """
 
-    def __init__(self, ctx: RuleContext, slot: Collection[V], items: Mapping[str, V]) -> None:
+    __slots__ = ("_ctx", "_slot")
+
+    def __init__(self, ctx: RuleContext, slot: Collection[V]) -> None:
         self._ctx = ctx
         self._slot = slot
-        self._items = items
+
+    @property
+    def _items(self) -> Mapping[str, V]:
+        return self._ctx._values[self._slot.name]  # pyright: ignore[reportPrivateUsage]
 
     def add(self, key: str, item: V) -> None:
         """Set an item; signals ``added`` if the key is new, and ``changed`` if anything is.
@@ -223,9 +231,7 @@ class Items(Mapping[str, V], Generic[V]):
         Raises:
             UndeclaredError: The rule does not declare ``writes`` of the collection.
         """
-        self._check()
-        self._items = MappingProxyType({**self._items, key: item})
-        self._keep()
+        self._own()[key] = item
         self._ctx._runner.receive(Store(self._slot.name, key, item, self._ctx._run))  # pyright: ignore[reportPrivateUsage]
 
     def remove(self, key: str) -> None:
@@ -234,10 +240,19 @@ class Items(Mapping[str, V], Generic[V]):
         Raises:
             UndeclaredError: The rule does not declare ``writes`` of the collection.
         """
-        self._check()
-        self._items = MappingProxyType({k: v for k, v in self._items.items() if k != key})
-        self._keep()
+        self._own().pop(key, None)
         self._ctx._runner.receive(Discard(self._slot.name, key, self._ctx._run))  # pyright: ignore[reportPrivateUsage]
+
+    def _own(self) -> dict[str, V]:
+        """What may be changed: until the first change, the rule has what others have as well."""
+        ctx = self._ctx
+        if self._slot not in ctx.rule.writes:  # pyright: ignore[reportPrivateUsage]
+            ctx._refuse("wrote", "writes", self._slot, ctx.rule.writes)  # pyright: ignore[reportPrivateUsage]
+        ctx._alive()  # pyright: ignore[reportPrivateUsage]
+        items = self._items
+        if not isinstance(items, dict):
+            items = ctx._values[self._slot.name] = dict(items)  # pyright: ignore[reportPrivateUsage]
+        return items
 
     def __setitem__(self, key: str, item: V) -> NoReturn:
         self._point_to("add(key, item)")
@@ -252,21 +267,23 @@ class Items(Mapping[str, V], Generic[V]):
             f"ctx[{slot}].{call}"
         )
 
-    def _check(self) -> None:
-        ctx = self._ctx
-        if self._slot not in ctx.rule.writes:  # pyright: ignore[reportPrivateUsage]
-            ctx._refuse("wrote", "writes", self._slot, ctx.rule.writes)  # pyright: ignore[reportPrivateUsage]
-        ctx._alive()  # pyright: ignore[reportPrivateUsage]
-        self._items = ctx._values[self._slot.name]  # pyright: ignore[reportPrivateUsage]
-
-    def _keep(self) -> None:
-        self._ctx._values[self._slot.name] = self._items  # pyright: ignore[reportPrivateUsage]
-
     def __getitem__(self, key: str) -> V:
         return self._items[key]
 
     def __iter__(self) -> Iterator[str]:
-        return iter(self._items)
+        return iter(tuple(self._items))
+
+    def keys(self) -> KeysView[str]:
+        """The keys, as they are now."""
+        return dict(self._items).keys()
+
+    def values(self) -> ValuesView[V]:
+        """The items, as they are now."""
+        return dict(self._items).values()
+
+    def items(self) -> ItemsView[str, V]:
+        """Keys and items, as they are now."""
+        return dict(self._items).items()
 
     def __len__(self) -> int:
         return len(self._items)

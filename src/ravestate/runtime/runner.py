@@ -9,12 +9,13 @@ import logging
 import random
 import threading
 from collections import deque
-from collections.abc import Callable, Coroutine, Mapping
+from collections.abc import Callable, Container, Coroutine, Mapping
 from time import perf_counter
 from typing import Any, cast
 
 from ravestate.declare.outcome import Resign, Retire
 from ravestate.declare.rule import Rule
+from ravestate.engine.activation import Activation
 from ravestate.engine.effects import Cancel, Effect, Ended, Failed, Run, Spiked
 from ravestate.engine.engine import Engine
 from ravestate.engine.events import AddRule, Event, Finish
@@ -100,7 +101,9 @@ class Runner:
         self._cleaning: list[asyncio.Task[Any]] = []  # cancelled just now
         self._spare: Nest | None = None
         self._is_async: dict[Rule[Any, Any], bool] = {}
-        self._quiet: list[asyncio.Future[None]] = []
+        self._awaited: list[tuple[Callable[[], bool], asyncio.Future[None]]] = []
+        self._patience: dict[int, asyncio.TimerHandle] = {}  # with what was cancelled and has not ended
+        self._closing = False
         self._todo: deque[Effect] = deque()
         self.closed = False
 
@@ -123,7 +126,11 @@ class Runner:
         if self.on_event is not None:
             self.on_event(event, now)
         self.engine.receive(event, now)
-        if not self._scheduled and not self._pumping:
+        if not self._pumping:
+            self._schedule()
+
+    def _schedule(self) -> None:
+        if not self._scheduled:
             self._scheduled = True
             self.loop.call_soon(self._pump)
 
@@ -158,11 +165,12 @@ class Runner:
             return
         self._work_off(BATCH)
         self._arm()
-        if self._quiet and not self._cleaning and self.is_quiet():
-            for future in self._quiet:
-                if not future.done():
-                    future.set_result(None)
-            self._quiet.clear()
+        if self._awaited and not (self._scheduled or self._todo or self._cleaning):
+            reached = [entry for entry in self._awaited if entry[0]()]
+            for entry in reached:
+                self._awaited.remove(entry)
+                if not entry[1].done():
+                    entry[1].set_result(None)
 
     def _held(self) -> bool:
         """Whether others come first: a plain function in a simulation, or rules that have just been cancelled."""
@@ -200,8 +208,12 @@ class Runner:
                 while self._todo and not ((self.serial or self._cleaning) and self._held()):
                     self._perform(self._todo.popleft())
             else:
-                self._scheduled = True
-                self.loop.call_soon(self._pump)
+                self._schedule()
+        except (
+            BaseException
+        ):  # a rule has interrupted the process: the others go on, for as long as the loop does
+            self._schedule()
+            raise
         finally:
             self._pumping = False
         return some
@@ -230,9 +242,7 @@ class Runner:
             if self._timer is not None:
                 self._timer.cancel()
                 self._timer = None
-            if not self._scheduled:  # not at once: a task may be asking, and rules are started outside of any
-                self._scheduled = True
-                self.loop.call_soon(self._pump)
+            self._schedule()  # not at once: a task may be asking, and rules are started outside of any
 
     def _arm(self) -> None:
         """Set the one timer, unless it is early enough already: waking for nothing is harmless."""
@@ -261,11 +271,14 @@ class Runner:
         self.fault = EngineError(f"the engine has failed, which is a fault of ravestate's: {error!r}")
         self.fault.__cause__ = error
         self.closed = True
-        for future in [future for waiting in self.futures.values() for future in waiting] + self._quiet:
+        for future in [
+            *(future for waiting in self.futures.values() for future in waiting),
+            *(future for _, future in self._awaited),
+        ]:
             if not future.done():
                 future.set_exception(self.fault)
         self.futures.clear()
-        self._quiet.clear()
+        self._awaited.clear()
         self.ask_to_stop()
 
     def _perform(self, effect: Effect) -> None:
@@ -310,6 +323,8 @@ class Runner:
     # ------------------------------------------------------------------------------------ runs
 
     def _run(self, effect: Run) -> None:
+        if self._closing:
+            return
         rule = effect.rule
         self._last_run = rule.name
         ctx = RuleContext(self, effect)
@@ -318,8 +333,12 @@ class Runner:
         if is_async is None:
             is_async = self._is_async[rule] = _is_async(rule.function)
         if not is_async:
-            self.threads[effect.run] = rule
-            self.workers.submit(functools.partial(self._work, effect.run, rule, ctx))
+            try:
+                self.workers.submit(functools.partial(self._work, effect.run, rule, ctx))
+            except RuntimeError as error:
+                self._finish(effect.run, rule, None, error)
+            else:
+                self.threads[effect.run] = rule
             return
         nest = self._spare
         if nest is None:
@@ -356,6 +375,8 @@ class Runner:
 
     def _work(self, run: int, rule: Rule[Any, Any], ctx: RuleContext) -> None:
         """In a worker thread: call a plain function."""
+        if ctx.ended:
+            return  # it was cancelled before there was a thread for it
         result, exception = None, None
         try:
             result = rule.function(ctx)
@@ -371,13 +392,15 @@ class Runner:
     ) -> None:
         self.threads.pop(run, None)
         self._finish(run, rule, result, exception)
-        if self.serial and not self._scheduled:
-            self._scheduled = True
-            self.loop.call_soon(self._pump)
+        if self.serial:
+            self._schedule()
 
     def _finish(self, run: int, rule: Rule[Any, Any], result: Any, exception: BaseException | None) -> None:
         """Report how a run has ended (L18)."""
         ctx = self._contexts.pop(run, None)
+        patience = self._patience.pop(run, None)
+        if patience is not None:
+            patience.cancel()
         if ctx is None or self.closed:
             return  # given up before
         cancelled = bool(ctx.told)
@@ -416,7 +439,7 @@ class Runner:
         self._cleaning.append(nest.task)
         if len(self._cleaning) == 1:
             self.loop.call_soon(self._go_on, CLEANING)
-        self.loop.call_later(GRACE, self._give_up, effect.run)
+        self._patience[effect.run] = self.loop.call_later(GRACE, self._give_up, effect.run)
 
     def _go_on(self, turns: int) -> None:
         """After a cancellation: work on once the cancelled have cleaned up, or wait for something."""
@@ -428,6 +451,7 @@ class Runner:
 
     def _give_up(self, run: int) -> None:
         """A cancelled rule did not end in time."""
+        self._patience.pop(run, None)
         ctx = self._contexts.pop(run, None)
         if ctx is not None and not self.closed:
             ctx.ended = "it did not end in time"
@@ -462,29 +486,45 @@ class Runner:
 
     async def quiet(self) -> None:
         """Wait for `is_quiet`."""
-        if self._scheduled or self._pumping or not self.is_quiet():
+        await self.until(self.is_quiet)
+
+    async def until(self, reached: Callable[[], bool]) -> None:
+        """Wait until all effects are performed and something is reached, which only effects and ends of runs bring."""
+        if self.closed:
+            return
+        if self._scheduled or self._pumping or self._todo or self._cleaning or not reached():
             future: asyncio.Future[None] = self.loop.create_future()
-            self._quiet.append(future)
-            self._scheduled = True
-            self.loop.call_soon(self._pump)
+            self._awaited.append((reached, future))
+            self._schedule()
             await future
 
-    def newest(self) -> int:
-        """The greatest number of an activation that runs, or is ready and waits; 0 if there is none."""
-        return max((*self._contexts, *(activation.id for activation in self.engine.waiting)), default=0)
+    def alive(self) -> dict[int, Activation]:
+        """Activations that run, or are ready and wait, by their numbers."""
+        return {a.id: a for a in (*self.engine.running.values(), *self.engine.waiting)}
 
-    async def wait_for_runs(self, since: int, seconds: float) -> None:
-        """Wait, for some seconds at most, for what runs, or is ready and waits, with a number above `since`."""
-        end = self.loop.time() + seconds
-        while self.newest() > since and self.loop.time() < end:
-            tasks = [nest.task for run, nest in self._nests.items() if run > since]
-            if tasks:
-                await asyncio.wait(tasks, timeout=end - self.loop.time())
-            else:
-                await asyncio.sleep(0.005)
+    async def wait_for_others(self, known: Container[int], seconds: float) -> None:
+        """Wait, for some seconds at most, until nothing runs or is kept waiting besides what is `known` by its number.
+
+        What is in the background counts only if it does something about ``rs.shutdown``: it may begin again for ever.
+        """
+
+        def done() -> bool:
+            return all(
+                number in known
+                or (
+                    activation.clause.rule.background
+                    and not any(s is not None and s.comes_from("core:shutdown") for s in activation.spikes)
+                )
+                for number, activation in self.alive().items()
+            )
+
+        with contextlib.suppress(TimeoutError):
+            await asyncio.wait_for(self.until(done), seconds)
 
     async def close(self, *, at_once: bool = False) -> None:
-        """Cancel whatever runs, and let it clean up, `at_once` without waiting; what refuses to end is given up."""
+        """Cancel whatever runs, and let it clean up, `at_once` without waiting; what refuses to end is given up.
+        Nothing is started any more."""
+        self._closing = True
         for run, nest in self._nests.items():
             ctx = self._contexts.get(run)
             if ctx is not None:
@@ -510,7 +550,9 @@ class Runner:
             for future in futures:
                 if not future.done():
                     future.set_exception(EngineError(f"the context ended before there was a {signal}"))
-        for future in self._quiet:
+        for handle in self._patience.values():
+            handle.cancel()
+        for _, future in self._awaited:
             if not future.done():
                 future.set_result(None)
         self.workers.close()

@@ -1,63 +1,149 @@
 """Worker threads for rule functions that are plain functions.
 
-They are daemons: a function that hangs must not keep the process from ending. (The standard library's
-pool joins its threads at exit.) But the end of the process waits a while for those that are at work: a thread that the
-interpreter ends in the midst of a C++ library, loading a model for instance, may take the whole process down with it.
+All contexts of a process share them, and none may take them all. They are daemons: a function that hangs must not keep
+the process from ending. (The standard library's pool joins its threads at exit.) But the end of the process waits a
+while for those that are at work: a thread that the interpreter ends in the midst of a C++ library, loading a model for
+instance, may take the whole process down with it.
 """
 
 from __future__ import annotations
 
 import atexit
+import functools
 import threading
+from collections import deque
 from collections.abc import Callable
-from queue import SimpleQueue
 
-__all__ = ["LAST_GRACE", "Workers"]
+__all__ = ["CREW", "LAST_GRACE", "SHARE", "THREADS", "Crew", "Workers"]
 
 Job = Callable[[], None]
 
 LAST_GRACE = 5.0
 """Seconds for which the end of the process waits for functions at work."""
 
-_at_work = 0
-_change = threading.Condition()
+SHARE = 32
+"""Functions of one context that are at work at once; further ones wait until one of them ends."""
+
+THREADS = 256
+"""Threads of the process; with all of them busy, whoever comes waits for one."""
+
+IDLE = 30.0
+"""Seconds after which a thread with nothing to do ends."""
+
+
+class Crew:
+    """The threads of the process: made when all others are busy, and kept for a while."""
+
+    def __init__(self) -> None:
+        lock = threading.Lock()
+        self.change = threading.Condition(lock)
+        self.rest = threading.Condition(lock)
+        self.at_work = 0
+        self.contexts = 0
+        self._jobs: deque[Job] = deque()
+        self._idle = 0
+        self._threads = 0
+        self._number = 0
+
+    def take(self, job: Job) -> None:
+        """Have a job done soon; the caller holds `change`.
+
+        Raises:
+            RuntimeError: The system has no thread for it, and nobody is there who might do it later.
+        """
+        self._jobs.append(job)
+        if self._idle >= len(self._jobs):
+            self.change.notify()
+        elif self._threads < THREADS:
+            self._number += 1
+            thread = threading.Thread(target=self._live, name=f"ravestate-{self._number}", daemon=True)
+            try:
+                thread.start()
+            except RuntimeError:
+                if not self._threads:
+                    self._jobs.pop()
+                    raise
+            else:
+                self._threads += 1
+
+    def _live(self) -> None:
+        while (job := self._next()) is not None:
+            try:
+                job()
+            finally:
+                del job  # and with it what it holds: a context, perhaps
+                with self.change:
+                    self.at_work -= 1
+                    if not self.at_work:
+                        self.rest.notify_all()
+
+    def _next(self) -> Job | None:
+        """Wait for a job; None if the thread is to end."""
+        with self.change:
+            while not self._jobs:
+                self._idle += 1
+                in_time = self.contexts > 0 and self.change.wait(IDLE)
+                self._idle -= 1
+                if not self._jobs and not (in_time and self.contexts):
+                    self._threads -= 1
+                    return None
+            self.at_work += 1
+            return self._jobs.popleft()
+
+
+CREW = Crew()
 
 
 @atexit.register
 def _wait_for_work() -> None:
-    with _change:
-        _change.wait_for(lambda: not _at_work, LAST_GRACE)
+    with CREW.rest:
+        CREW.rest.wait_for(lambda: not CREW.at_work, LAST_GRACE)
 
 
 class Workers:
-    """Threads that are made when all others are busy, and kept until `close`."""
+    """One context's share of the threads, until `close`.
 
-    def __init__(self) -> None:
-        self._jobs: SimpleQueue[Job | None] = SimpleQueue()
-        self._idle = threading.Semaphore(0)
-        self._count = 0
+    Args:
+        crew: The threads.
+    """
+
+    def __init__(self, crew: Crew = CREW) -> None:
+        self._crew = crew
+        self._busy = 0
+        self._line: deque[Job] = deque()
+        self._open = True
+        with self._crew.change:
+            self._crew.contexts += 1
 
     def submit(self, job: Job) -> None:
-        """Have a job done soon. The job must not raise."""
-        self._jobs.put(job)
-        if not self._idle.acquire(blocking=False):
-            self._count += 1
-            threading.Thread(target=self._work, name=f"ravestate-{self._count}", daemon=True).start()
+        """Have a job done soon. The job must not raise.
+
+        Raises:
+            RuntimeError: The system has no more threads.
+        """
+        with self._crew.change:
+            if self._busy >= SHARE:
+                self._line.append(job)
+            else:
+                self._crew.take(functools.partial(self._work, job))
+                self._busy += 1
 
     def close(self) -> None:
-        """Let every thread end after what it is doing."""
-        for _ in range(self._count):
-            self._jobs.put(None)
+        """Do nothing more; what is being done goes on. If no other context is there, idle threads end."""
+        with self._crew.change:
+            self._line.clear()
+            if self._open:
+                self._open = False
+                self._crew.contexts -= 1
+                if not self._crew.contexts:
+                    self._crew.change.notify_all()
 
-    def _work(self) -> None:
-        global _at_work
-        while (job := self._jobs.get()) is not None:
-            with _change:
-                _at_work += 1
+    def _work(self, job: Job | None) -> None:
+        while job is not None:
             try:
                 job()
             finally:
-                with _change:
-                    _at_work -= 1
-                    _change.notify_all()
-            self._idle.release()
+                with self._crew.change:
+                    job = self._line.popleft() if self._line else None
+                    if job is None:
+                        self._busy -= 1
