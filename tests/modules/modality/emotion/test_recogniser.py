@@ -128,6 +128,9 @@ I'm so happy you are my friend
 """
 
 HAPPY = """
+Our daughter was born yesterday!
+I got in!
+My brother got in to university
 I passed my exam today!
 We won the match!
 I got the job
@@ -387,6 +390,17 @@ You are as dumb as a brick
 Is it a surprise?
 They won the election
 How do you feel?
+My grandfather passed away.
+I passed out in the train.
+My friend got in a car accident.
+I got in a fight
+I got my results, and I failed
+I found my dog dead
+I won a match but lost the war
+I was born in Berlin
+My sister was born in 1990
+I did it wrong
+We made it worse
 """
 
 

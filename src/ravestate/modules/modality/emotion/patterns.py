@@ -96,11 +96,13 @@ JOY = _patterns(
     r"great|wonderful|fantastic|amazing|awesome|lucky|blessed|relieved|proud)",
     r"feeling ~(?:happy|great|wonderful|fantastic|amazing|awesome|good)",
     r"(?:good|great|wonderful|fantastic|amazing|best|fabulous|excellent|awesome|happy) news",
-    r"(?:i|we|my(?: \w+){1,2}|our(?: \w+){1,2})(?: \w+ly| just| have| has| had| did| also)* (?:won|passed|graduated|aced|succeeded|made it|did it|nailed it|"
+    r"(?:i|we|my(?: \w+){1,2}|our(?: \w+){1,2})(?: \w+ly| just| have| has| had| did| also)* (?:won|passed(?! (?:away|on|out|over|by)\b)|graduated|aced|succeeded|"
+    r"(?:made|did) it(?! (?:worse|wrong|badly|up|again)\b)|nailed it|"
     r"got (?:~)(?:job|raise|promotion|scholarship|offer|place|puppy|kitten|tickets?|prize|medal|award|visa|degree|licen[cs]e|"
     r"\w+ (?:job|puppy|kitten|mark|marks|grade|grades|prize|result|results|tickets?|house|home|flat|apartment|bike|car|dog)|"
-    r"married|engaged|promoted|accepted|hired|in)(?! off)|(?:was|were|been|am|are) (?:accepted|promoted|hired|admitted|born|chosen|selected)|"
+    r"married|engaged|promoted|accepted|hired|a(?= in\b)|in(?= to\b|$))(?! off)|(?:was|were|been|am|are) (?:accepted|promoted|hired|admitted|chosen|selected)|"
     r"found (?:my|our) (?:\w+ )?(?:dog|cat|keys|wallet|ring|love)|fell in love|proposed to me|bought (?:my|our) (?:\w+ )?(?:house|home|flat|apartment|car)|finished (?:my|our) (?:\w+ )?(?:thesis|exam|exams|book|studies))",
+    r"(?:baby|son|daughter|child|brother|sister|nephew|niece|grand\w+)(?: \w+)? (?:is|was|has been) born(?! (?:in|on)\b)|"
     r"(?:got|getting|get) (?:married|engaged)|(?:am|is|are) pregnant|having a baby|expecting a baby|(?:becoming|became|become|going to be) (?:a )?(?:grand)?(?:mother|father|parents?|aunt|uncle|dad|mum|mom)",
     r"(?:it is|today is|is) (?:finally )?(?:my birthday|weekend|friday|christmas)|finally (?:weekend|friday|over|done|here|holidays?)",
     r"can not wait|looking forward to|so much fun|(?:had|having) (?:~)(?:fun|blast|great time|good time|lovely time|wonderful time|time of my life)",

@@ -29,6 +29,9 @@ __all__ = ["recognise"]
 DELIGHT = 0.5
 """Polarity from which on a sentence about oneself, or an exclamation, is one of joy."""
 
+SAD = -0.5
+"""Polarity from which down on what is told is no joy after all: "I got my results, and I failed"."""
+
 PICTURES: tuple[tuple[Feeling, re.Pattern[str]], ...] = (
     ("affectionate", re.compile("[❤💕💖💗💓💞💘💝💙💚💛💜🧡🤍🥰😍😘😚🤗🫂]|<3")),
     ("surprised", re.compile(r"[😮😲😯😱🤯😳]|(?<!\w)[:=]-?[oO]\b")),
@@ -88,7 +91,7 @@ def praises(sentence: Sentence) -> bool:
 
 def rejoices(sentence: Sentence) -> bool:
     """Whether somebody tells of joy, or of good news."""
-    return not sentence.asks and _has(sentence, JOY, of=IMAGINED)
+    return not sentence.asks and _has(sentence, JOY, of=IMAGINED) and polarity(sentence.text) > SAD
 
 
 def wonders(sentence: Sentence) -> bool:
