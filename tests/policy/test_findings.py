@@ -124,6 +124,21 @@ def test_a_weight_says_so_also_where_there_is_no_information(scene: Scene) -> No
     assert scene.findings() == {}
 
 
+def test_a_cooldown_without_a_rival_holds_nothing_back(scene: Scene) -> None:
+    bored = scene.module.signal("bored")
+    scene.rule("chat", scene.heard, writes=scene.out)
+    scene.rule("nag", bored, writes=scene.out, cooldown=300.0)
+    scene.rule("blink", bored, cooldown=1.0)
+    found = scene.findings()
+    assert list(found) == [("cooldown", "m:nag"), ("cooldown", "m:blink")]
+    assert (
+        "rule m:nag has a cooldown of 300 s, and no rival: a cooldown lets others go first"
+        in found["cooldown", "m:nag"]
+    )
+    scene.rule("sing", bored, writes=scene.out, weight=1.2, cooldown=300.0)
+    assert list(scene.findings()) == [("cooldown", "m:blink")]
+
+
 def test_signals_that_nobody_hears(scene: Scene) -> None:
     lost, watched, free = (scene.module.signal(name) for name in ("lost", "watched", "free"))
     scene.rule("emit", scene.heard, emits=(lost, watched))

@@ -25,7 +25,7 @@ class Finding:
     """One remark on a policy.
 
     Attributes:
-        kind: ``"unreachable"``, ``"never-wins"``, ``"tie"`` or ``"unheard"``.
+        kind: ``"unreachable"``, ``"never-wins"``, ``"tie"``, ``"cooldown"`` or ``"unheard"``.
         subject: The qualified name of the rule or signal.
         message: What is the matter, and what to write instead.
     """
@@ -39,11 +39,17 @@ class Finding:
 
 
 def find_all(policy: Policy) -> tuple[Finding, ...]:
-    """All findings: unreachable rules first, then rules that never win, ties, unheard signals.
+    """All findings: unreachable rules first, then rules that never win, ties, cooldowns without effect, unheard signals.
 
     A rule has one finding of each kind at most, so that there are never more than a few for each rule.
     """
-    return (*_unreachable(policy), *_never_wins(policy), *_ties(policy), *_unheard(policy))
+    return (
+        *_unreachable(policy),
+        *_never_wins(policy),
+        *_ties(policy),
+        *_cooldowns(policy),
+        *_unheard(policy),
+    )
 
 
 def _unreachable(policy: Policy) -> Iterator[Finding]:
@@ -186,6 +192,27 @@ def _apart(first: RulePlan, second: RulePlan) -> bool:
     mine = {need.signal.index: need.predicates for clause in first.clauses for need in clause.needs}
     theirs = {need.signal.index: need.predicates for clause in second.clauses for need in clause.needs}
     return any(mine[s] and theirs[s] and mine[s] != theirs[s] for s in mine.keys() & theirs.keys())
+
+
+def _cooldowns(policy: Policy) -> Iterator[Finding]:
+    conflicts = Conflicts(policy)
+    writers: dict[int, list[RulePlan]] = {}
+    for rule in policy.rule_plans:
+        for slot in rule.slots:
+            writers.setdefault(slot, []).append(rule)
+    for rule in policy.rule_plans:
+        if rule.cooldown and not any(
+            len(writers[slot]) > MAX_PEERS
+            or any(o is not rule and conflicts.best(rule, o) for o in writers[slot])
+            for slot in rule.slots
+        ):
+            yield Finding(
+                "cooldown",
+                rule.name,
+                f"rule {rule.name} has a cooldown of {rule.cooldown:g} s, and no rival: a cooldown lets others go first, "
+                "it does not hold a rule back; to let the rule rest, write into a slot when it ran, and let it resign "
+                "when that was not long ago",
+            )
 
 
 def _unheard(policy: Policy) -> Iterator[Finding]:
