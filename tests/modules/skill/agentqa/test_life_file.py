@@ -22,6 +22,7 @@ TOPICS = [
     "origin",
     "home",
     "father",
+    "mother",
     "siblings",
     "friends",
     "ambition",
