@@ -36,9 +36,11 @@ def run(options: argparse.Namespace) -> int:
     except DeclarationError as fault:
         print(f"fault: {fault}", file=sys.stderr)
         return 1
-    # What a built-in module offers and this agent has no use for is no finding of its designer's.
+    # What a built-in module offers and this agent has no use or no rival for is no finding of its designer's.
     findings = [
-        f for f in policy.findings() if f.kind != "unheard" or f.subject.split(":")[0] not in BUILT_IN
+        f
+        for f in policy.findings()
+        if f.kind not in ("unheard", "cooldown") or f.subject.split(":")[0] not in BUILT_IN
     ]
     for finding in findings:
         print(finding)
