@@ -61,6 +61,12 @@ def test_the_text_of_a_lookup_error_is_not_quoted() -> None:
             "; did you mean 'rawio:output_of_the_agent'?",
         ),
         ("a_long_module_name:go", ["b:go"], "; did you mean 'b:go'?"),
+        ("idel", ["interloc", "idle"], "; did you mean 'idle'?"),
+        ("idel", ["interloc", "rawio"], ""),  # three letters of eight
+        ("abel", ["ablest", "able"], "; did you mean 'able'?"),  # neighbours exchanged are one slip
+        ("ba", ["ab"], "; did you mean 'ab'?"),
+        ("gretting", ["getting_on", "greeting"], "; did you mean 'greeting'?"),
+        ("x", ["y"], ""),
         ("xyz", ["rawio:input"], ""),
         ("anything", [], ""),
     ],

@@ -94,8 +94,34 @@ def nearest(name: str, names: Iterable[str]) -> str:
     import difflib  # only on the way to an error
 
     known = list(names)
-    close = difflib.get_close_matches(name, known, n=1, cutoff=0.5)
-    if not close and ":" in name:  # the right name in the wrong module, or the other way round
+
+    def likeness(other: str) -> float:
+        if _is_a_slip(name, other):
+            return 2.0
+        return difflib.SequenceMatcher(None, other, name).ratio()
+
+    best = max(known, key=likeness, default="")
+    if known and likeness(best) >= ALIKE:
+        return f"; did you mean {best!r}?"
+    if ":" in name:  # the right name in the wrong module, or the other way round
         last = name.rsplit(":", 1)[-1]
-        close = [n for n in known if n.rsplit(":", 1)[-1] == last][:1]
-    return f"; did you mean {close[0]!r}?" if close else ""
+        for other in known:
+            if other.rsplit(":", 1)[-1] == last:
+                return f"; did you mean {other!r}?"
+    return ""
+
+
+ALIKE = 0.6
+"""The share of letters, in the same order, that two names of similar length have in common if one may be meant by the
+other."""
+
+
+def _is_a_slip(one: str, other: str) -> bool:
+    """Whether one letter more, less or another, or two neighbours exchanged, make one name of the other."""
+    if min(len(one), len(other)) < 2:
+        return False
+    pairs = zip(one, other, strict=False)
+    start = next((i for i, (a, b) in enumerate(pairs) if a != b), min(len(one), len(other)))
+    rest, others = one[start:], other[start:]
+    exchanged = rest[1::-1] + rest[2:]
+    return others in (rest[1:], exchanged) or others[1:] in (rest, rest[1:])

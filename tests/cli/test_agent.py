@@ -119,6 +119,7 @@ def test_a_module_that_is_named_twice_is_taken_once(folder: Path, capsys: Captur
         ("./missing.py", "there is no file ./missing.py"),
         ("./missing", "'./missing' is no module: name a file (./hello.py), or a dotted path (pkg.mod)"),
         (".", "'.' is no module: name a file"),
+        ("..x", "'..x' is no module: name a file (./hello.py), or a dotted path (pkg.mod)"),
         ("", "'' is no module: name a file"),
         (":module", "module ':module' fails when it is imported: ValueError: Empty module name"),
     ],
@@ -134,6 +135,8 @@ def test_a_module_that_is_not_there(name: str, text: str, folder: Path, capsys: 
         ("x = = 1\n", r"\S+bad\.py:1: invalid syntax"),
         ("import os\n\nos.nope\n", r"\S+bad\.py:3: AttributeError: module 'os' has no attribute 'nope'"),
         ("def f():\n    raise KeyError('x')\n\nf()\n", r"\S+bad\.py:2: KeyError: 'x'"),
+        ("import sys\nsys.exit(0)\n", r"\S+bad\.py:2: SystemExit: 0 \(it ends the process: .*__main__':\)"),
+        ("class Odd(BaseException): ...\nraise Odd('x')\n", r"\S+bad\.py:2: Odd: x"),
     ],
 )
 def test_a_module_that_fails_when_it_is_loaded(
@@ -141,6 +144,12 @@ def test_a_module_that_fails_when_it_is_loaded(
 ) -> None:
     write(folder / "bad.py", content)
     assert re.fullmatch(rf"\S+ ?\S* fails when it is (loaded|imported): {text}", refused(capsys, way))
+
+
+def test_ctrl_c_while_a_module_is_loaded_is_no_fault_of_the_module(folder: Path, capsys: Capture) -> None:
+    write(folder / "slow.py", "raise KeyboardInterrupt")
+    for way in ("./slow.py", "slow"):
+        assert call(capsys, "run", way) == (130, "", "")
 
 
 def test_a_package_that_is_missing_is_named(folder: Path, capsys: Capture) -> None:
@@ -219,9 +228,12 @@ def test_secrets_come_from_the_environment(
         ("modules: [1]", "agent.yaml: modules must be a list of names, not [1]"),
         ("settings: [a]", "agent.yaml: settings must map a module to its settings, not ['a']"),
         ("settings: {rawio: 3}", "agent.yaml: settings of rawio must be keys and values, not 3"),
-        ("modules: [rawio]\nseed: x", "agent.yaml: seed must be a number, not 'x'"),
-        ("modules: [rawio]\nseed: true", "agent.yaml: seed must be a number, not True"),
-        ("modules: [rawio]\npatience: []", "agent.yaml: patience must be a number, not []"),
+        ("modules: [rawio]\nseed: x", "agent.yaml: seed must be a whole number, not 'x'"),
+        ("modules: [rawio]\nseed: true", "agent.yaml: seed must be a whole number, not True"),
+        ("modules: [rawio]\npatience: []", "agent.yaml: patience must be 0 seconds or more, not []"),
+        ("modules: [rawio]\npatience: -1", "agent.yaml: patience must be 0 seconds or more, not -1"),
+        ("modules: [rawio]\npatience: .nan", "agent.yaml: patience must be 0 seconds or more, not nan"),
+        ("modules: [rawio]\npatience: .inf", "agent.yaml: patience must be 0 seconds or more, not inf"),
         ("modules: [./gone.py]", "there is no file ./gone.py"),
     ],
 )
@@ -230,9 +242,35 @@ def test_an_agent_file_that_is_wrong(content: str, text: str, folder: Path, caps
     assert refused(capsys, "agent.yaml").startswith(text)
 
 
-def test_patience_out_of_range_is_refused(folder: Path, capsys: Capture) -> None:
-    write(folder / "agent.yaml", "modules: [rawio]\npatience: -1")
-    assert refused(capsys, "agent.yaml", code=1) == "patience=-1 must be 0 s or more, e.g. patience=1.0"
+def test_all_that_is_wrong_in_an_agent_file_is_told_at_once(folder: Path, capsys: Capture) -> None:
+    write(
+        folder / "agent.yaml",
+        """
+        modules: [idle, ./gone.py, rawoi]
+        patience: abc
+        seed: x
+        sead: 1
+        settings:
+          rawio: 3
+          idle: {bored_after: soon, bored: 1}
+          fillers: {after: "${NO_SUCH_VARIABLE}"}
+        """,
+    )
+    said = refused(capsys, "agent.yaml", "--set", "idel.bored_after=1", "--set", "idle.boring=1").splitlines()
+    assert [line.split("(built in")[0].split("(it has")[0].strip() for line in said] == [
+        "agent.yaml: unknown key 'sead'; did you mean 'seed'?",
+        "agent.yaml: the environment has no NO_SUCH_VARIABLE; set it, or write ${NO_SUCH_VARIABLE:-default}",
+        "agent.yaml: settings of rawio must be keys and values, not 3",
+        "agent.yaml: seed must be a whole number, not 'x'",
+        "agent.yaml: patience must be 0 seconds or more, not 'abc'",
+        "there is no file ./gone.py",
+        "there is no module 'rawoi'; did you mean 'rawio'?",
+        "--set idel.bored_after=1: module 'idel' is not part of this agent; did you mean 'idle'?",
+        "--set idle.boring=1: module 'idle' has no such setting",
+        "settings for 'fillers': module 'fillers' is not part of this agent",
+        "setting idle.bored_after = 'soon': Input should be a valid number, unable to parse string as a number",
+        "setting idle.bored: module 'idle' has no such setting; did you mean 'bored_after'?",
+    ]
 
 
 def test_an_agent_file_that_cannot_be_read(folder: Path, capsys: Capture) -> None:
@@ -306,19 +344,31 @@ def test_a_set_that_is_none(text: str, folder: Path, capsys: Capture) -> None:
     [
         (
             "idle.bored_afer=3",
-            "setting idle.bored_afer: module 'idle' has no such setting; did you mean 'bored_after'?",
+            "module 'idle' has no such setting; did you mean 'bored_after'? (it has: bored_after, impatient_after)",
         ),
-        (
-            "idel.bored_after=3",
-            "settings for 'idel': module 'idel' is not part of this agent; did you mean 'idle'?",
-        ),
-        ("rawio.loud=1", "settings for 'rawio': module 'rawio' has no settings"),
+        ("idel.bored_after=3", "module 'idel' is not part of this agent; did you mean 'idle'?"),
+        ("conoi.prompt=x", "module 'conoi' is not part of this agent; did you mean 'conio'?"),
+        ("conio.prompt=x", "module 'conio' is not part of this agent: name it too"),
+        ("rawio.loud=1", "module 'rawio' has no settings"),
+    ],
+)
+def test_a_setting_that_is_not_there_is_wrong_use(text: str, fault: str, capsys: Capture) -> None:
+    assert refused(capsys, "idle", "rawio", "--set", text) == f"--set {text}: {fault}"
+
+
+def test_all_settings_that_are_not_there_are_told_at_once(capsys: Capture) -> None:
+    assert len(refused(capsys, "idle", "--set", "a.b=1", "--set", "idle.c=1", "--set", "d").splitlines()) == 3
+
+
+@pytest.mark.parametrize(
+    ("text", "fault"),
+    [
         ("idle.bored_after=never", "setting idle.bored_after = 'never': Input should be a valid number"),
         ("idle.bored_after=[", "setting idle.bored_after = '[': Input should be a valid number"),
         ("idle.bored_after=-1", "idle:notice_silence"),
     ],
 )
-def test_settings_that_do_not_fit_are_faults(text: str, fault: str, capsys: Capture) -> None:
+def test_values_that_do_not_fit_are_faults(text: str, fault: str, capsys: Capture) -> None:
     assert fault in refused(capsys, "idle", "rawio", "--set", text, code=1)
 
 

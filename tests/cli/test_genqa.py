@@ -112,6 +112,16 @@ def test_the_index_may_be_named(
     assert "engine.txt" in call(capsys, "genqa", "list")[1]
 
 
+def test_the_index_may_be_named_behind_the_action_too(docs: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    call(capsys, "genqa", "index", "docs", "--index", "my.sqlite")
+    assert (docs.parent / "my.sqlite").exists()
+    before = call(capsys, "genqa", "--index", "my.sqlite", "list")
+    assert "engine.txt" in before[1] and call(capsys, "genqa", "list", "--index", "my.sqlite") == before
+    assert call(capsys, "genqa", "--index", "none.sqlite", "list", "--index", "my.sqlite") == before
+    assert call(capsys, "genqa", "forget", "docs", "--index", "my.sqlite")[0] == 0
+    assert call(capsys, "genqa", "ask", "Who invented the Zorbex engine?", "--index", "my.sqlite")[0] == 0
+
+
 @pytest.mark.parametrize(
     "action", [["list"], ["index", "docs"], ["forget", "docs"], ["ask", "What is the capital of Peru?"]]
 )

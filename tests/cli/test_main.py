@@ -39,6 +39,26 @@ def test_options_are_not_guessed_from_their_beginnings(capsys: Capture) -> None:
     assert code == 2 and "--see" in errors
 
 
+@pytest.mark.parametrize(
+    ("arguments", "usage", "complaint"),
+    [
+        (("run", "idle", "--nonsense"), "run", "unrecognized arguments: --nonsense"),
+        (("run", "idle", "--sed=1"), "run", "unrecognized arguments: --sed=1; did you mean '--se"),
+        (("memory", "list", "--pth", "x"), "memory list", "--pth; did you mean '--path'?"),
+        (("genqa", "list", "extra"), "genqa list", "unrecognized arguments: extra"),
+        (("genqa", "--nonsense", "list"), "genqa", "unrecognized arguments: --nonsense"),
+        (("memory", "--nonsense=1", "list"), "memory", "unrecognized arguments: --nonsense=1"),
+    ],
+)
+def test_wrong_use_tells_the_usage_of_that_command(
+    arguments: tuple[str, ...], usage: str, complaint: str, capsys: Capture
+) -> None:
+    code, out, errors = call(capsys, *arguments)
+    assert (code, out) == (2, "")
+    assert errors.startswith(f"usage: ravestate {usage} [-h]")
+    assert f"\nravestate {usage}: error: " in errors and complaint in errors
+
+
 @pytest.mark.parametrize("flags", [(), ("-v",), ("-vv",)])
 def test_verbosity_is_counted(flags: tuple[str, ...], capsys: Capture) -> None:
     assert call(capsys, *flags, "check", "rawio")[0] == 0

@@ -154,6 +154,28 @@ def test_the_settings_of_an_agent_are_used(file: Path, folder: Path, capsys: Cap
     assert "also has Boat, which no file of types has" in errors
 
 
+def test_the_place_may_be_named_behind_the_action_too(file: Path, folder: Path, capsys: Capture) -> None:
+    before = call(capsys, "memory", "--path", str(file), "list")
+    assert before[0] == 0
+    assert call(capsys, "memory", "list", "--path", str(file)) == before
+    assert call(capsys, "memory", "--path", "none.lbug", "list", "--path", str(file)) == before
+    write(folder / "agent.yaml", f"modules: [ontology]\nsettings: {{ontology: {{path: {file}}}}}")
+    assert call(capsys, "memory", "list", "-f", "agent.yaml") == before
+    assert (
+        call(capsys, "memory", "--set", "ontology.agent=a", "list", "--set", f"ontology.path={file}")
+        == before
+    )
+    for action in (["show", "Ada"], ["export"], ["load", "gone.json"], ["forget", "Zed", "-y"]):
+        assert "there is no memory yet" not in call(capsys, "memory", *action, "--path", str(file))[2]
+
+
+def test_settings_that_are_none_of_memory_s_are_refused(file: Path, capsys: Capture) -> None:
+    code, out, errors = call(capsys, "memory", "--path", str(file), "--set", "foo.pth=x", "list")
+    assert (code, out) == (2, "") and "--set foo.pth=x: module 'foo' is not part of this agent" in errors
+    code, _, errors = call(capsys, "memory", "list", "--set", "ontology.pth=x")
+    assert code == 2 and "no such setting; did you mean 'path'? (it has: types, path, " in errors
+
+
 def test_the_default_place_is_the_users(
     folder: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
 ) -> None:

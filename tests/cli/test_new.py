@@ -1,6 +1,7 @@
 """``ravestate new``: a project that runs and whose tests pass, and names that it refuses."""
 
 import os
+import shlex
 import subprocess
 import sys
 from pathlib import Path
@@ -16,6 +17,12 @@ def files(folder: Path) -> set[str]:
     return {str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file()}
 
 
+@pytest.fixture(autouse=True)
+def activated(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The shell finds the commands of this environment."""
+    monkeypatch.setenv("PATH", f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}")
+
+
 def test_a_project_whose_tests_pass(folder: Path, capsys: Capture) -> None:
     code, out, errors = call(capsys, "new", "my-agent")
     assert (code, errors) == (0, "")
@@ -28,7 +35,9 @@ def test_a_project_whose_tests_pass(folder: Path, capsys: Capture) -> None:
         "tests/test_my_agent.py",
     }
     assert all(f"wrote {Path('my-agent') / name}" in out for name in files(made))
-    assert out.endswith("\nNow:\n  cd my-agent\n  ravestate run agent.yaml\n  python -m pytest\n")
+    assert out.endswith(
+        "\nNow:\n  cd my-agent\n  ravestate run agent.yaml\n  python -m pip install pytest\n  python -m pytest\n"
+    )
     for name in files(made):
         text = (made / name).read_text(encoding="utf-8")
         assert "__name__" not in text and "__package__" not in text
@@ -49,6 +58,19 @@ def test_a_project_whose_tests_pass(folder: Path, capsys: Capture) -> None:
     assert "Nice to meet you, Grace! I am Ada." in run.stdout
 
     assert call(capsys, "check", "my-agent/agent.yaml")[0] == 0
+
+
+def test_what_is_to_be_typed_next_can_be_typed(
+    folder: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert "\n  cd '1 bad/my-agent'\n" in call(capsys, "new", "1 bad/my-agent")[1]
+    monkeypatch.setenv("PATH", str(folder))  # where somebody else's commands are
+    for name in ("python", "ravestate"):
+        (folder / name).touch(mode=0o755)
+    out = call(capsys, "new", "other")[1]
+    for line in out.splitlines()[-3:]:
+        command = shlex.split(line)[0]
+        assert Path(command).parent == Path(sys.executable).parent and Path(command).exists()
 
 
 def test_a_folder_further_down_and_one_that_is_empty(folder: Path, capsys: Capture) -> None:

@@ -11,8 +11,9 @@ import contextlib
 import sys
 from collections.abc import Sequence
 from importlib import import_module
+from typing import Any
 
-from ravestate.errors import PlatformError, RavestateError
+from ravestate.errors import PlatformError, RavestateError, nearest
 
 __all__ = ["main", "script"]
 
@@ -45,12 +46,12 @@ def main(argv: Sequence[str] | None = None) -> int:
     )
     parser.add_argument("--version", action="version", version=f"ravestate {__version__}")
     parser.add_argument("-v", "--verbose", action="count", default=0, help="say more; twice for everything")
-    commands = parser.add_subparsers(dest="command", metavar="COMMAND", required=True)
+    commands = parser.add_subparsers(
+        dest="command", metavar="COMMAND", required=True, parser_class=CommandParser
+    )
     arguments = sys.argv[1:] if argv is None else list(argv)
     for name, summary in COMMANDS.items():
-        command = commands.add_parser(
-            name, help=summary, description=summary.capitalize() + ".", allow_abbrev=False
-        )
+        command = commands.add_parser(name, help=summary, description=summary.capitalize() + ".")
         if name in arguments:  # the others' options are not needed to list them
             import_module(f"ravestate.cli.{name}").add_arguments(command)
     options = parser.parse_args(arguments)
@@ -87,6 +88,22 @@ def script() -> int:
                 stream.flush()
         os._exit(code)
     return code
+
+
+class CommandParser(argparse.ArgumentParser):
+    """Reads the arguments of one command, or of one of its actions, and tells the usage of that one if they are wrong."""
+
+    def __init__(self, *, allow_abbrev: bool = False, **options: Any) -> None:
+        super().__init__(allow_abbrev=allow_abbrev, **options)
+
+    def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:  # type: ignore[override]  # which has overloads
+        """Refuse here what is not known: else it would be left to the parser above, and that one's usage told."""
+        options, unknown = super().parse_known_args(args, namespace)
+        if unknown:
+            name = unknown[0].partition("=")[0]
+            alike = [o for o in self._option_string_actions if nearest(name.strip("-"), [o.strip("-")])]
+            self.error(f"unrecognized arguments: {' '.join(unknown)}{nearest(name, alike)}")
+        return options, unknown
 
 
 class UsageError(RavestateError):

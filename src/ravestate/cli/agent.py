@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 import importlib.util
+import math
 import os
 import re
 import sys
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Generator, Iterable, Mapping
 from dataclasses import dataclass, field
 from importlib import import_module
 from importlib.metadata import entry_points
@@ -16,13 +18,18 @@ from typing import Any, cast
 
 from ravestate.cli import UsageError
 from ravestate.declare.module import Module, as_module
-from ravestate.errors import DeclarationError, RavestateError, nearest
+from ravestate.errors import DeclarationError, DeclarationErrors, RavestateError, nearest
 from ravestate.modules import BUILT_IN
-from ravestate.settings import value_of, variable_of
+from ravestate.settings import load_settings, value_of, variable_of
 
 __all__ = ["Agent", "add_arguments", "load_agent", "load_module"]
 
 KEYS = ("modules", "settings", "seed", "patience")
+NUMBERS: tuple[tuple[str, Callable[[Any], bool], str], ...] = (
+    ("seed", lambda value: type(value) is int, "a whole number"),
+    ("patience", lambda value: type(value) in (int, float) and 0 <= value < math.inf, "0 seconds or more"),
+)
+"""The keys of an agent file that are numbers, what such a number is, and how to say so."""
 VARIABLE = re.compile(r"\$\{([A-Za-z_][A-Za-z0-9_]*)(?::-([^}]*))?\}")
 
 
@@ -67,27 +74,46 @@ def load_agent(options: argparse.Namespace, first: Iterable[str] = ()) -> Agent:
     """The agent that parsed arguments name; `first` are modules that it has in any case.
 
     Raises:
-        UsageError: Something that is named does not exist or cannot be read.
+        UsageError: Something that is named does not exist or cannot be read. Of an agent file and of ``--set`` all
+            mistakes are told at once.
     """
     agent = Agent([])
+    faults: list[str] = []
     names = [(name, Path()) for name in first]
     files = [name for name in options.modules if name.endswith((".yaml", ".yml"))]
     if options.file:
         files.append(options.file)
     for file in files:
-        names += _read_file(agent, Path(file))
+        names += _read_file(agent, Path(file), faults)
     names += [(name, Path()) for name in options.modules if name not in files]
-    if not names:
+    if not names and not faults:
         raise UsageError("name a module, or an agent file that names some")
     for name, folder in names:
-        module = load_module(name, folder)
+        try:
+            module = load_module(name, folder)
+        except UsageError as error:
+            if not faults:
+                raise
+            faults.append(str(error))
+            continue
         if module not in agent.modules:
             agent.modules.append(module)
     for text in options.sets:
-        _set(agent, text)
+        _set(agent, text, faults)
+    if faults:
+        raise UsageError("\n".join([*faults, *_faults_of_settings(agent)]))
     if options.seed is not None:
         agent.seed = options.seed
     return agent
+
+
+def _faults_of_settings(agent: Agent) -> list[str]:
+    """What is wrong with settings, for who has made other mistakes too; without these it is told when they are used."""
+    try:
+        load_settings(_all(agent.modules), agent.settings)
+    except DeclarationErrors as faults:
+        return [str(fault) for fault in faults.exceptions]
+    return []
 
 
 def load_module(name: str, folder: Path = Path()) -> Module:
@@ -106,28 +132,21 @@ def load_module(name: str, folder: Path = Path()) -> Module:
         return as_module(import_module(f"ravestate.modules.{BUILT_IN[name]}.{name}"))
     installed = {point.name: point for point in entry_points(group="ravestate.modules")}
     if name in installed:
-        try:
+        with _loading(f"entry point {name!r} ({installed[name].value}) fails"):
             return _as_module(name, installed[name].load())
-        except RavestateError:
-            raise
-        except Exception as error:
-            raise UsageError(
-                f"entry point {name!r} ({installed[name].value}) fails: {_where(error)}"
-            ) from error
-    if "/" in name or not name.strip("."):
+    if "/" in name or name.startswith(".") or not name:
         raise UsageError(f"{name!r} is no module: name a file (./hello.py), or a dotted path (pkg.mod)")
     if str(Path.cwd()) not in sys.path:  # a command does not look there by itself
         sys.path.insert(0, str(Path.cwd()))
     if "." in name or ":" in name or (name.isidentifier() and importlib.util.find_spec(name) is not None):
         path, _, attribute = name.partition(":")
-        try:
-            value: Any = import_module(path)
-        except ModuleNotFoundError as error:
-            raise UsageError(f"module {name!r}: {error}{nearest(name, [*BUILT_IN, *installed])}") from None
-        except RavestateError:
-            raise
-        except Exception as error:
-            raise UsageError(f"module {name!r} fails when it is imported: {_where(error)}") from error
+        with _loading(f"module {name!r} fails when it is imported"):
+            try:
+                value: Any = import_module(path)
+            except ModuleNotFoundError as error:
+                raise UsageError(
+                    f"module {name!r}: {error}{nearest(name, [*BUILT_IN, *installed])}"
+                ) from None
         if attribute:
             if not hasattr(value, attribute):
                 raise UsageError(
@@ -151,13 +170,29 @@ def _from_file(name: str, path: Path) -> Module:
     module = importlib.util.module_from_spec(spec)
     sys.modules[path.stem] = module
     try:
-        spec.loader.exec_module(module)
-    except Exception as error:
+        with _loading(f"{name} fails when it is loaded"):
+            spec.loader.exec_module(module)
+    except BaseException:
         sys.modules.pop(path.stem, None)
-        if isinstance(error, RavestateError):
-            raise
-        raise UsageError(f"{name} fails when it is loaded: {_where(error)}") from error
+        raise
     return _as_module(name, module)
+
+
+@contextlib.contextmanager
+def _loading(failure: str) -> Generator[None]:
+    """Whatever a user's module raises while it is loaded becomes a message that begins with `failure`; so does its
+    ``sys.exit``, which would otherwise end the command without a word."""
+    try:
+        yield
+    except (RavestateError, KeyboardInterrupt):
+        raise
+    except SystemExit as error:
+        raise UsageError(
+            f"{failure}: {_where(error)} (it ends the process: write what is not to happen on import under "
+            "if __name__ == '__main__':)"
+        ) from error
+    except BaseException as error:
+        raise UsageError(f"{failure}: {_where(error)}") from error
 
 
 def _as_module(name: str, value: object) -> Module:
@@ -167,7 +202,7 @@ def _as_module(name: str, value: object) -> Module:
         raise UsageError(f"{name}: {error}") from None
 
 
-def _where(error: Exception) -> str:
+def _where(error: BaseException) -> str:
     """An exception in one line, with the place in the user's file."""
     if isinstance(error, SyntaxError):
         return f"{error.filename}:{error.lineno}: {error.msg}"
@@ -181,8 +216,14 @@ def _where(error: Exception) -> str:
     return f"{place}{type(error).__name__}: {error}"
 
 
-def _read_file(agent: Agent, path: Path) -> list[tuple[str, Path]]:
-    """Add what an agent file says; returns the modules that it names, with the folder they are relative to."""
+def _read_file(agent: Agent, path: Path, faults: list[str]) -> list[tuple[str, Path]]:
+    """Add what an agent file says; returns the modules that it names, with the folder they are relative to.
+
+    What is wrong in it is added to `faults`, and the rest is taken.
+
+    Raises:
+        UsageError: The file cannot be read at all.
+    """
     import yaml
 
     try:
@@ -194,32 +235,35 @@ def _read_file(agent: Agent, path: Path) -> list[tuple[str, Path]]:
     if not isinstance(content, dict):
         raise UsageError(f"{path} must hold `modules: [...]`, and may hold {', '.join(KEYS[1:])}")
     said = cast("dict[str, Any]", content)
-    for key in said:
-        if key not in KEYS:
-            raise UsageError(f"{path}: unknown key {key!r}{nearest(str(key), KEYS)}")
+    wrong: list[str] = [f"unknown key {key!r}{nearest(str(key), KEYS)}" for key in said if key not in KEYS]
     modules: Any = said.get("modules", [])
     if not isinstance(modules, list) or not all(isinstance(m, str) for m in cast("list[Any]", modules)):
-        raise UsageError(f"{path}: modules must be a list of names, not {modules!r}")
-    settings = _filled(said.get("settings") or {}, path)
+        wrong.append(f"modules must be a list of names, not {modules!r}")
+        modules = []
+    settings = _filled(said.get("settings") or {}, wrong)
     if not isinstance(settings, Mapping):
-        raise UsageError(f"{path}: settings must map a module to its settings, not {settings!r}")
+        wrong.append(f"settings must map a module to its settings, not {settings!r}")
+        settings = {}
     for module, values in cast("Mapping[str, Any]", settings).items():
         if not isinstance(values, Mapping):
-            raise UsageError(f"{path}: settings of {module} must be keys and values, not {values!r}")
+            wrong.append(f"settings of {module} must be keys and values, not {values!r}")
+            continue
         agent.settings.setdefault(str(module), {}).update(
             (key, value)
             for key, value in cast("Mapping[str, Any]", values).items()
             if variable_of(str(module), str(key)) not in os.environ  # which goes before a file
         )
-    for key, kind in (("seed", int), ("patience", (int, float))):
+    for key, is_one, kind in NUMBERS:
         if key in said:
-            if not isinstance(said[key], kind) or isinstance(said[key], bool):
-                raise UsageError(f"{path}: {key} must be a number, not {said[key]!r}")
-            setattr(agent, key, said[key])
+            if is_one(said[key]):
+                setattr(agent, key, said[key])
+            else:
+                wrong.append(f"{key} must be {kind}, not {said[key]!r}")
+    faults += dict.fromkeys(f"{path}: {fault}" for fault in wrong)  # each once
     return [(name, path.parent) for name in cast("list[str]", modules)]
 
 
-def _filled(value: Any, path: Path) -> Any:
+def _filled(value: Any, wrong: list[str]) -> Any:
     """Replace ``${NAME}`` and ``${NAME:-default}`` by the environment's values: secrets do not belong into files."""
     if isinstance(value, str):
 
@@ -227,29 +271,38 @@ def _filled(value: Any, path: Path) -> Any:
             default: str | None = match[2]  # None where none is written
             found = os.environ.get(match[1], default)
             if found is None:
-                raise UsageError(
-                    f"{path}: the environment has no {match[1]}; set it, or write ${{{match[1]}:-default}}"
-                )
-            return found
+                wrong.append(f"the environment has no {match[1]}; set it, or write ${{{match[1]}:-default}}")
+            return found or ""
 
         return VARIABLE.sub(fill, value)
     if isinstance(value, dict):
-        return {key: _filled(item, path) for key, item in cast("dict[Any, Any]", value).items()}
+        return {key: _filled(item, wrong) for key, item in cast("dict[Any, Any]", value).items()}
     if isinstance(value, list):
-        return [_filled(item, path) for item in cast("list[Any]", value)]
+        return [_filled(item, wrong) for item in cast("list[Any]", value)]
     return value
 
 
-def _set(agent: Agent, text: str) -> None:
+def _set(agent: Agent, text: str, faults: list[str]) -> None:
+    """Take a ``--set``; what is wrong with it is added to `faults`, but for its value, which the settings judge."""
     name, equals, said = text.partition("=")
-    value: Any = said
     module, dot, key = name.strip().partition(".")
     if not equals or not dot or not module or not key:
-        raise UsageError(f"--set {text}: write --set module.key=value, e.g. --set idle.bored_after=10")
-    found = next((m for m in _all(agent.modules) if m.name == module), None)
-    if found is not None and found.settings is not None and key in found.settings.model_fields:
-        value = value_of(said, found.settings, key, _parse)
-    agent.settings.setdefault(module, {})[key] = value
+        faults.append(f"--set {text}: write --set module.key=value, e.g. --set idle.bored_after=10")
+        return
+    known = {found.name: found for found in _all(agent.modules)}
+    if module not in known:
+        is_one = module in BUILT_IN
+        hint = ": name it too" if is_one else nearest(module, known) or nearest(module, BUILT_IN)
+        faults.append(f"--set {text}: module {module!r} is not part of this agent{hint}")
+    elif (settings := known[module].settings) is None:
+        faults.append(f"--set {text}: module {module!r} has no settings")
+    elif key not in settings.model_fields:
+        faults.append(
+            f"--set {text}: module {module!r} has no such setting{nearest(key, settings.model_fields)} "
+            f"(it has: {', '.join(settings.model_fields)})"
+        )
+    else:
+        agent.settings.setdefault(module, {})[key] = value_of(said, settings, key, _parse)
 
 
 def _parse(text: str) -> Any:

@@ -22,24 +22,34 @@ __all__ = ["add_arguments", "run"]
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The command's options."""
-    parser.add_argument(
-        "--index",
-        metavar="FILE",
-        help="the index; by default the setting's: the environment's RAVESTATE_GENQA_INDEX, or a file in your data folder",
-    )
+    _add_index(parser)
     actions = parser.add_subparsers(dest="action", metavar="ACTION", required=True)
-    action = actions.add_parser(
+    indexing = actions.add_parser(
         "index",
         help="read files and folders",
         description="Read files and folders: text, Markdown, HTML, PDF, JSON lines, ZIM. Called again, it reads what is new "
         "or changed, and forgets what is gone. Interrupted, it goes on where it was. Exit code 1: something could not be read.",
     )
-    action.add_argument("paths", nargs="+", metavar="PATH", help="a file, or a folder with all that is in it")
-    actions.add_parser("list", help="list what has been read")
-    action = actions.add_parser("forget", help="forget files and folders")
-    action.add_argument("paths", nargs="+", metavar="PATH", help="a file, or a folder with all that is in it")
-    action = actions.add_parser("ask", help="ask a question, and see what is found")
-    action.add_argument("question", nargs="+", metavar="QUESTION")
+    listing = actions.add_parser("list", help="list what has been read")
+    forgetting = actions.add_parser("forget", help="forget files and folders")
+    for action in (indexing, forgetting):
+        action.add_argument(
+            "paths", nargs="+", metavar="PATH", help="a file, or a folder with all that is in it"
+        )
+    asking = actions.add_parser("ask", help="ask a question, and see what is found")
+    asking.add_argument("question", nargs="+", metavar="QUESTION")
+    for action in (indexing, listing, forgetting, asking):
+        _add_index(action, later=True)
+
+
+def _add_index(parser: argparse.ArgumentParser, *, later: bool = False) -> None:
+    """The option that says which index; `later`, behind the name of an action, it leaves what was said before it."""
+    parser.add_argument(
+        "--index",
+        metavar="FILE",
+        default=argparse.SUPPRESS if later else None,
+        help="the index; by default the setting's: the environment's RAVESTATE_GENQA_INDEX, or a file in your data folder",
+    )
 
 
 def run(options: argparse.Namespace) -> int:

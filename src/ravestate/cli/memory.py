@@ -21,35 +21,44 @@ __all__ = ["add_arguments", "run"]
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The command's options."""
+    _add_place(parser)
+    does = parser.add_subparsers(dest="does", metavar="WHAT", required=True)
+    listing = does.add_parser("list", help="list what is known")
+    listing.add_argument("type", nargs="?", default="", metavar="TYPE", help="a type, e.g. Person")
+    listing.add_argument("--types", action="store_true", help="only count, by type")
+    showing = does.add_parser("show", help="show somebody or something with its relations")
+    showing.add_argument("which", metavar="NAME|ID")
+    exporting = does.add_parser("export", help="write everything as JSON")
+    exporting.add_argument("to", nargs="?", default="-", metavar="FILE", help="by default standard output")
+    loading = does.add_parser("load", help="add what was exported")
+    loading.add_argument("document", metavar="FILE", help="a file that export wrote; - for standard input")
+    forgetting = does.add_parser("forget", help="forget somebody with everything about them")
+    forgetting.add_argument("which", metavar="NAME|ID")
+    forgetting.add_argument("-y", "--yes", action="store_true", help="do not ask")
+    for action in (listing, showing, exporting, loading, forgetting):
+        _add_place(action, later=True)
+
+
+def _add_place(parser: argparse.ArgumentParser, *, later: bool = False) -> None:
+    """The options that say which memory; `later`, behind the name of an action, they leave what was said before it."""
+    default = argparse.SUPPRESS if later else None
     parser.add_argument(
-        "--path", metavar="FILE", help="the file of memory; by default the one of the settings"
+        "--path",
+        metavar="FILE",
+        default=default,
+        help="the file of memory; by default the one of the settings",
     )
-    parser.add_argument("-f", "--file", metavar="FILE", help="an agent file, for its settings of ontology")
+    parser.add_argument(
+        "-f", "--file", metavar="FILE", default=default, help="an agent file, for its settings of ontology"
+    )
     parser.add_argument(
         "--set",
-        dest="sets",
+        dest="later_sets" if later else "sets",
         action="append",
         default=[],
         metavar="ontology.KEY=VALUE",
         help="a setting, before the file's and the environment's (may be repeated)",
     )
-    does = parser.add_subparsers(dest="does", metavar="WHAT", required=True)
-    listing = does.add_parser("list", help="list what is known", allow_abbrev=False)
-    listing.add_argument("type", nargs="?", default="", metavar="TYPE", help="a type, e.g. Person")
-    listing.add_argument("--types", action="store_true", help="only count, by type")
-    showing = does.add_parser(
-        "show", help="show somebody or something with its relations", allow_abbrev=False
-    )
-    showing.add_argument("which", metavar="NAME|ID")
-    exporting = does.add_parser("export", help="write everything as JSON", allow_abbrev=False)
-    exporting.add_argument("to", nargs="?", default="-", metavar="FILE", help="by default standard output")
-    loading = does.add_parser("load", help="add what was exported", allow_abbrev=False)
-    loading.add_argument("document", metavar="FILE", help="a file that export wrote; - for standard input")
-    forgetting = does.add_parser(
-        "forget", help="forget somebody with everything about them", allow_abbrev=False
-    )
-    forgetting.add_argument("which", metavar="NAME|ID")
-    forgetting.add_argument("-y", "--yes", action="store_true", help="do not ask")
 
 
 def run(options: argparse.Namespace) -> int:
@@ -90,7 +99,8 @@ def _settings(options: argparse.Namespace) -> Settings:
     from ravestate.modules import ontology
     from ravestate.settings import load_settings
 
-    named = argparse.Namespace(modules=["ontology"], file=options.file, sets=options.sets, seed=None)
+    sets = [*options.sets, *options.later_sets]
+    named = argparse.Namespace(modules=["ontology"], file=options.file, sets=sets, seed=None)
     given = dict(agent.load_agent(named).settings.get("ontology", {}))
     if options.path:
         given.update(path=options.path, url=None)

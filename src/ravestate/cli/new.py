@@ -5,6 +5,8 @@ from __future__ import annotations
 import argparse
 import keyword
 import re
+import shlex
+import shutil
 import sys
 from importlib.resources import files
 from pathlib import Path
@@ -52,5 +54,13 @@ def run(options: argparse.Namespace) -> int:
         except OSError as error:
             raise UsageError(f"cannot write {path}: {error.strerror}") from None
         print(f"wrote {path}")
-    print(f"\nNow:\n  cd {folder}\n  ravestate run agent.yaml\n  python -m pytest")
+    print(f"\nNow:\n  cd {shlex.quote(str(folder))}\n  {_named('ravestate')} run agent.yaml")
+    print(f"  {_named('python')} -m pip install pytest\n  {_named('python')} -m pytest")
     return 0
+
+
+def _named(command: str) -> str:
+    """How to call a command of this environment: by its path, unless the shell finds it by its name."""
+    place = Path(sys.executable).with_name(command)
+    found = shutil.which(command)
+    return command if found is None or Path(found) == place or not place.exists() else shlex.quote(str(place))
