@@ -3,8 +3,8 @@
 The agent of the question ``answer`` (a chain of four rules, an answer that competes with a fallback) as a conversation
 of the web page, with the board mounted or not; a board's browser looks on over a WebSocket or does not. The agent does
 nothing but answer, one input after another: the worst case for whoever looks on, as a rule that thinks makes the same
-records in more time. Each figure is the processor time of an answer, over some seconds, as a recorder that has had
-its fill comes and goes.
+records in more time. Each figure is the processor time of an answer over a turn, in which a recorder that has had its
+fill comes and goes several times.
 """
 
 from __future__ import annotations
@@ -19,13 +19,17 @@ import ravestate as rs
 from benchmarks.bench import Bench
 from benchmarks.figures import Figure, compare
 from benchmarks.peers.wire import serve
+from ravestate.board.recorder import PAUSE
 
 LENGTH = 4
-ANSWERS = 40_000
-"""Over which one is timed."""
+WARM = 5.0
+"""Seconds for which each answers before it is timed: bursts that a recorder takes gladly are over by then."""
 
-WARM = 6.0
-"""Seconds for which it answers before it is timed: bursts that a recorder takes gladly are over by then."""
+TURN = 0.6
+"""Seconds of processor time for which one answers before the next has its turn."""
+
+TURNS = 15
+"""Of each, in one repetition."""
 
 
 def chain() -> tuple[rs.Module, rs.Slot[str], rs.Slot[str]]:
@@ -53,8 +57,42 @@ def chain() -> tuple[rs.Module, rs.Slot[str], rs.Slot[str]]:
     return module, heard, output
 
 
-def answered(mounted: bool, watched: bool) -> float:
-    """Seconds for an answer."""
+class Talk:
+    """A conversation of a web page, with the board beside it or not."""
+
+    def __init__(self, context: rs.Context, heard: rs.Slot[str], output: rs.Slot[str], recorder: Any) -> None:
+        self._context = context
+        self._heard = heard
+        self._output = output
+        self._recorder = recorder
+        self._number = 0
+
+    async def answer(self, seconds: float) -> float:
+        """Answer for so many seconds of processor time; how many of them an answer took."""
+        if self._recorder is not None:
+            _begin_anew(self._recorder)
+        first, begin, used = self._number, time.process_time(), 0.0
+        while used < seconds:
+            for _ in range(25):
+                self._number += 1
+                self._context.put(self._heard, f"word {self._number}")
+                await self._context.next(self._output.changed)
+            used = time.process_time() - begin
+        return used / (self._number - first)
+
+
+def _begin_anew(recorder: Any) -> None:
+    """Take from a recorder what it was granted for the time in which others had their turn."""
+    recorder._granted = asyncio.get_running_loop().time()
+    recorder._left = max(1, min(recorder._left, int(recorder._rate * PAUSE)))
+    recorder._leisure.share()
+
+
+def answered() -> list[list[float]]:
+    """Seconds for an answer without a board, recorded, and looked into: of each as many figures as there are turns.
+
+    They take turns in one process: from one process to another the same work differs by more than what is asked for.
+    """
     from websockets.asyncio.client import connect
 
     from ravestate.board.application import INSIDE, RecordedAgent, routes
@@ -62,36 +100,33 @@ def answered(mounted: bool, watched: bool) -> float:
     from ravestate.modules.platform.webio.server import Server
     from ravestate.runtime.agent import Agent
 
-    async def measure() -> float:
-        module, heard, output = chain()
-        settings = {"webio": {"port": 0}}
-        agent = (RecordedAgent if mounted else Agent)(module, webio, settings=settings)
-        beside = routes(agent.recorders) if isinstance(agent, RecordedAgent) else ()
-        async with Server(agent, beside, INSIDE) as server, contextlib.AsyncExitStack() as stack:
-            session = await server._app.state.sessions.open()  # pyright: ignore[reportPrivateUsage]
-            await asyncio.sleep(0.05)
-            context = session.context
-            if watched:
-                address = server.address.replace("http", "ws") + "board/ws"
-                socket = await stack.enter_async_context(connect(address, compression=None, max_size=None))
-                await socket.send('{"type": "hello", "v": 1}')
-                reader = asyncio.create_task(_read(socket))
-                stack.callback(reader.cancel)
-            number = 0
+    async def measure() -> list[list[float]]:
+        async with contextlib.AsyncExitStack() as stack:
 
-            async def answers(count: int) -> None:
-                nonlocal number
-                for _ in range(count):
-                    number += 1
-                    context.put(heard, f"word {number}")
-                    await context.next(output.changed)
+            async def talk(kind: type[Agent]) -> tuple[Talk, Server]:
+                module, heard, output = chain()
+                agent = kind(module, webio, settings={"webio": {"port": 0}})
+                recorders = agent.recorders if isinstance(agent, RecordedAgent) else None
+                beside = () if recorders is None else routes(recorders)
+                server = await stack.enter_async_context(Server(agent, beside, INSIDE))
+                session = await server._app.state.sessions.open()  # pyright: ignore[reportPrivateUsage]
+                await asyncio.sleep(0.05)
+                recorder = None if recorders is None else recorders.of(session.context)
+                return Talk(session.context, heard, output, recorder), server
 
-            warm = time.perf_counter() + (WARM if mounted else 1.0)
-            while time.perf_counter() < warm:
-                await answers(100)
-            begin = time.process_time()
-            await answers(ANSWERS)
-            return (time.process_time() - begin) / ANSWERS
+            bare, _ = await talk(Agent)
+            recorded, _ = await talk(RecordedAgent)
+            watched, server = await talk(RecordedAgent)
+            address = server.address.replace("http", "ws") + "board/ws"
+            socket = await stack.enter_async_context(connect(address, compression=None, max_size=None))
+            await socket.send('{"type": "hello", "v": 1}')
+            reader = asyncio.create_task(_read(socket))
+            stack.callback(reader.cancel)
+            talks = (bare, recorded, watched)
+            for one in talks:
+                await one.answer(WARM)
+            turns = [[await one.answer(TURN) for one in talks] for _ in range(TURNS)]
+            return [list(times) for times in zip(*turns, strict=True)]
 
     return asyncio.run(measure())
 
@@ -108,10 +143,9 @@ def ask(bench: Bench) -> Iterable[Figure]:
     bare: list[float] = []
     mounted: list[float] = []
     watched: list[float] = []
-    for _ in bench.rounds(7, 2):
-        bare.append(ours.ask("answered", mounted=False, watched=False))
-        mounted.append(ours.ask("answered", mounted=True, watched=False))
-        watched.append(ours.ask("answered", mounted=True, watched=True))
+    for _ in bench.rounds(3, 1):
+        for times, found in zip((bare, mounted, watched), ours.ask("answered"), strict=True):
+            times += found
     for title, times in (("recorded, nobody looks on", mounted), ("a board looks on", watched)):
         yield compare(
             "watching", title, times, "no board", bare, target="<= 1.05", reach=lambda ratio: ratio <= 1.05
