@@ -64,13 +64,13 @@ def test_what_is_to_be_typed_next_can_be_typed(
     folder: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     assert "\n  cd '1 bad/my-agent'\n" in call(capsys, "new", "1 bad/my-agent")[1]
-    monkeypatch.setenv("PATH", str(folder))  # where somebody else's commands are
-    for name in ("python", "ravestate"):
-        (folder / name).touch(mode=0o755)
-    out = call(capsys, "new", "other")[1]
-    for line in out.splitlines()[-3:]:
-        command = shlex.split(line)[0]
-        assert Path(command).parent == Path(sys.executable).parent and Path(command).exists()
+    monkeypatch.setenv("PATH", str(folder))
+    for name in ("nobodys", "others"):
+        for line in call(capsys, "new", name)[1].splitlines()[-3:]:
+            command = Path(shlex.split(line)[0])
+            assert command.parent == Path(sys.executable).parent and command.exists()
+        for command in ("python", "ravestate"):  # somebody else's
+            (folder / command).touch(mode=0o755)
 
 
 def test_a_folder_further_down_and_one_that_is_empty(folder: Path, capsys: Capture) -> None:

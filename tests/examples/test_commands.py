@@ -14,7 +14,7 @@ from pathlib import Path
 
 import pytest
 
-from repo.snippets import Block, blocks_in
+from repo.snippets import Block, blocks_in, save
 
 ROOT = Path(__file__).parents[2]
 PAGES = [
@@ -47,10 +47,7 @@ def test_commands_print_what_is_shown(page: Path, tmp_path: Path) -> None:
     }
     same = doctest.OutputChecker().check_output
     for block in blocks_in(page):
-        if block.title and (name := re.fullmatch(r"([\w./-]+)(, continued)?", block.title)):
-            (tmp_path / name[1]).parent.mkdir(parents=True, exist_ok=True)
-            with open(tmp_path / name[1], "a" if name[2] else "w", encoding="utf-8") as file:
-                file.write("\n\n" + block.code if name[2] else block.code)
+        save(block, tmp_path)
         if block.language != "console" or block.not_run:
             continue
         for command, expected in shown(block):

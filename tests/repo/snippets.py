@@ -2,11 +2,14 @@
 
 The rules, for who writes documentation:
 
-- A ```` ```python ```` block is run. The blocks of one file share one namespace, so a story may run through
-  the file; `await` and `async with` may stand at the top level.
+- A ```` ```python ```` block is run. The blocks of one page share one namespace, so a story may run through
+  the page; `await` and `async with` may stand at the top level.
 - A ```` ```pycon ```` block is run too, and what it shows must come out.
-- A block of any language with `title="hello.py"` is also saved under that name, in a folder of the file's own
-  in which all its blocks run: so a later block can read, import or run it.
+- A block of any language with `title="hello.py"` is also saved under that name, in a folder of the page's own
+  in which all its blocks run: so a later block can read, import or run it. It has a namespace of its own, as for
+  the reader: later blocks import what they need of it. `title="hello.py, continued"` adds to the file.
+- A block whose title begins with `test_` is run by pytest too, as its reader will do; and where a block has functions
+  `test_*`, it must have such a title, as else nothing would call them.
 - A block right under `<!-- not run: the reason -->` is skipped, and the reason is shown. Rarely needed.
 - Blocks of other languages (`bash`, `console`, `yaml`, `text`, ...) are not run.
 """
@@ -20,6 +23,7 @@ import doctest
 import inspect
 import os
 import re
+import subprocess
 import sys
 import textwrap
 import types
@@ -48,6 +52,11 @@ class Block:
     def runs(self) -> bool:
         """Whether the tests run it (or would, but for the reason given)."""
         return self.language in LANGUAGES
+
+    @property
+    def has_tests(self) -> bool:
+        """Whether it has functions that nobody but pytest calls."""
+        return re.search(r"^(?:async )?def test_", self.code, re.MULTILINE) is not None
 
     def __str__(self) -> str:
         return f"{self.file.name}:{self.line}"
@@ -97,12 +106,12 @@ class Page:
     folder: Path
     blocks: list[Block] = field(default_factory=list)
     module: types.ModuleType = field(init=False)
+    files: dict[str, types.ModuleType] = field(default_factory=dict)
     done: int = 0
 
     def __post_init__(self) -> None:
         self.blocks = self.blocks or blocks_in(self.file)
-        self.module = types.ModuleType("snippets_of_" + re.sub(r"\W", "_", self.file.stem))
-        self.module.__file__ = str(self.file)
+        self.module = self._namespace("")
 
     def run(self, block: Block) -> None:
         """Run `block`, after those before it that have not been run yet. Raises what the block raises."""
@@ -110,23 +119,40 @@ class Page:
             while self.done <= self.blocks.index(block):
                 current = self.blocks[self.done]
                 self.done += 1
-                self._save(current)
+                file = save(current, self.folder)
                 if current.runs and current.not_run is None:
-                    (run_pycon if LANGUAGES[current.language] == "pycon" else run_python)(
-                        current, self.module
-                    )
+                    module = self.files.setdefault(file, self._namespace(file)) if file else self.module
+                    with self._known(module):
+                        (run_pycon if LANGUAGES[current.language] == "pycon" else run_python)(current, module)
+                    if current.has_tests:
+                        run_tests(current, self.folder)
 
-    def _save(self, block: Block) -> None:
-        if block.title and re.fullmatch(r"[\w.-]+(/[\w.-]+)*", block.title):
-            target = self.folder / block.title
-            target.parent.mkdir(parents=True, exist_ok=True)
-            target.write_text(block.code, encoding="utf-8")
+    def leavings(self) -> list[str]:
+        """The files that its blocks have made, apart from those that the page shows."""
+        made = [path.relative_to(self.folder) for path in self.folder.rglob("*") if path.is_file()]
+        shown = {(block.title or "").removesuffix(", continued") for block in self.blocks}
+        return sorted(
+            str(path) for path in made if str(path) not in shown and "__pycache__" not in path.parts
+        )
+
+    def _namespace(self, file: str) -> types.ModuleType:
+        module = types.ModuleType("snippets_of_" + re.sub(r"\W", "_", f"{self.file.stem}_{file}".rstrip("_")))
+        module.__file__ = str(self.file)
+        return module
+
+    @contextlib.contextmanager
+    def _known(self, module: types.ModuleType) -> Iterator[None]:
+        """With a module that can be found by its name, as pickling and pydantic ask."""
+        sys.modules[module.__name__] = module
+        try:
+            yield
+        finally:
+            del sys.modules[module.__name__]
 
     @contextlib.contextmanager
     def _at_home(self) -> Iterator[None]:
-        """In the page's folder, importable from it, and with its module known (as pickling and pydantic ask)."""
+        """In the page's folder, and importable from it."""
         before, path, known = Path.cwd(), list(sys.path), set(sys.modules)
-        sys.modules[self.module.__name__] = self.module
         os.chdir(self.folder)
         sys.path.insert(0, str(self.folder))
         try:
@@ -136,8 +162,20 @@ class Page:
             sys.path[:] = path
             for name in set(sys.modules) - known:
                 origin = getattr(sys.modules[name], "__file__", None) or ""
-                if name == self.module.__name__ or origin.startswith(str(self.folder)):
+                if origin.startswith(str(self.folder)):
                     del sys.modules[name]
+
+
+def save(block: Block, folder: Path) -> str:
+    """Write a block into the file that its title names, or add it there; its name, empty if there is none."""
+    name = re.fullmatch(r"(?P<file>[\w.-]+(?:/[\w.-]+)*)(?P<more>, continued)?", block.title or "")
+    if name is None:
+        return ""
+    target = folder / name["file"]
+    target.parent.mkdir(parents=True, exist_ok=True)
+    before = target.read_text(encoding="utf-8") + "\n\n" if name["more"] else ""
+    target.write_text(before + block.code, encoding="utf-8")
+    return name["file"]
 
 
 def run_python(block: Block, module: types.ModuleType) -> None:
@@ -160,3 +198,17 @@ def run_pycon(block: Block, module: types.ModuleType) -> None:
     report: list[str] = []
     doctest.DocTestRunner(optionflags=options, verbose=False).run(test, out=report.append, clear_globs=False)
     assert not report, "".join(report)
+
+
+def run_tests(block: Block, folder: Path) -> None:
+    """Have pytest run a block's file, in a process of its own. Raises AssertionError with what it prints if one fails."""
+    name = Path(block.title or "").name
+    assert name.startswith("test_") and name.endswith(".py"), (
+        f'{block}: give it title="test_....py", or drop its tests'
+    )
+    environment = {key: value for key, value in os.environ.items() if not key.startswith("PYTEST")}
+    run = subprocess.run(
+        [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", str(block.title)],
+        cwd=folder, env=environment, capture_output=True, text=True, timeout=120, check=False,
+    )  # fmt: skip
+    assert run.returncode == 0, f"{block}:\n{run.stdout}{run.stderr}"

@@ -32,6 +32,15 @@ def test_snippet(block: Block, pages: dict[Path, Page]) -> None:
     pages[block.file].run(block)
 
 
+@pytest.mark.parametrize("file", sorted({block.file for block in BLOCKS}), ids=lambda file: file.name)
+def test_what_leaves_something_behind_may_be_run_again(file: Path, pages: dict[Path, Page]) -> None:
+    page = pages[file]
+    page.run(page.blocks[-1])
+    if page.leavings():
+        again = Page(file, page.folder)
+        again.run(again.blocks[-1])
+
+
 # ------------------------------------------------------------------------------- the runner itself
 
 
@@ -105,3 +114,45 @@ def test_shown_output_must_come_out(tmp_path: Path) -> None:
 def test_an_open_fence_is_an_error(tmp_path: Path) -> None:
     with pytest.raises(ValueError, match=r"page\.md:1: .* never closed"):
         page_of(tmp_path, "```python\nx = 1\n")
+
+
+def test_tests_that_are_shown_are_run_as_their_reader_runs_them(tmp_path: Path) -> None:
+    page = page_of(
+        tmp_path,
+        '```python title="thing.py"\nsize = 3\n```\n'
+        '```python title="test_good.py"\nimport pytest, thing\n\n'
+        '@pytest.mark.parametrize("n", [1, 2])\ndef test_size(n, tmp_path):\n    assert n < thing.size\n```\n'
+        '```python title="test_bad.py"\nimport thing\n\ndef test_size():\n    assert thing.size == 4\n```\n',
+    )
+    page.run(page.blocks[1])
+    with pytest.raises(AssertionError, match=r"page\.md:\d+:\n(.|\n)*assert 3 == 4"):
+        page.run(page.blocks[2])
+
+
+def test_a_file_is_apart_from_the_page_and_may_be_continued(tmp_path: Path) -> None:
+    page = page_of(
+        tmp_path,
+        '```python title="thing.py"\nsize = 3\n```\n'
+        '```python title="thing.py, continued"\nassert size == 3\ncolour = "red"\n```\n'
+        "```python\nimport thing\nassert (thing.size, thing.colour) == (3, 'red')\n```\n```python\nsize\n```\n",
+    )
+    page.run(page.blocks[2])
+    with pytest.raises(NameError, match="'size' is not defined"):
+        page.run(page.blocks[3])
+
+
+def test_what_blocks_leave_behind_is_known(tmp_path: Path) -> None:
+    page = page_of(
+        tmp_path,
+        '```yaml title="a/b.yaml"\ny: 6\n```\n```python\nimport pathlib\npathlib.Path("new").touch()\n```\n',
+    )
+    page.run(page.blocks[0])
+    assert page.leavings() == []
+    page.run(page.blocks[1])
+    assert page.leavings() == ["new"]
+
+
+def test_tests_that_nobody_would_run_are_refused(tmp_path: Path) -> None:
+    page = page_of(tmp_path, "```python\ndef test_nothing():\n    assert False\n```\n")
+    with pytest.raises(AssertionError, match=r'page\.md:2: give it title="test_'):
+        page.run(page.blocks[0])

@@ -63,4 +63,5 @@ def _named(command: str) -> str:
     """How to call a command of this environment: by its path, unless the shell finds it by its name."""
     place = Path(sys.executable).with_name(command)
     found = shutil.which(command)
-    return command if found is None or Path(found) == place or not place.exists() else shlex.quote(str(place))
+    is_found = found is not None and Path(found) == place
+    return command if is_found or not place.exists() else shlex.quote(str(place))
