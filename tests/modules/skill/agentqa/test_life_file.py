@@ -30,6 +30,9 @@ TOPICS = [
     "abilities",
     "learned",
     "how_are_you",
+    "distress",
+    "grief",
+    "insult",
 ]
 
 
@@ -45,6 +48,14 @@ def test_the_life_that_comes_with_the_module_is_whole() -> None:
     assert life.born is not None and life.name == "Ravestate"
     questions = [q for topic in life.topics.values() for q in topic.questions] + list(life.others)
     assert len(questions) == len(set(questions))
+
+
+def test_remarks_are_added_and_may_be_a_topic_of_their_own(tmp_path: Path) -> None:
+    life = life_of(
+        "topics: {grief: {remarks: rain again}, praise: {remarks: [well done], phrases: Thanks.}}", tmp_path
+    )
+    assert life.topics["grief"].remarks == (*read_life().topics["grief"].remarks, "rain again")
+    assert life.topics["praise"].remarks == ("well done",)
 
 
 def test_a_fact_is_replaced_added_or_taken_away_and_the_rest_stays(tmp_path: Path) -> None:
@@ -106,6 +117,10 @@ def test_an_empty_file_changes_nothing(text: str, tmp_path: Path) -> None:
         ("topics:\n  shoes: {phrases: No.}", "mine.yaml:2: the topic shoes has no questions"),
         ("topics:\n  shoes: {questions: do you wear shoes}", "the topic shoes has no phrases"),
         ("topics:\n  shoes: {question: x}", "'question' means nothing here; did you mean 'questions'"),
+        (
+            "topics:\n  grief: {remarks: [sad, (lonely]}",
+            "mine.yaml:2: '(lonely' is no regular expression (missing )",
+        ),
         ("topics:\n  home: {questions: []}", "there are no questions"),
         (
             "topics:\n  home:\n    phrases:\n      - I live.\n      - 'In {hom}.'",

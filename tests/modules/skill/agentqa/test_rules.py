@@ -128,6 +128,48 @@ def test_it_wins_over_whoever_else_found_an_answer_however_they_are_declared() -
         assert conflict.winner == "agentqa:answer" and conflict.margin > 1.0 and not conflict.tie
 
 
+@pytest.mark.parametrize(
+    ("text", "topic"),
+    [
+        ("I want to kill myself", "distress"),
+        ("who are you? I want to die", "distress"),
+        ("My dog died.", "grief"),
+        ("you are a stupid piece of junk", "insult"),
+    ],
+)
+def test_distress_and_insults_are_answered_before_all_else(text: str, topic: str, tmp_path: Path) -> None:
+    busy = rs.Module("busy", requires=[verbaliser])
+
+    @busy.rule(when=rawio.input.changed.where(bool), writes=verbaliser.intent, weight=9.0)
+    async def insist(ctx: rs.RuleContext) -> None:
+        ctx[verbaliser.intent] = Intent("insist", phrases={"en": ["busy"]})
+
+    own = f"topics: {{{topic}: {{phrases: 'I hear you.'}}}}"
+    with start(tmp_path, chatter, encyclopaedia, busy, own=own) as sim:
+        assert say(sim, text) == "I hear you."
+        assert say(sim, "it is warm") == "busy"
+
+
+def test_whoever_listens_learns_of_what_the_remark_is(tmp_path: Path) -> None:
+    nurse = rs.Module("nurse", requires=[agentqa])
+    called: rs.Slot[str] = nurse.slot("called", "")
+
+    @nurse.rule(when=agentqa.remarked.where(lambda remark: remark.topic == "distress"), writes=called)
+    async def call(ctx: rs.RuleContext) -> None:
+        ctx[called] = ctx.payload(agentqa.remarked).text
+
+    with start(tmp_path, nurse) as sim:
+        sim.say("Well, I want to die!")
+        assert sim.read(called) == "i want to die"
+
+
+def test_whoever_is_in_distress_is_told_who_helps(tmp_path: Path) -> None:
+    with start(tmp_path, own="facts: {helplines: the number 123}") as sim:
+        assert "the number 123" in say(sim, "I want to kill myself")
+    with start(tmp_path, own="facts: {helplines: ~}") as sim:
+        assert "doctor" in say(sim, "I want to kill myself")
+
+
 def test_a_question_that_is_said_for_ever_is_answered_once(tmp_path: Path) -> None:
     with start(tmp_path, chatter) as sim:
         sim.put(agentqa.today, date(2026, 3, 1))

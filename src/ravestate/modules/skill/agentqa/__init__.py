@@ -15,11 +15,13 @@ from ravestate.modules import idle, interloc, nlp, ontology, rawio, verbaliser
 
 from .life import Life, Topic
 from .life_file import read_life
+from .remarks import Remark
 from .router import Match, Router
 
 __all__ = [
     "Life",
     "Match",
+    "Remark",
     "Router",
     "Settings",
     "Topic",
@@ -28,6 +30,7 @@ __all__ = [
     "module",
     "mood",
     "read_life",
+    "remarked",
     "rules",
     "today",
 ]
@@ -56,6 +59,9 @@ module = rs.Module("agentqa", requires=[rawio, idle, interloc, nlp, ontology, ve
 
 asked = module.signal("asked", payload=Match)
 """The user asks something about the agent; with the topic."""
+
+remarked = module.signal("remarked", payload=Remark)
+"""The user says something that is answered before all else, such as distress or an insult; with the topic."""
 
 life: rs.Slot[Life | None] = module.slot("life", None, type=Life, input=True)
 """Who the agent is: read from the files at startup. Where memory has the agent's node, that one counts."""

@@ -10,7 +10,7 @@ import re
 from collections.abc import Collection, Iterable
 from dataclasses import dataclass
 
-__all__ = ["Asked", "about_agent", "plain"]
+__all__ = ["Asked", "about_agent", "plain", "statements"]
 
 LONGEST = 2000
 """So many characters of an utterance are looked at."""
@@ -69,6 +69,17 @@ def about_agent(
 def plain(question: str) -> str:
     """Return an example question in the plain form."""
     return " ".join(_unwrapped(_words(question, ()))[0])
+
+
+def statements(utterance: str, names: Collection[str] = ()) -> list[str]:
+    """Return the sentences of an utterance in the plain form, whatever they are.
+
+    Example:
+        >>> statements("I'm fine. Robin's friends don't sleep.", ["Robin"])
+        ['i am fine', 'your friends do not sleep']
+    """
+    found = [s for s in _SENTENCE.findall(utterance[:LONGEST]) if any(c.isalpha() for c in s)]
+    return [" ".join(_unwrapped(_words(sentence, names))[0]) for sentence in found]
 
 
 def _unfit(words: list[str], asks: bool, known: Collection[str]) -> str:

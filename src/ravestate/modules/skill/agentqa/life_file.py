@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import string
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -26,14 +27,14 @@ NAMED = ("it", "that")
 """Parameters of phrases about what a question names."""
 
 _PARTS = ("facts", "topics", "others")
-_PARTS_OF_TOPIC = ("questions", "phrases", "otherwise", "named")
+_PARTS_OF_TOPIC = ("questions", "remarks", "phrases", "otherwise", "named")
 
 
 def read_life(own: Path | None = None) -> Life:
     """Read the agent's life: the file that comes with the module, and what the user's `own` changes of it.
 
     A fact of the own file replaces the one that comes with the module, and ``~`` takes it away. A topic adds its
-    questions to those that are there, and replaces its phrases; ``~`` takes it away; others are new.
+    questions and remarks to those that are there, and replaces its phrases; ``~`` takes it away; others are new.
 
     Raises:
         DeclarationError: The file says what no life can; with its line.
@@ -131,6 +132,8 @@ def _topic(key: str, node: yaml.Node, before: Topic | None, known: _Known) -> To
         topic = replace(
             topic, questions=(*topic.questions, *_texts(known.file, parts["questions"], "questions"))
         )
+    if "remarks" in parts:
+        topic = replace(topic, remarks=(*topic.remarks, *_expressions(known.file, parts["remarks"])))
     if "phrases" in parts:
         topic = replace(topic, phrases=known.check(parts["phrases"]), otherwise=(), named=())
     if "otherwise" in parts:
@@ -142,10 +145,25 @@ def _topic(key: str, node: yaml.Node, before: Topic | None, known: _Known) -> To
         ):
             named.append((fact, known.check(phrases, NAMED)))
         topic = replace(topic, named=tuple(named))
-    for part in ("questions", "phrases"):
-        if not getattr(topic, part):
+    for part, there in (("questions", topic.questions or topic.remarks), ("phrases", topic.phrases)):
+        if not there:
             raise _fault(known.file, node, f"the topic {key} has no {part}: write\n{key}:\n  {part}: [...]")
     return topic
+
+
+def _expressions(file: str, node: yaml.Node) -> tuple[str, ...]:
+    found = _texts(file, node, "remarks")
+    items: list[yaml.Node] = node.value if _kind(node) == "sequence" else [node]
+    for item, expression in zip(items, found, strict=True):
+        try:
+            re.compile(expression)
+        except re.error as error:
+            raise _fault(
+                file,
+                item,
+                f"{expression!r} is no regular expression ({error}): write for example i am (so )?sad",
+            ) from None
+    return found
 
 
 def _fact(name: str, key: str, node: yaml.Node) -> Fact | None:

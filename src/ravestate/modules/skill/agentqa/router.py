@@ -132,7 +132,7 @@ class _Learnt:
         pairs += [(plain(q), OTHERS) for q in life.others]
         self._examples = [text for text, _ in pairs]
         self._slips = Slips({word for text in self._examples for word in text.split()})
-        self._classes = [*life.topics, OTHERS]
+        self._classes = [*(name for name, topic in life.topics.items() if topic.questions), OTHERS]
         self._of = np.array([self._classes.index(name) for _, name in pairs])
         self._unaddressed = np.array([not _addresses(text) for text in self._examples])
         self._meanings = encoder.encode(self._examples)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-from collections.abc import Mapping
-from datetime import datetime, timedelta
+from collections.abc import Mapping, Sequence
+from datetime import date, datetime, timedelta
 
 import ravestate as rs
 from ravestate.errors import PlatformError, RavestateError, RuleError
@@ -13,10 +13,11 @@ from ravestate.modules import idle, interloc, nlp, ontology, rawio, verbaliser
 from ravestate.modules._room import give_back
 from ravestate.modules.meta.verbaliser.intents import Intent
 
-from . import Settings, asked, life, module, mood, prompted, today
+from . import Settings, asked, life, module, mood, prompted, remarked, today
 from .itself import recall, settle
 from .life import Fact, Life
 from .life_file import read_life
+from .remarks import remark_in
 from .router import Miss, router_of
 from .telling import telling
 
@@ -78,6 +79,32 @@ async def understand(ctx: rs.RuleContext) -> rs.Resign | None:
     return None
 
 
+@module.rule(when=rawio.input.changed, reads=life, emits=remarked)
+async def heed(ctx: rs.RuleContext) -> rs.Resign | None:
+    """Notice that the user says something that nobody should take for small talk."""
+    told = ctx[life]
+    found = None if told is None else remark_in(ctx.payload(rawio.input.changed), told)
+    if found is None:
+        return rs.Resign("nothing of the kind was said")
+    ctx.emit(remarked, found)
+    return None
+
+
+@module.rule(
+    when=remarked,
+    reads=(life, mood, today),
+    writes=verbaliser.intent,
+    weight=25.0,  # before whoever else has an answer, even to a question of his own: few things go before it by themselves
+)
+async def respond(ctx: rs.RuleContext) -> None:
+    """Say what is to be said to such a remark."""
+    told, remark = ctx[life], ctx.payload(remarked)
+    assert told is not None  # else nothing would have been noticed
+    phrases = telling(told.topics[remark.topic], remark.text, told.facts, mood=ctx[mood], today=day(ctx))
+    if phrases is not None:
+        ctx[verbaliser.intent] = intent(remark.topic, phrases)
+
+
 @module.rule(
     when=asked,
     reads=(life, mood, today, ontology.memory),
@@ -88,16 +115,11 @@ async def answer(ctx: rs.RuleContext) -> rs.Resign | None:
     """Say what is known about the topic."""
     match, told = ctx.payload(asked), ctx[life]
     assert told is not None  # else nothing would have been understood
-    began = ctx[today]
-    assert began is not None  # written with the life
-    day = began + timedelta(days=ctx.now // DAY)
     facts = await known(ctx, told, ctx[ontology.memory])
-    phrases = telling(told.topics[match.topic], match.question, facts, mood=ctx[mood], today=day)
+    phrases = telling(told.topics[match.topic], match.question, facts, mood=ctx[mood], today=day(ctx))
     if phrases is None:
         return rs.Resign(f"I don't know what to say about {match.topic}: its phrases lack a fact")
-    # They are filled in: braces that are left are a fact's own.
-    texts = [phrase.replace("{", "{{").replace("}", "}}") for phrase in phrases]
-    ctx[verbaliser.intent] = Intent(f"agentqa:{match.topic}", phrases={"en": texts})
+    ctx[verbaliser.intent] = intent(match.topic, phrases)
     return None
 
 
@@ -116,6 +138,19 @@ async def offer(ctx: rs.RuleContext) -> rs.Resign | None:
     ctx[prompted] = ctx.now
     ctx[verbaliser.intent] = Intent("ask_me", package=__package__)
     return None
+
+
+def day(ctx: rs.RuleContext) -> date:
+    """The day that it is."""
+    began = ctx[today]
+    assert began is not None  # written with the life
+    return began + timedelta(days=ctx.now // DAY)
+
+
+def intent(topic: str, phrases: Sequence[str]) -> Intent:
+    """What is meant by phrases that are filled in: braces that are left are a fact's own."""
+    texts = [phrase.replace("{", "{{").replace("}", "}}") for phrase in phrases]
+    return Intent(f"agentqa:{topic}", phrases={"en": texts})
 
 
 async def known(ctx: rs.RuleContext, told: Life, memory: ontology.Memory | None) -> Mapping[str, Fact]:
