@@ -81,6 +81,15 @@ def test_many_threads_may_read_at_once(reader: Pipeline) -> None:
     assert found == [["Where", "do", "you", "live", "?"]] * 20
 
 
+def test_who_wants_it_loaded_does_not_wait_for_those_who_read(reader: Pipeline) -> None:
+    reader.load()
+    asking = threading.Thread(target=reader.load, daemon=True)
+    with reader._lock:  # somebody reads
+        asking.start()
+        asking.join(10)
+        assert not asking.is_alive()
+
+
 def test_contexts_share_a_pipeline() -> None:
     assert pipeline("") is pipeline("")
     assert pipeline("another") is not pipeline("") and not pipeline("another").loaded

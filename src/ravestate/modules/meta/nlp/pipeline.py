@@ -49,6 +49,8 @@ class Pipeline:
         Raises:
             PlatformError: spaCy or the pipeline is missing, or it cannot be loaded.
         """
+        if self._nlp is not None:  # whoever only asks need not wait for those who read
+            return
         with self._lock:
             if self._nlp is None:
                 with LOADING:
