@@ -110,6 +110,9 @@ def test_contexts_share_a_model_until_the_last_lets_go_of_it(tiny: Path) -> None
         await other.close()
 
     asyncio.run(story())
+    for thread in threading.enumerate():
+        if thread.name == file.LOADER:  # it may be in its last line
+            thread.join()
     assert str(tiny) not in file._Model._loaded
 
 
@@ -121,6 +124,12 @@ def test_a_conversation_longer_than_the_model_remembers_is_cut_at_its_beginning(
         return "".join([piece async for piece in backend.stream(long, max_tokens=16, seed=1)])
 
     assert len(asyncio.run(story())) <= 16
+
+
+def test_an_answer_is_no_longer_than_the_model_can_remember(tiny: Path) -> None:
+    told: list[object] = []
+    file._Model.shared(str(tiny)).write("Hello!", 100_000, 2.0, 1, told.append, threading.Event())
+    assert told[-1] is None  # the end, and no failure
 
 
 def test_who_leaves_stops_the_model(tiny: Path) -> None:
@@ -137,6 +146,26 @@ def test_who_leaves_stops_the_model(tiny: Path) -> None:
         if thread.name == "ravestate-model":
             thread.join(timeout=20)
             assert not thread.is_alive()
+
+
+def test_the_agent_ends_while_a_model_is_still_being_fetched(monkeypatch: pytest.MonkeyPatch) -> None:
+    fetched = threading.Event()
+
+    async def story() -> None:
+        begun, loop = asyncio.Event(), asyncio.get_running_loop()
+
+        def fetch(name: str) -> None:
+            loop.call_soon_threadsafe(begun.set)
+            fetched.wait()
+
+        monkeypatch.setattr(file._Model, "shared", fetch)
+        loading = asyncio.create_task(TransformersBackend("large").load())
+        await begun.wait()
+        loading.cancel()
+
+    asyncio.run(story())
+    assert not fetched.is_set()
+    fetched.set()
 
 
 @pytest.mark.parametrize("name", ["/no/such/folder", "no such name"])

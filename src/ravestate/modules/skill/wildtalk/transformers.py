@@ -7,12 +7,13 @@ one's own.
 from __future__ import annotations
 
 import asyncio
+import concurrent.futures
 import logging
 import threading
 from collections.abc import AsyncGenerator, Callable, Sequence
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Any, ClassVar, cast
+from typing import Any, ClassVar, TypeVar, cast
 from weakref import WeakValueDictionary
 
 from ravestate.errors import PlatformError
@@ -22,8 +23,13 @@ from .backend import Message, Progress
 
 __all__ = ["TransformersBackend", "cut", "transcript"]
 
+T = TypeVar("T")
+
 ANSWERS = "Agent:"
 """Begins the line that a model without a chat template is to go on with."""
+
+LOADER = "ravestate-model-loader"
+"""The name of a thread that loads a model."""
 
 SPEAKERS = {"user": "User:", "assistant": ANSWERS}
 
@@ -53,7 +59,7 @@ class TransformersBackend:
     async def load(self, progress: Progress | None = None) -> None:
         """See `Backend.load`. The library tells nothing of its progress but the end."""
         if self._model is None:
-            self._model = await asyncio.to_thread(_Model.shared, self._name)
+            self._model = await _in_background(_Model.shared, self._name)
         if progress is not None:
             progress(1.0)
 
@@ -115,6 +121,21 @@ class TransformersBackend:
 
     def _failed(self, error: BaseException) -> PlatformError:
         return PlatformError(f"wildtalk: the model {self._name!r} failed: {_first_line(error)}")
+
+
+async def _in_background(work: Callable[[str], T], argument: str) -> T:
+    """Like ``asyncio.to_thread``, but the end of the loop does not wait for it: fetching a model may take an hour."""
+    outcome: concurrent.futures.Future[T] = concurrent.futures.Future()
+    outcome.set_running_or_notify_cancel()  # it cannot be cancelled, but nobody need wait for it
+
+    def job() -> None:
+        try:
+            outcome.set_result(work(argument))
+        except BaseException as error:  # whatever it is, it is for whoever waits
+            outcome.set_exception(error)
+
+    threading.Thread(target=job, name=LOADER, daemon=True).start()
+    return await asyncio.wrap_future(outcome)
 
 
 class _Model:
@@ -207,8 +228,9 @@ class _Model:
             self.model.device
         )
         room = getattr(self.model.config, "max_position_embeddings", 0) or 0
-        if room:
-            tokens = {key: value[:, -max(1, room - max_tokens) :] for key, value in tokens.items()}
+        if room:  # for the prompt and the answer together
+            max_tokens = min(max_tokens, room - 1)
+            tokens = {key: value[:, max_tokens - room :] for key, value in tokens.items()}
         sampling = (
             {"do_sample": True, "temperature": temperature} if temperature > 0 else {"do_sample": False}
         )
