@@ -31,6 +31,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
+STAND_INS = Path(__file__).with_name("stand_ins")
+"""Packages that no test environment has (ROS), as far as the documentation uses them; real ones go first."""
 FENCE = re.compile(r"(?P<indent>[ \t]*)(?P<fence>`{3,}|~{3,})[ \t]*(?P<info>[^`]*)")
 NOT_RUN = re.compile(r"\s*<!--\s*not run:\s*(?P<reason>.*?)\s*-->\s*")
 TITLE = re.compile(r"""title=(?P<quote>["'])(?P<title>.*?)(?P=quote)""")
@@ -115,17 +117,21 @@ class Page:
 
     def run(self, block: Block) -> None:
         """Run `block`, after those before it that have not been run yet. Raises what the block raises."""
-        with self._at_home():
-            while self.done <= self.blocks.index(block):
-                current = self.blocks[self.done]
-                self.done += 1
-                file = save(current, self.folder)
-                if current.runs and current.not_run is None:
-                    module = self.files.setdefault(file, self._namespace(file)) if file else self.module
-                    with self._known(module):
-                        (run_pycon if LANGUAGES[current.language] == "pycon" else run_python)(current, module)
-                    if current.has_tests:
-                        run_tests(current, self.folder)
+        while self.done <= self.blocks.index(block):
+            current = self.blocks[self.done]
+            self.done += 1
+            with self._at_home():  # what one block imports is new to the next, as it may have become longer
+                self._run_next(current)
+
+    def _run_next(self, block: Block) -> None:
+        file = save(block, self.folder)
+        if not block.runs or block.not_run is not None:
+            return
+        module = self.files.setdefault(file, self._namespace(file)) if file else self.module
+        with self._known(module):
+            (run_pycon if LANGUAGES[block.language] == "pycon" else run_python)(block, module)
+        if block.has_tests:
+            run_tests(block, self.folder)
 
     def leavings(self) -> list[str]:
         """The files that its blocks have made, apart from those that the page shows."""
@@ -155,6 +161,7 @@ class Page:
         before, path, known = Path.cwd(), list(sys.path), set(sys.modules)
         os.chdir(self.folder)
         sys.path.insert(0, str(self.folder))
+        sys.path.append(str(STAND_INS))
         try:
             yield
         finally:
@@ -162,7 +169,7 @@ class Page:
             sys.path[:] = path
             for name in set(sys.modules) - known:
                 origin = getattr(sys.modules[name], "__file__", None) or ""
-                if origin.startswith(str(self.folder)):
+                if origin.startswith((str(self.folder), str(STAND_INS))):
                     del sys.modules[name]
 
 

@@ -1,0 +1,8 @@
+"""Whether ROS handles the signals of the process."""
+
+from enum import Enum
+
+
+class SignalHandlerOptions(Enum):
+    NO = 0
+    ALL = 3
