@@ -4,6 +4,7 @@ import pytest
 
 import ravestate as rs
 from ravestate.modules import idle, rawio
+from ravestate.modules.meta.idle.words import asks_for_quiet, last_question, takes_leave
 from ravestate.testing import simulate
 
 watch = rs.Module("watch", requires=[rawio, idle])
@@ -64,6 +65,133 @@ def test_the_first_words_put_the_first_boredom_off(begin: float) -> None:
         sim.say("hello")
         sim.advance(8.0)
         assert sim.read(times) == pytest.approx((begin + 7.0,))
+
+
+@pytest.mark.parametrize("words", ["Goodbye!", "shut up", "please be quiet", "ok, see you tomorrow"])
+def test_nothing_is_said_after_a_farewell_or_a_wish_for_quiet_until_the_user_speaks(words: str) -> None:
+    with simulate(watch) as sim:
+        sim.say(words)
+        sim.advance(600.0)
+        assert sim.read(times) == ()
+        sim.say("hello again")
+        sim.advance(7.0)
+        assert len(sim.read(times)) == 1
+
+
+def test_a_wish_for_quiet_is_told() -> None:
+    listener = rs.Module("listener", requires=[idle])
+    count = listener.slot("count", 0)
+
+    @listener.rule(when=idle.hushed, writes=count)
+    async def hear(ctx: rs.RuleContext) -> None:
+        ctx[count] += 1
+
+    with simulate(listener) as sim:
+        for words in ("stop!", "Goodbye", "It is quiet here"):
+            sim.say(words)
+        assert sim.read(count) == 1
+
+
+def test_a_question_of_the_agents_own_has_time_for_its_answer() -> None:
+    curious = rs.Module("curious", requires=[rawio])
+
+    @curious.rule(when=rawio.input.changed, writes=rawio.output)
+    async def ask(ctx: rs.RuleContext) -> None:
+        ctx[rawio.output] = ctx.payload(rawio.input.changed)
+
+    @curious.rule(
+        when=rawio.output.changed.where(lambda text: "?" in text).detached(),
+        writes=rawio.output,
+        detached=True,
+    )
+    async def smile(ctx: rs.RuleContext) -> None:
+        ctx[rawio.output] = "😊"
+
+    waits = rs.Module("waits", requires=[idle])
+    bored = waits.slot("bored", ())
+
+    @waits.rule(when=idle.bored, writes=bored)
+    async def note(ctx: rs.RuleContext) -> None:
+        ctx[bored] = (*ctx[bored], ctx.now)
+
+    with simulate(curious, waits, settings={"idle": {"bored_after": 5.0, "answer_time": 9.0}}) as sim:
+        sim.say("I am fine. How are you?")
+        assert sim.read(idle.asked) == "How are you?"
+        sim.advance(20.0)
+        assert sim.read(bored) == pytest.approx((9.0, 18.0))
+        sim.say("Who? Me.")
+        assert sim.read(idle.asked) == ""
+        sim.advance(6.0)
+        assert sim.read(bored) == pytest.approx((9.0, 18.0, 25.0))
+
+
+def test_keys_that_are_pressed_are_no_silence() -> None:
+    with simulate(watch, settings={"idle": {"writing_time": 8.0}}) as sim:
+        for _ in range(20):
+            sim.advance(1.0)
+            sim.emit(rawio.typing)
+        assert sim.read(times) == ()
+        sim.advance(7.9)
+        assert sim.read(times) == ()
+        sim.advance(0.2)
+        assert sim.read(times) == pytest.approx((28.0,))
+
+
+def test_what_was_being_written_and_is_sent_is_followed_by_an_ordinary_silence() -> None:
+    with simulate(watch, settings={"idle": {"writing_time": 8.0}}) as sim:
+        sim.advance(4.0)
+        sim.emit(rawio.typing)
+        sim.advance(1.0)
+        sim.say("hello")  # answered 2 s later
+        sim.advance(7.1)
+        assert sim.read(times) == pytest.approx((12.0,))
+        sim.advance(1.5)
+        assert sim.read(times) == pytest.approx((12.0,))
+
+
+@pytest.mark.parametrize(
+    "text",
+    "shut up|Shut up!|please be quiet|be quiet now|could you be quiet?|stop|Stop it.|stop talking|"
+    "oh, just shut up, you stupid thing|leave me alone|silence!|that's enough|I'm working. Please be silent.|quiet please".split(
+        "|"
+    ),
+)
+def test_a_wish_for_quiet(text: str) -> None:
+    assert asks_for_quiet(text)
+
+
+@pytest.mark.parametrize(
+    "text",
+    "It is quiet here|when does the bus stop|I could not stop laughing|don't stop|stop the car|enough money|I like silence|"
+    "what does shut up mean|leave me your number|".split("|"),
+)
+def test_no_wish_for_quiet(text: str) -> None:
+    assert not asks_for_quiet(text)
+
+
+@pytest.mark.parametrize(
+    "text",
+    "bye|Goodbye!|ok bye|Thanks, bye!|good night robot|see you tomorrow|I have to go now|Tschüss!".split("|"),
+)
+def test_a_farewell(text: str) -> None:
+    assert takes_leave(text)
+
+
+@pytest.mark.parametrize(
+    "text",
+    "hello|what does goodbye mean?|I have to go to school|we say goodbye every day at the gate|".split("|"),
+)
+def test_no_farewell(text: str) -> None:
+    assert not takes_leave(text)
+
+
+@pytest.mark.parametrize(
+    "text", ["x" * 1_000_000, "stop " * 200_000, "please " * 100_000, "bye " * 100_000, "?" * 100_000]
+)
+def test_what_never_ends_is_looked_through_in_no_time(text: str) -> None:
+    asks_for_quiet(text)
+    takes_leave(text)
+    last_question(text)
 
 
 def test_nothing_is_left_when_all_is_quiet() -> None:

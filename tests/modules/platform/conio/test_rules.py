@@ -10,7 +10,7 @@ import pytest
 
 import ravestate as rs
 from ravestate.errors import PlatformError
-from ravestate.modules import conio, interloc, rawio
+from ravestate.modules import conio, idle, interloc, rawio
 from ravestate.modules.platform.conio.console import Console
 from ravestate.testing import simulate
 
@@ -92,6 +92,25 @@ def test_what_a_terminal_needs_is_loaded_off_the_loop(keys: Keys, monkeypatch: p
     with simulate(parrot, conio):
         pass
     assert len(threads) == 1 and threads[0] is not threading.current_thread()
+
+
+def test_who_types_is_not_silent(keys: Keys, monkeypatch: pytest.MonkeyPatch) -> None:
+    told: list[Any] = []
+    monkeypatch.setattr(conio.rules, "Console", lambda on_key, **_: told.append(on_key) or Console(keys))
+    lonely = rs.Module("lonely", requires=(rawio, idle))
+
+    @lonely.rule(when=idle.bored, writes=rawio.output)
+    async def ask(ctx: rs.RuleContext) -> None:
+        ctx[rawio.output] = "Are you there?"
+
+    with simulate(parrot, lonely, conio) as sim:
+        for _ in range(10):
+            sim.advance(2.0)
+            told[0]()
+        assert sim.said == []
+        keys.type("hello")
+        sim.advance(6.0)
+        assert sim.said == ["hello", "Are you there?"]
 
 
 def test_who_sits_there_is_present_and_heard(keys: Keys) -> None:
@@ -178,4 +197,5 @@ def test_the_history_is_the_users_choice(monkeypatch: pytest.MonkeyPatch, keys: 
     for history in (True, False):
         with simulate(conio, settings={"conio": {"history": history, "prompt": "$ "}}):
             pass
-    assert seen == [{"prompt": "$ ", "history": Path("file")}, {"prompt": "$ ", "history": None}]
+    told = [(options["prompt"], options["history"]) for options in seen]
+    assert told == [("$ ", Path("file")), ("$ ", None)]

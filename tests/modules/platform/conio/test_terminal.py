@@ -78,6 +78,23 @@ def test_lines_are_typed_and_edited() -> None:
     play(scene)
 
 
+def test_each_key_is_told_but_not_that_the_line_is_sent() -> None:
+    count = 0
+
+    def on_key() -> None:
+        nonlocal count
+        count += 1
+
+    async def main() -> None:
+        with create_pipe_input() as keys:
+            async with Terminal("> ", on_key=on_key, input=keys, output=Paper()) as terminal:
+                keys.send_text("abx\x7f\r")
+                assert await terminal.read() == "ab"
+                assert count == 4
+
+    asyncio.run(main())
+
+
 def test_a_line_that_is_full_takes_no_more_keys(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(terminal_file, "LONGEST", 5)
 
@@ -133,8 +150,11 @@ def test_a_full_row_goes_above() -> None:
     assert play(scene).splitlines() == rows
 
 
-@pytest.mark.parametrize(("rest", "printed"), [("…", ""), (" time", " time\n")])
-def test_what_was_streamed_stays_above_the_line_that_was_typed(rest: str, printed: str) -> None:
+@pytest.mark.parametrize(
+    ("rest", "printed"),
+    [(["…"], ""), ([" time"], " time\n"), ([" a ti", "me", "…"], ""), ([" a", " time"], " a time\n")],
+)
+def test_what_was_streamed_stays_above_the_line_that_was_typed(rest: list[str], printed: str) -> None:
     async def scene(terminal: Terminal, keys: PipeInput, paper: Paper) -> None:
         reading = asyncio.create_task(terminal.read())
         await drawn(terminal)
@@ -143,7 +163,8 @@ def test_what_was_streamed_stays_above_the_line_that_was_typed(rest: str, printe
         keys.send_text("wait\r")
         assert await reading == "wait"
         assert message(terminal) == "> "
-        terminal.stream(rest)
+        for piece in rest:
+            terminal.stream(piece)
         terminal.end()
 
     assert play(scene) == printed  # nothing is printed twice

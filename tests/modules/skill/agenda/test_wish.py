@@ -20,7 +20,7 @@ def test_goals_of_words_alone_are_pursued_like_any_other() -> None:
         {"name": "game", "say": ["A game?", "Come on!"], "priority": 2, "done": "yes|sure", "tries": 2},
         gap=0,
     ) as sim:
-        sim.advance(11.0)
+        sim.advance(18.0)
         assert sim.said == ["A game?", "Do you know my ice cream?"]
         sim.advance(60.0)
         assert sim.said[2:] == ["Come on!"]

@@ -2,54 +2,80 @@
 
 from __future__ import annotations
 
-import ravestate as rs
+from typing import Annotated
 
-__all__ = ["Settings", "bored", "impatient", "module"]
+from pydantic import Field
+
+import ravestate as rs
+from ravestate.modules import rawio
+
+from .words import asks_for_quiet, last_question, takes_leave
+
+__all__ = ["Settings", "asked", "bored", "hushed", "impatient", "module"]
+
+Seconds = Annotated[float, Field(ge=0)]
 
 
 class Settings(rs.Settings):
     """When a pause is awkward."""
 
-    bored_after: float = 5.0
+    bored_after: Seconds = 5.0
     """Seconds without activity after which the agent is bored."""
-    impatient_after: float = 1.0
+    answer_time: Seconds = 12.0
+    """Seconds that the user has for an answer to the agent's own question, if that is longer."""
+    writing_time: Seconds = 20.0
+    """Seconds from the last key pressed, while a line is not sent, after which the agent is bored all the same."""
+    impatient_after: Seconds = 1.0
     """Seconds for which a ready rule is kept waiting before the agent is impatient."""
 
 
-module = rs.Module("idle", settings=Settings)
+module = rs.Module("idle", requires=[rawio], settings=Settings)
 
 bored = module.signal("bored")
 """Nothing has happened for ``bored_after`` seconds; once for each stretch of quiet (from startup on), and an answer to
-it begins a new one."""
+it begins a new one. Never after the user has asked for quiet or said goodbye, until he speaks again."""
+
+hushed = module.signal("hushed")
+"""The user wants quiet: "shut up", "stop", "please be quiet"."""
 
 impatient = module.signal("impatient")
 """Something has been due for ``impatient_after`` seconds: an answer takes its time."""
 
+asked: rs.Slot[str] = module.slot("asked", "")
+"""The question with which the agent ended what it said last; empty if it asked nothing."""
+
 
 @module.rule(
-    when=rs.activity.false.min_age(Settings.bored_after).max_age(None),
+    when=rs.activity.false.max_age(None) | rs.startup.detached(),
+    reads=(rs.activity, rawio.input, asked),
     emits=bored,
+    until=rs.activity.true | rawio.typing,
     detached=True,
     background=True,
 )
-async def notice_silence(ctx: rs.RuleContext) -> None:
-    """Nothing holds a spike or runs: say so."""
+async def notice_silence(ctx: rs.RuleContext) -> rs.Resign | None:
+    """Nothing holds a spike or runs, and that lasts: say so, unless it is what the user wants."""
+    settings: Settings = ctx.settings
+    if ctx[rs.activity]:
+        return rs.Resign("there is something to do")
+    if asks_for_quiet(ctx[rawio.input]) or takes_leave(ctx[rawio.input]):
+        return rs.Resign("the user wants quiet")
+    await ctx.sleep(max(settings.bored_after, settings.answer_time if ctx[asked] else 0.0))
     ctx.emit(bored)
+    return None
 
 
 @module.rule(
-    when=rs.startup.detached(),
-    reads=rs.activity,
+    when=rawio.typing.max_age(None),
     emits=bored,
-    until=rs.activity.true,
+    until=rs.activity.true | rawio.typing | rawio.input.changed,
     detached=True,
     background=True,
 )
-async def notice_first_silence(ctx: rs.RuleContext) -> None:
-    """Nothing has happened since the start, so that no activity could end: say so."""
-    if not ctx[rs.activity]:
-        await ctx.sleep(ctx.settings.bored_after)
-        ctx.emit(bored)
+async def notice_unfinished_line(ctx: rs.RuleContext) -> None:
+    """The user began to write, and does not go on: that is silence, too, but a longer one."""
+    await ctx.sleep(max(ctx.settings.bored_after, ctx.settings.writing_time))
+    ctx.emit(bored)
 
 
 @module.rule(
@@ -61,3 +87,24 @@ async def notice_first_silence(ctx: rs.RuleContext) -> None:
 async def notice_delay(ctx: rs.RuleContext) -> None:
     """A ready rule is kept waiting: say so."""
     ctx.emit(impatient)
+
+
+@module.rule(when=rawio.input.changed.where(asks_for_quiet), emits=hushed, background=True)
+async def notice_wish_for_quiet(ctx: rs.RuleContext) -> None:
+    """The user has enough: say so."""
+    ctx.emit(hushed)
+
+
+def _has_words(text: str) -> bool:
+    return any(map(str.isalpha, text))
+
+
+@module.rule(
+    when=rawio.output.changed.where(_has_words).max_age(None).detached(),
+    writes=asked,
+    detached=True,
+    background=True,
+)
+async def notice_question(ctx: rs.RuleContext) -> None:
+    """Keep in mind what the agent asks: an answer takes its time."""
+    ctx[asked] = last_question(ctx.payload(rawio.output.changed))

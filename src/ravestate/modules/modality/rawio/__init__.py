@@ -9,7 +9,7 @@ import ravestate as rs
 if TYPE_CHECKING:
     from ravestate.runtime.context import Context
 
-__all__ = ["input", "module", "output", "picture", "piece", "say", "speaking"]
+__all__ = ["input", "module", "output", "picture", "piece", "say", "speaking", "typing"]
 
 module = rs.Module("rawio")
 
@@ -25,6 +25,9 @@ written to `output` at its end."""
 
 speaking = module.flag("speaking")
 """Whether an utterance is being made, piece by piece."""
+
+typing = module.signal("typing", keep="latest")
+"""The user has pressed a key: a line is being written. Platforms that notice it say so, with each key or now and then."""
 
 picture: rs.Slot[Any] = module.slot("picture", None, always=True, input=True)
 """The picture that the user showed last: encoded bytes (JPEG, PNG) or a path."""

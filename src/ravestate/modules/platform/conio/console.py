@@ -73,6 +73,7 @@ class Console:
         *,
         prompt: str = "> ",
         history: Path | None = None,
+        on_key: Callable[[], None] | None = None,
         stdin: TextIO | None = None,
         stdout: TextIO | None = None,
     ) -> None:
@@ -82,6 +83,7 @@ class Console:
             screen: What to read from and write to, chosen by default.
             prompt: What stands before the line that is typed.
             history: The file that keeps what was typed; None keeps it for this session only.
+            on_key: Called when somebody types, which only a terminal notices.
             stdin: Read this instead of standard input.
             stdout: Write this instead of standard output.
 
@@ -90,7 +92,7 @@ class Console:
         """
         if screen is None:
             stdin, stdout = stdin or sys.stdin, stdout or sys.stdout
-            screen = _screen(prompt, history, stdin, stdout)
+            screen = _screen(prompt, history, on_key, stdin, stdout)
         self._screen = screen
         self._streamed = ""
         self._line_is_open = False
@@ -189,7 +191,13 @@ def _is_terminal(stdin: TextIO | None, stdout: TextIO | None) -> bool:
     return stdin is not None and stdout is not None and stdin.isatty() and stdout.isatty()
 
 
-def _screen(prompt: str, history: Path | None, stdin: TextIO | None, stdout: TextIO | None) -> Screen:
+def _screen(
+    prompt: str,
+    history: Path | None,
+    on_key: Callable[[], None] | None,
+    stdin: TextIO | None,
+    stdout: TextIO | None,
+) -> Screen:
     if _is_terminal(stdin, stdout):
         try:
             from .terminal import Terminal
@@ -197,7 +205,7 @@ def _screen(prompt: str, history: Path | None, stdin: TextIO | None, stdout: Tex
             raise PlatformError(
                 "conio on a terminal needs prompt_toolkit: pip install 'ravestate[console]'"
             ) from error
-        return Terminal(prompt, history)
+        return Terminal(prompt, history, on_key)
     from .pipes import Pipes
 
     return Pipes(stdin, stdout)

@@ -18,6 +18,7 @@ USER = "conio"
 @module.rule(
     when=rs.startup.detached(),  # so that it keeps no slot from other platforms
     writes=(screen, rawio.input, interloc.users),
+    emits=rawio.typing,
     detached=True,  # each line is a cause of its own
     background=True,
 )
@@ -25,8 +26,12 @@ async def listen(ctx: rs.RuleContext) -> None:
     """Hear each line that is typed; end the agent when there are no more."""
     await asyncio.to_thread(prepare)
     history = history_file() if ctx.settings.history else None
+
+    def tell() -> None:
+        ctx.emit(rawio.typing)
+
     try:
-        console = Console(prompt=ctx.settings.prompt, history=history)
+        console = Console(prompt=ctx.settings.prompt, history=history, on_key=tell)
     except PlatformError as error:
         ctx.stop(error)  # else the agent would run on, and nobody could talk with it
         return

@@ -6,7 +6,7 @@ import asyncio
 import contextlib
 import contextvars
 import os
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 
 from prompt_toolkit import PromptSession
@@ -47,6 +47,7 @@ class Terminal:
         self,
         prompt: str = "> ",
         history: Path | None = None,
+        on_key: Callable[[], None] | None = None,
         *,
         input: Input | None = None,
         output: Output | None = None,
@@ -57,18 +58,22 @@ class Terminal:
             prompt: What stands before the line that is typed.
             history: The file that keeps what was typed; without one, or if it cannot be written, it is kept for
                 this session only.
+            on_key: Called with each key that changes the line, unless the line is empty then.
             input: What is typed on, by default the terminal.
             output: What is printed on, by default the terminal.
         """
         self._prompt = prompt
         self._streamed = ""
         self._left_open = False
+        self._late = ""
         self._unprinted: list[str] = []
         self._printing: asyncio.Task[None] | None = None
         self._lost = False
         self._session: PromptSession[str] = PromptSession(
             self._message, history=_history(history), key_bindings=self._keys(), input=input, output=output
         )
+        self._on_key = on_key
+        self._session.default_buffer.on_text_changed += self._tell
         self._patch = contextlib.ExitStack()
         self._context = contextvars.copy_context()
 
@@ -106,9 +111,9 @@ class Terminal:
 
     def stream(self, piece: str) -> None:
         """See `Screen.stream`."""
-        was_open, self._left_open = self._left_open, False
-        if was_open and piece == _OPEN:
-            return  # it is there already
+        if self._left_open:  # whether it goes on, or was interrupted by the line, is known at its end
+            self._late += piece
+            return
         *lines, self._streamed = (self._streamed + piece).split("\n")
         for line in lines:
             self.show(line)
@@ -120,8 +125,12 @@ class Terminal:
 
     def end(self) -> None:
         """See `Screen.end`."""
-        self._left_open = False
+        late, self._late, self._left_open = self._late, "", False
         line, self._streamed = self._streamed, ""
+        if late and not late.endswith(
+            _OPEN
+        ):  # else it ended where it was left, and pieces on their way came too late
+            line += late
         if line:
             self.show(line)
 
@@ -138,6 +147,10 @@ class Terminal:
             """The line is full."""
 
         return keys
+
+    def _tell(self, _: object) -> None:
+        if self._on_key is not None and self._session.default_buffer.text:
+            self._on_key()
 
     def _message(self) -> StyleAndTextTuples:
         before: StyleAndTextTuples = []
