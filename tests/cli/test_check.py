@@ -63,16 +63,26 @@ def test_every_fault_is_told_at_once(folder: Path, capsys: Capture) -> None:
     assert "write requires=[far]" in errors and "weight=-1.0 must be above 0" in errors
 
 
-def test_settings_are_checked_with_their_declarations(capsys: Capture) -> None:
-    assert call(capsys, "check", "idle", "--set", "idle.bored_after=3")[0] == 0
-    code, _, errors = call(capsys, "check", "idle", "--set", "idle.bored_after=-3")
-    assert (
-        code == 1
-        and errors.startswith("fault: rule idle:notice_silence")
-        and "= -3.0 must be 0 s or more" in errors
+def test_settings_are_checked_with_their_declarations(folder: Path, capsys: Capture) -> None:
+    write(
+        folder / "late.py",
+        """
+        import ravestate as rs
+
+        class Settings(rs.Settings):
+            after: float = 1.0
+
+        module = rs.Module("late", settings=Settings)
+
+        @module.rule(when=rs.activity.true.min_age(Settings.after))
+        async def come(ctx): ...
+        """,
     )
-    code, _, errors = call(capsys, "check", "idle", "--set", "idle.bored=3")
-    assert code == 2 and "--set idle.bored=3: module 'idle' has no such setting" in errors
+    assert call(capsys, "check", "./late.py", "--set", "late.after=3")[0] == 0
+    code, _, errors = call(capsys, "check", "./late.py", "--set", "late.after=-3")
+    assert code == 1 and errors.startswith("fault: rule late:come") and "= -3.0 must be 0 s or more" in errors
+    code, _, errors = call(capsys, "check", "./late.py", "--set", "late.afer=3")
+    assert code == 2 and "--set late.afer=3: module 'late' has no such setting" in errors
 
 
 def test_a_module_that_declares_wrongly_is_a_fault(folder: Path, capsys: Capture) -> None:

@@ -62,7 +62,7 @@ def test_a_program_speaks_and_is_silent_when_cancelled(tmp_path: Path) -> None:
     assert heard.read_text() == "Good night."
 
     os.mkfifo(begun)
-    endless = f"import pathlib, time; pathlib.Path({str(begun)!r}).write_text('yes'); time.sleep(600)"
+    endless = f"import pathlib, signal; pathlib.Path({str(begun)!r}).write_text('yes'); signal.pause()"
 
     async def interrupt() -> None:
         saying = asyncio.create_task(devices.Program(sys.executable, "-c", endless).say("Once upon a time"))
@@ -71,4 +71,4 @@ def test_a_program_speaks_and_is_silent_when_cancelled(tmp_path: Path) -> None:
         await saying
 
     with pytest.raises(asyncio.CancelledError):
-        asyncio.run(interrupt())  # which would last for ten minutes
+        asyncio.run(interrupt())  # and not never
