@@ -12,6 +12,8 @@ from cli.examples import HELLO, call, complaints, write
 from ravestate.cli import chat
 from ravestate.cli.complete import COMPLETE
 from ravestate.modules import BUILT_IN
+from ravestate.modules.meta.ontology.places import default_path
+from ravestate.modules.platform.conio.console import history_file
 from ravestate.runtime import run as run_file
 
 Capture = pytest.CaptureFixture[str]
@@ -63,6 +65,32 @@ def test_only_what_takes_part_can_be_left_out(started: Any, capsys: Capture) -> 
         errors
         == "ravestate chat: --without wildtlk: the agent has no such module; did you mean 'wildtalk'?\n"
     )
+
+
+@pytest.mark.parametrize("command", ["chat", "board"])
+def test_its_help_tells_where_what_it_learns_is_kept(
+    command: str, tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(sys, "platform", "linux")
+    monkeypatch.setenv("HOME", str(tmp_path))
+    monkeypatch.setenv("XDG_STATE_HOME", "/state")
+    monkeypatch.delenv("XDG_DATA_HOME", raising=False)
+    out = call(capsys, command, "--help")[1]
+    assert Path(tmp_path, ".local/share/ravestate/default/memory.lbug") == default_path("default")
+    assert "\n  ~/.local/share/ravestate/default/memory.lbug (--set ontology.path=FILE" in out
+    assert all(f"ravestate memory {action}" in out for action in ("list", "show NAME", "forget NAME"))
+    assert (f"kept in {history_file()}\n" in out) == (command == "chat")
+    assert str(history_file()).startswith("/state/")
+
+
+def test_who_has_no_home_has_help(capsys: Capture, monkeypatch: pytest.MonkeyPatch) -> None:
+    def homeless() -> Path:
+        raise RuntimeError("Could not determine home directory.")
+
+    monkeypatch.setattr(Path, "home", homeless)
+    for kind in ("DATA", "STATE"):
+        monkeypatch.delenv(f"XDG_{kind}_HOME", raising=False)
+    assert call(capsys, "chat", "--help")[0] == 0
 
 
 def test_it_needs_no_module() -> None:

@@ -14,6 +14,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The command's options."""
     agent.add_arguments(parser, modules="*")
     whole.add_arguments(parser)
+    parser.epilog = (
+        f"{parser.epilog}Lines that you type on a terminal are kept in {whole.shown('state', 'history')}\n"
+        "(--set conio.history=false keeps none).\n"
+    )
 
 
 def run(options: argparse.Namespace) -> int:

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import argparse
+from pathlib import Path
+from typing import Literal
 
 from ravestate.cli import UsageError
 from ravestate.errors import nearest
 
-__all__ = ["COMPLETE", "add_arguments", "complete"]
+__all__ = ["COMPLETE", "add_arguments", "complete", "shown"]
 
 COMPLETE = (
     "idle",
@@ -28,7 +30,14 @@ COMPLETE = (
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """The option that leaves something out."""
+    """The option that leaves something out; and in the help, where what the agent learns is kept."""
+    parser.formatter_class = argparse.RawDescriptionHelpFormatter
+    parser.epilog = (
+        "What the complete agent learns of you stays on this machine:\n"
+        f"  {shown('data', 'default', 'memory.lbug')} (--set ontology.path=FILE names another)\n"
+        "To look at it: ravestate memory list, ravestate memory show NAME. To delete it: ravestate memory forget NAME,\n"
+        'say "forget me", or delete the file.\n'
+    )
     parser.add_argument(
         "--without",
         action="append",
@@ -48,3 +57,14 @@ def complete(options: argparse.Namespace) -> list[str]:
         if name not in COMPLETE:
             raise UsageError(f"--without {name}: the agent has no such module{nearest(name, COMPLETE)}")
     return [name for name in COMPLETE if name not in options.without]
+
+
+def shown(kind: Literal["data", "state"], *parts: str) -> str:
+    """A file among the user's own, as people write its path."""
+    from ravestate.modules._folders import user_folder
+
+    try:
+        path, home = user_folder(kind).joinpath(*parts), Path.home()
+    except RuntimeError:  # a user without a home
+        return "/".join(parts)
+    return f"~/{path.relative_to(home).as_posix()}" if path.is_relative_to(home) else str(path)
