@@ -63,7 +63,7 @@ setup: $(DONE)/dev $(DONE)/model ## make the environment for development, run no
 	@:
 
 .PHONY: test
-test: setup $(DONE)/browser $(DONE)/frontend ## set up and run the whole test suite
+test: setup $(DONE)/browser $(DONE)/frontend ## set up and run the whole test suite (about ten minutes)
 	@$(BIN)/python -m pytest $(ARGS)
 
 .PHONY: check
