@@ -4,12 +4,14 @@ import builtins
 import subprocess
 import sys
 import threading
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from ravestate.errors import PlatformError
+from ravestate.modules.meta.nlp import pipeline as pipeline_module
 from ravestate.modules.meta.nlp.analysis import analyse
 from ravestate.modules.meta.nlp.pipeline import LONGEST, Pipeline, pipeline
 
@@ -88,6 +90,70 @@ def test_who_wants_it_loaded_does_not_wait_for_those_who_read(reader: Pipeline) 
         asking.start()
         asking.join(10)
         assert not asking.is_alive()
+
+
+SAID = (
+    "I like tea",
+    "My bicycle has 7 spokes",
+    "Who painted the girl with the pearl?",
+    "",
+    "no",
+    "Ada lives in Lima",
+)
+
+
+@pytest.fixture
+def crowd(reader: Pipeline) -> Callable[[], list[Any]]:
+    """Have all of `SAID` read at once, each from a thread: what each of them gets, or the error."""
+
+    def ask() -> list[Any]:
+        found: list[Any] = [None] * len(SAID)
+
+        def read(number: int) -> None:
+            try:
+                found[number] = reader.read(SAID[number])
+            except ArithmeticError as error:
+                found[number] = error
+
+        threads = [threading.Thread(target=read, args=(number,)) for number in range(len(SAID))]
+        with reader._lock:  # somebody reads: all of them wait
+            for thread in threads:
+                thread.start()
+            while len(reader._orders) < len(SAID):
+                threading.Event().wait(0.001)
+        for thread in threads:
+            thread.join(30)
+        return found
+
+    reader.load()
+    return ask
+
+
+def test_what_waits_is_read_together_and_no_otherwise_than_alone(
+    reader: Pipeline, crowd: Callable[[], list[Any]], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    alone = [reader.read(text) for text in SAID]
+    rounds: list[int] = []
+    pipe = reader._nlp.pipe
+    monkeypatch.setattr(reader._nlp, "pipe", lambda texts: rounds.append(len(texts)) or pipe(texts))
+    together = crowd()
+    assert rounds == [len(SAID)]
+    for (tree, entities), (other_tree, other_entities) in zip(together, alone, strict=True):
+        assert (tree.text, tree.words, entities) == (other_tree.text, other_tree.words, other_entities)
+
+
+def test_one_text_that_cannot_be_read_takes_no_other_along(
+    reader: Pipeline, crowd: Callable[[], list[Any]], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def stumble(text: str) -> str:
+        if text == "no":
+            raise ArithmeticError("of all words")
+        return text
+
+    monkeypatch.setattr(pipeline_module, "reading_copy", stumble)
+    found = crowd()
+    assert [isinstance(one, ArithmeticError) for one in found] == [text == "no" for text in SAID]
+    assert reader.read("I like tea")[0].text == "I like tea"
 
 
 def test_contexts_share_a_pipeline() -> None:
