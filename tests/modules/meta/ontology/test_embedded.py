@@ -313,7 +313,9 @@ def test_who_is_forgotten_leaves_no_byte_in_any_file(tmp_path: Path, open_here: 
     assert sorted(file.name for file in tmp_path.iterdir()) == ["memory.lbug", "mine.yaml"]
 
     memory = open_here(path=path, types=(types,))
-    memory.forget(memory.find("Person", name="Eve").result()[0]).result()
+    [eve] = memory.find("Person", name="Eve").result()
+    memory.together(lambda graph: graph.forget(eve)).result()
+    assert not any(eve.id.encode() in file.read_bytes() for file in tmp_path.iterdir())
     assert memory.export().result() == expected
 
 

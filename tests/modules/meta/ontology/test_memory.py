@@ -12,7 +12,7 @@ import pytest
 
 from modules.meta.ontology.conftest import Open
 from ravestate.errors import PlatformError, RuleError
-from ravestate.modules.meta.ontology import Memory, Node
+from ravestate.modules.meta.ontology import Graph, Memory, Node
 
 NASTY = [
     "O'Brien",
@@ -439,6 +439,28 @@ def test_operations_are_done_in_the_order_of_the_calls(memory: Memory) -> None:
     replies = [memory.save(ada.with_properties(age=age)) for age in range(50)]
     assert [reply.result()["age"] for reply in replies] == list(range(50))
     assert memory.find("Person").result()[0]["age"] == 49
+
+
+def test_several_operations_are_one(memory: Memory) -> None:
+    ada = memory.create("Person", name="Ada").result()
+
+    def befriend(graph: Graph) -> Node:
+        charles = graph.ensure("Person", {"name": "Charles"})
+        graph.relate(ada, "friend_of", graph.update(charles, {"age": 79}), {})
+        return charles
+
+    def fail(graph: Graph) -> None:
+        befriend(graph)
+        graph.forget(ada)
+        assert graph.get(ada.id) is None
+        raise KeyError("no")
+
+    with pytest.raises(KeyError):
+        memory.together(fail).result()
+    assert memory.find("Person").result() == [ada]
+    charles = memory.together(befriend).result()
+    assert memory.related(ada, "friend_of").result() == [charles.with_properties(age=79)]
+    assert memory.together(lambda graph: graph.find("City", {})).result() == []
 
 
 def test_it_is_awaited_on_a_loop_and_what_was_begun_is_done(memory: Memory) -> None:

@@ -384,6 +384,61 @@ def test_boredom_and_the_users_words_at_once(file: Path) -> None:
         assert sim.read(persqa.who)["name"] == "Ada"  # pyright: ignore[reportOptionalSubscript]
 
 
+# ------------------------------------------------------------------------------------ many things at once
+
+
+def at_once(sim: Simulation, *texts: str) -> None:
+    """All these are put in before any of them is read."""
+    for text in texts:
+        sim.context.put(rawio.input, text)
+    sim.settle()
+    assert sim.failures == []
+
+
+def test_what_is_said_in_one_breath_is_all_learnt_and_kept(file: Path, look: Look) -> None:
+    with agent(file) as sim:
+        at_once(sim, "my name is ada", "i live in ulm", "my hobby is chess", "i work as a baker")
+        assert meant(sim.said[0], "learned_name")
+        at_once(sim, "i moved to bremen", "my hobby is judo", "no, ludo", "my friend is called tom")
+        assert dict(sim.read(persqa.facts)) == {
+            "home": ("Bremen",),
+            "hobby": ("chess", "ludo"),
+            "occupation": ("baker",),
+            "friend": ("Tom",),
+        }
+    known = {
+        "lives_in": ["Bremen"],
+        "has_hobby": ["chess", "ludo"],
+        "works_as": ["baker"],
+        "friend_of": ["Tom"],
+    }
+    assert look() == {"Ada": known, "Tom": {}}
+
+
+def test_who_comes_back_may_go_on_talking_while_he_is_looked_up(file: Path, look: Look) -> None:
+    with agent(file) as sim:
+        at_once(sim, "my name is ada", "i live in ulm", "my hobby is chess")
+    with agent(file) as sim:
+        at_once(sim, "my name is ada", "i live in bremen", "my hobby is judo")
+        assert meant(sim.said[0], "welcome_back")
+        assert dict(sim.read(persqa.facts)) == {"home": ("Bremen",), "hobby": ("chess", "judo")}
+    assert look() == {"Ada": {"lives_in": ["Bremen"], "has_hobby": ["chess", "judo"]}}
+
+
+def test_two_agents_of_one_memory_know_one_person(file: Path, look: Look) -> None:
+    with agent(file) as one, agent(file) as other:
+        for sim in (one, other):
+            sim.context.put(rawio.input, "my name is ada")
+        for sim in (one, other):
+            sim.settle()
+        assert one.read(persqa.who) == other.read(persqa.who)
+        one.say("my hobby is chess")
+        other.say("my hobby is judo")
+        one.say("my hobby is golf")
+        one.say("no, ludo")
+    assert look() == {"Ada": {"has_hobby": ["chess", "judo", "ludo"]}}
+
+
 # ------------------------------------------------------------------------------------ corrections
 
 
@@ -643,6 +698,13 @@ class Broken:
         return fail
 
 
+def test_without_memory_nobody_is_told_that_he_is_forgotten() -> None:
+    with agent(None) as sim:
+        sim.say("my name is ada")
+        sim.say("forget me")
+        assert meant(answers(sim, "yes"), "forget_failed")
+
+
 def test_without_memory_the_talk_goes_on_and_the_user_is_told_once() -> None:
     with agent(None) as sim:
         assert sim.read(ontology.memory) is None
@@ -769,6 +831,37 @@ def test_a_user_without_a_name_gets_it_and_when_he_leaves_the_next_is_another(fi
         assert len(sim.said) == before  # nobody is there
         sim.put(interloc.users, {"console": None})
         assert asked(sim) == "name"
+
+
+def test_who_stays_is_not_taken_for_who_has_left(file: Path, look: Look) -> None:
+    with agent(file) as sim:
+        sim.put(interloc.users, {"1": "Ada"})
+        sim.say("i live in ulm")
+        sim.put(interloc.users, {"1": "Ada", "2": "Bob", "3": "Eve"})
+        sim.put(interloc.users, {"1": "Ada", "2": "Bob"})
+        assert answers(sim, "who am i?").find("Ada") >= 0
+        sim.put(interloc.users, {"2": "Bob"})
+        assert answers(sim, "who am i?").find("Bob") >= 0
+        sim.say("i live in bremen")
+    assert look() == {"Ada": {"lives_in": ["Ulm"]}, "Bob": {"lives_in": ["Bremen"]}}
+
+
+def test_who_comes_with_another_name_is_somebody_else(file: Path, look: Look) -> None:
+    with agent(file) as sim:
+        sim.say("my name is ada and i live in ulm")
+        sim.put(interloc.users, {"console": "Bob"})
+        assert sim.read(persqa.who)["name"] == "Bob"  # pyright: ignore[reportOptionalSubscript]
+        sim.say("i work as a baker")
+    assert look() == {"Ada": {"lives_in": ["Ulm"]}, "Bob": {"works_as": ["baker"]}}
+
+
+def test_who_is_recognised_as_a_node_is_meant_whoever_else_has_his_name(file: Path) -> None:
+    with agent(file) as sim:
+        memory = sim.read(ontology.memory)
+        assert memory is not None
+        second = [memory.create("Person", name="Ada").result(20) for _ in range(2)][1]
+        sim.put(interloc.users, {"camera": second})
+        assert sim.read(persqa.who) == second
 
 
 # ------------------------------------------------------------------------------------ what it is

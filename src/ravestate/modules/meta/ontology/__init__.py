@@ -9,12 +9,14 @@ from pydantic import Field, SecretStr
 
 import ravestate as rs
 
+from .graph import Graph
 from .memory import Memory
 from .node import Node, Relation, Value
 from .reply import Reply
 from .types import Types
 
 __all__ = [
+    "Graph",
     "Memory",
     "Node",
     "Relation",

@@ -106,6 +106,9 @@ class BoltStore:
     @contextmanager
     def transaction(self) -> Generator[None]:
         """All statements within are done together, or none."""
+        if self._transaction is not None:
+            yield
+            return
         session = self._session()
         try:
             self._transaction = transaction = self._wait(session.begin_transaction())

@@ -68,6 +68,7 @@ class EmbeddedStore:
         self._log_good = 0
         self._stuck = ""
         self._within = False
+        self._purge_due = False
         self._prepared: Types | None = None
         try:
             path.parent.mkdir(parents=True, exist_ok=True, mode=0o700)
@@ -94,9 +95,13 @@ class EmbeddedStore:
     @contextmanager
     def transaction(self) -> Generator[None]:
         """All statements within are done together, or none."""
-        self._be_writable(0)
+        if self._within:
+            yield
+            return
+        if self._stuck:  # else each write looks for itself whether there is room; reading wants none
+            self._be_writable(0)
         self._execute("BEGIN TRANSACTION")
-        self._within = True
+        self._within, self._purge_due = True, False
         try:
             yield
             self._execute("COMMIT")
@@ -107,6 +112,8 @@ class EmbeddedStore:
         finally:
             self._within = False
         self._acknowledge()
+        if self._purge_due:
+            self.purge()
 
     def _acknowledge(self) -> None:
         """What has been written up to here is on disk."""
@@ -135,6 +142,7 @@ class EmbeddedStore:
             return
         missing = list(missing_tables(self._execute, types, str(self._path)))
         if missing:  # else nothing is written: a memory may be read from a full disk
+            self._be_writable(0)
             with self.transaction():
                 for statement in missing:
                     self._execute(statement)
@@ -199,6 +207,9 @@ class EmbeddedStore:
 
         Should that fail, what was deleted is no longer known all the same; a warning says so.
         """
+        if self._within:
+            self._purge_due = True  # when it is done
+            return
         new = self._path.with_name(self._path.name + ".new")
         try:
             self._check_space(2 * (self._path.stat().st_size + self._log_size()))

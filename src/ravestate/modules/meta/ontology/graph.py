@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any
+from collections.abc import Callable, Mapping
+from typing import Any, TypeVar
 
 from ravestate.errors import RuleError
 
@@ -13,6 +13,8 @@ from .store import RawNode, RawRelation, Store
 from .types import Types
 
 __all__ = ["Graph"]
+
+T = TypeVar("T")
 
 AGENT = "Agent"
 """Of this type is who may have told things about himself."""
@@ -28,6 +30,11 @@ class Graph:
     def prepare(self) -> None:
         """Make room for the types."""
         self._store.prepare(self._types)
+
+    def together(self, operations: Callable[[Graph], T]) -> T:
+        """Several operations, all or none."""
+        with self._store.transaction():
+            return operations(self)
 
     # ------------------------------------------------------------------------------------ nodes
 

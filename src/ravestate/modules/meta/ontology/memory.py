@@ -164,6 +164,28 @@ class Memory:
         """What `forget` would remove, `node` first."""
         return self._do("only_about", lambda graph: graph.only_about(node))
 
+    def together(self, operations: Callable[[Graph], T], /) -> Reply[T]:
+        """Several operations as one: all are done or none. In a file nobody else's come between; a server has rules of its own.
+
+        Args:
+            operations: Is called with the graph, in memory's thread. The graph has the operations of this class, done at once,
+                with properties as mappings; it is not to be used later.
+
+        Returns:
+            What `operations` returns. What it raises takes back what it has done.
+
+        Example:
+            ::
+
+                def befriend(graph):
+                    ada = graph.ensure("Person", {"name": "Ada"})
+                    graph.relate(ada, "friend_of", graph.ensure("Person", {"name": "Charles"}), {})
+                    return ada
+
+                ada = await memory.together(befriend)
+        """
+        return self._do("together", lambda graph: graph.together(operations))
+
     def export(self) -> Reply[dict[str, Any]]:
         """Everything, as a document that JSON can carry; `load` reads it."""
         return self._do("export", lambda graph: graph.export())

@@ -66,7 +66,7 @@ class Store(Protocol):
         ...
 
     def transaction(self) -> AbstractContextManager[None]:
-        """All statements within are done together when it ends, or none of them.
+        """All statements within are done together when it ends, or none of them; one within another is a part of it.
 
         Raises:
             PlatformError: The database failed.

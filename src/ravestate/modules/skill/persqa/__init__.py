@@ -11,6 +11,7 @@ from ravestate.errors import nearest
 from ravestate.modules import idle, interloc, nlp, ontology, rawio, verbaliser
 from ravestate.modules.meta.verbaliser.intents import Intent
 
+from .acquaintance import Noted
 from .talk import Question, Talk
 from .topics import TOPICS
 
@@ -52,5 +53,8 @@ talk: rs.Slot[Talk] = module.slot("talk", Talk(), type=Talk)
 
 reply = module.signal("reply", payload=Intent)
 """The user has told or asked something about himself; with what to say to it."""
+
+noted = module.signal("noted", payload=Noted)
+"""Memory has been asked about the user, or has written down what he told."""
 
 from . import rules  # noqa: E402  # they use what is declared above

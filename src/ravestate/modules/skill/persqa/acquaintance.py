@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
-from ravestate.errors import PlatformError
 from ravestate.modules import ontology
 
 from . import records
@@ -12,7 +12,7 @@ from .profile import Facts, merged, told_apart
 from .talk import Talk
 from .topics import NAME, TOPICS
 
-__all__ = ["Acquaintance"]
+__all__ = ["Acquaintance", "Noted"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,63 +39,82 @@ class Acquaintance:
         """Values by topic, the name among them."""
         return {NAME: (self.name,), **self.facts} if self.name else self.facts
 
-    async def recall(self, memory: ontology.Memory | None) -> Acquaintance:
-        """Ask memory who bears his name, unless it was asked before.
-
-        Raises:
-            PlatformError: There is no memory, or it fails.
-        """
+    def recall(self, graph: ontology.Graph) -> Acquaintance:
+        """Ask memory what it has of him, whom it knows by his name, unless it was asked before."""
         if self.talk.met or self.who is None:
             return self
-        if memory is None:
-            raise PlatformError("there is no memory")
-        found = await records.named(memory, self.who[NAME])
+        found = graph.get(self.who.id) or records.named(graph, self.who[NAME])
         if found is None:
             return replace(self, talk=replace(self.talk, met=True, newcomer=True))
-        remembered = await records.known(memory, found)
+        remembered = records.known(graph, found)
         return Acquaintance(
             found,
             merged(remembered, self.facts),
             replace(self.talk, met=True, newcomer=False, remembered=remembered),
         )
 
-    async def noted(self, memory: ontology.Memory | None) -> Acquaintance:
-        """Write down what he has told in this talk; nothing while his name is not known.
-
-        Raises:
-            PlatformError: There is no memory, or it fails.
-        """
-        if self.who is None:
-            return self
-        now = await self.recall(memory)
-        assert memory is not None and now.who is not None  # else recall had raised
-        new = {topic for topic, values in now.facts.items() if values != now.talk.remembered.get(topic)}
+    def noted(self, graph: ontology.Graph) -> Acquaintance:
+        """Write down what he has told in this talk; nothing while his name is not known."""
+        now = self.recall(graph)
+        if now.who is None:
+            return now
+        remembered = now.talk.remembered
+        new = {topic for topic, values in now.facts.items() if values != remembered.get(topic)}
         topics = [topic for topic in TOPICS if topic in new | now.talk.told]
-        await records.note(memory, now.who, {topic: now.facts.get(topic, ()) for topic in topics})
+        records.note(graph, now.who, {topic: now.facts.get(topic, ()) for topic in topics}, now._once)
         return now
 
-    async def renamed(self, memory: ontology.Memory | None, name: str) -> Acquaintance:
+    @property
+    def _once(self) -> Facts:
+        """All that memory may have of him on this talk's account, by topic."""
+        remembered, once = self.talk.remembered, self.talk.once
+        return {topic: remembered.get(topic, ()) + once.get(topic, ()) for topic in TOPICS}
+
+    def renamed(self, graph: ontology.Graph, name: str) -> Acquaintance:
         """He is called otherwise than it was understood.
 
         Who was made in this talk has another name then. Who was remembered stays as he was before this talk, and what
         was told in it belongs to somebody else.
-
-        Raises:
-            PlatformError: Memory fails.
         """
         assert self.who is not None  # his name was understood
-        if memory is None or not self.talk.met:
-            return replace(self, who=self.who.with_properties(name=name))
-        other = await records.named(memory, name)
-        if self.talk.newcomer and other is None:
+        if not self.talk.met:
             return replace(self, who=self.who.with_properties(name=name))
         if self.talk.newcomer:
-            await memory.forget(self.who)
+            if records.named(graph, name) is None:
+                return replace(self, who=self.who.with_properties(name=name))
+            graph.forget(self.who)
         else:
             before = {topic: self.talk.remembered.get(topic, ()) for topic in self.talk.told}
-            await records.note(memory, self.who, before)
+            records.note(graph, self.who, before, self._once)
         return Acquaintance(
             ontology.Node("Person", {NAME: name}),
             told_apart(self.facts, self.talk.remembered, self.talk.told),
-            replace(self.talk, met=False, newcomer=False, remembered={}, reminded=False),
+            replace(self.talk, met=False, newcomer=False, remembered={}, once={}, reminded=False),
         )
+
+    def rebased(self, base: Acquaintance, after: Acquaintance) -> Acquaintance:
+        """The user as he is now, with what has become of `base` in the meantime: `after`. What is not any more as it was at
+        `base` stays as it is: the user has gone on talking."""
+        same_user = (self.who, self.talk.met) == (base.who, base.talk.met)
+        facts = dict(self.facts)
+        for topic in TOPICS:
+            if facts.get(topic) == base.facts.get(topic) != after.facts.get(topic):
+                facts.pop(topic, None)
+                if topic in after.facts:
+                    facts[topic] = after.facts[topic]
+        return Acquaintance(
+            after.who if same_user else self.who,
+            facts,
+            self.talk.rebased(base.talk, after.talk) if same_user else self.talk,
+        )
+
+
+class Noted(NamedTuple):
+    """What memory has made of the user."""
+
+    base: Acquaintance
+    """As he was known when it was asked."""
+    after: Acquaintance
+    """As he is known by what it answered."""
+    called: str | None
+    """By what name he was known before he said anything of it."""

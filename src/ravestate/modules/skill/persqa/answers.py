@@ -38,7 +38,9 @@ _LEADS: dict[Kind, str] = {
     "work": r"(i work |i'm working |i am working )?(as )?",
     "organisation": rf"(({_BE} )?(a member of|in|at|for|with|part of) )?",
     "subject": r"(i('m| am)? )?(study|studying|studied|doing|in)? ?",
-    "people": r"((his|her|their) names? (is|are) )?((i have|i've got) )?",
+    "people": r"((his|her|their|its) names? (is|are) )?(((s?he|it)('s| is)|they('re| are)) (called|named) )?((i have|i've got) )?",
+    "thing": r"(i ((really|also) )*(like|love|enjoy|prefer) )?",
+    "number": rf"({_BE} )?",
 }  # fmt: skip
 LEADS = {kind: re.compile("^" + words, re.IGNORECASE) for kind, words in _LEADS.items()}
 """With what an answer of each kind may be introduced."""

@@ -35,13 +35,16 @@ _ENDS: Mapping[Kind, str] = {
     "name": "and|but|or|from|by|because|so|since|what|how|nice|i|i'm|you|not|is|was|if|with|like|short|the|my|btw",
     "place": "and|but|or|since|because|so|for|with|where|which|who|that|when|while|though|although|if|as|by|i|i'm|"
     "my|we|you|it|not|is|was|has|have|until|before|after|together|in|near|at|right|these|on|last|recently|ago",
-    "activity": "because|since|but|so|when|while|if|that|which|who|though|although|i'm|i am|my friends|in my|every|as a",
+    "activity": "because|since|but|so|when|while|if|that|which|who|though|although|i'm|i am|my friends|in my|every|as a|"
+    "more than|very much|a lot|quite often|most of all|as often|on (?:mon|tues|wednes|thurs|fri|satur|sun)days?|at (?:the )?weekends?|on weekends",
     "work": "and|but|or|at|for|in|with|because|since|so|when|while|if|that|which|who|though|although|i|i'm|my|on|not|by|near",
     "organisation": "because|since|but|so|when|while|if|that|which|who|though|although|as|in|on|with|for|near|"
     "and (?:i|i'm|my|live|work|have|am|also|it|love|like|we|come|study|play)|i|i'm|my|not|is",
     "subject": "at|in|because|since|but|so|when|while|if|that|which|who|though|although|with|for|i|i'm|my|on|not|"
     "and (?:i|i'm|my|live|work|have|am|also|it)",
     "people": "but|because|since|so|when|while|if|that|which|who|though|although|from|i|i'm|we|is|are|with|not",
+    "thing": "because|since|but|so|when|while|if|that|which|who|though|although|as|more|very much|a lot|in my|every",
+    "number": "years?|yrs?|and|but|now|this|next",
 }
 """What follows a value of each kind, and is none of it."""
 
@@ -87,7 +90,7 @@ def values(rest: str, topic: Topic) -> tuple[str, ...]:
 
 
 def _pieces(rest: str, topic: Topic) -> Iterable[str]:
-    if not topic.many:
+    if not topic.many and topic.kind != "people":
         rest = _TITLE.sub(r"\1", rest)
         # quotes, at which a value ends, may also stand around it
         return [MARK.split(rest.lstrip(" .,;:-\"'“„«([{"), maxsplit=1)[0]]
@@ -102,7 +105,7 @@ def _value(piece: str, topic: Topic) -> str | None:
     while (shorter := TAIL.sub("", " " + value).strip()) != value:
         value = shorter
     value = value.strip(" '-_*~.,")
-    if topic.kind in ("work", "subject", "activity"):
+    if topic.kind in ("work", "subject", "activity", "thing"):
         value = re.sub(r"^(?:a|an)\s+(?=\S)", "", value, flags=re.IGNORECASE)
     if topic.kind == "work":
         value = re.sub(r"^the\s+(?=\S)", "", value, flags=re.IGNORECASE)
@@ -117,7 +120,7 @@ def is_value(value: str, topic: Topic) -> bool:
     if not words or len(value) > 60 or len(words) > (4 if topic.kind in ("name", "people", "place") else 7):
         return False
     named = words[0] == "will" and topic.kind in ("name", "people")  # Will Smith
-    if NEVER_IN & set(words[named:]) or not any(_tells(letter) for letter in value):
+    if NEVER_IN & set(words[named:]) or not (topic.kind == "number" or any(map(_tells, value))):
         return False
     first = words[0]
     match topic.kind:
@@ -146,8 +149,10 @@ def is_value(value: str, topic: Topic) -> bool:
             if first[0].isdigit() or re.match(r"[a-z]+ing\b", value):  # 25 years old, working on it
                 return False
             return first not in STATES or value.lower() in ("retired", "self-employed", "freelance")
-        case "activity":
+        case "activity" | "thing":
             return first not in NO_HOBBY
+        case "number":
+            return value.isdecimal() and 0 < int(value) < 120
 
 
 def _tells(letter: str) -> bool:

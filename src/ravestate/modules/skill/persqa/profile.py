@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from .topics import NAME, TOPICS, Fact
-from .wording import same
+from .wording import among
 
 __all__ = ["Facts", "News", "learn", "merged", "told_apart"]
 
@@ -77,7 +77,7 @@ def _strike(facts: dict[str, tuple[str, ...]], fact: Fact) -> None:
 
 def _without(values: Iterable[str], others: Iterable[str]) -> tuple[str, ...]:
     others = tuple(others)
-    return tuple(value for value in values if not any(same(value, other) for other in others))
+    return tuple(value for value in values if not among(value, others))
 
 
 def merged(remembered: Facts, told: Facts) -> Facts:

@@ -6,24 +6,24 @@ from collections.abc import Mapping
 
 from ravestate.modules import ontology
 
-from .topics import NAME, TOPICS, Topic
-from .wording import same
+from .topics import TOPICS, Topic
+from .wording import among
 
 __all__ = ["known", "named", "note"]
 
 
-async def named(memory: ontology.Memory, name: str) -> ontology.Node | None:
+def named(graph: ontology.Graph, name: str) -> ontology.Node | None:
     """The person of this name; of several the one of whom most is known, of these the oldest."""
-    people = await memory.find("Person", name=name)
+    people = graph.find("Person", {"name": name})
     if len(people) < 2:
         return people[0] if people else None
-    amounts = [len(await memory.relations(person)) for person in people]
+    amounts = [len(graph.relations(person)) for person in people]
     return people[amounts.index(max(amounts))]
 
 
-async def known(memory: ontology.Memory, person: ontology.Node) -> dict[str, tuple[str, ...]]:
+def known(graph: ontology.Graph, person: ontology.Node) -> dict[str, tuple[str, ...]]:
     """What is known of a person: values by topic, in the order of the topics. The name is not among them."""
-    found = await _related(memory, person)
+    found = _related(graph, person)
     return {
         topic.name: tuple(node["name"] for node in found[topic.relation])
         for topic in TOPICS.values()
@@ -31,43 +31,49 @@ async def known(memory: ontology.Memory, person: ontology.Node) -> dict[str, tup
     }
 
 
-async def note(memory: ontology.Memory, person: ontology.Node, facts: Mapping[str, tuple[str, ...]]) -> None:
-    """Write down what is known of a person. Whatever else memory has under these topics is taken away.
+def note(
+    graph: ontology.Graph,
+    person: ontology.Node,
+    facts: Mapping[str, tuple[str, ...]],
+    once: Mapping[str, tuple[str, ...]],
+) -> None:
+    """Write down what is known of a person. To do it twice does no harm.
 
-    To do it twice does no harm.
+    Where there may be several values under a topic, those stay that somebody else has written down in the meantime.
 
     Args:
-        memory: Where to.
+        graph: Where to.
         person: Of whom; he is saved as well.
         facts: Values by topic.
+        once: What may be written down of him and is not so any more, unless it is among `facts`.
     """
-    await memory.save(person)
-    before = await _related(memory, person)
+    graph.save(person)
+    related = _related(graph, person)
     for name, values in facts.items():
         topic = TOPICS[name]
-        if name == NAME:
-            continue
-        present = before.get(topic.relation, [])
+        present = related.get(topic.relation, [])
         for node in present:
-            if not any(same(node["name"], value) for value in values):
-                await memory.unrelate(person, topic.relation, node)
+            if among(node["name"], values):
+                continue
+            if not (topic.many and values) or among(node["name"], once.get(name, ())):
+                graph.unrelate(person, topic.relation, node)
         for value in values:
-            if not any(same(node["name"], value) for node in present):
-                await memory.relate(person, topic.relation, await _thing(memory, topic, value, person))
+            if not among(value, [node["name"] for node in present]):
+                graph.relate(person, topic.relation, _thing(graph, topic, value, person), {})
 
 
-async def _related(memory: ontology.Memory, person: ontology.Node) -> dict[str, list[ontology.Node]]:
+def _related(graph: ontology.Graph, person: ontology.Node) -> dict[str, list[ontology.Node]]:
     """The named nodes to which a person is related, by relation."""
     found: dict[str, list[ontology.Node]] = {}
-    for relation in await memory.relations(person):
+    for relation in graph.relations(person):
         if relation.source.id == person.id and relation.target.get("name"):
             found.setdefault(relation.name, []).append(relation.target)
     return found
 
 
-async def _thing(memory: ontology.Memory, topic: Topic, value: str, person: ontology.Node) -> ontology.Node:
+def _thing(graph: ontology.Graph, topic: Topic, value: str, person: ontology.Node) -> ontology.Node:
     """The node that a value names; nobody is his own friend."""
-    for node in await memory.find(topic.type, name=value):
+    for node in graph.find(topic.type, {"name": value}):
         if node.id != person.id:
             return node
-    return await memory.create(topic.type, name=value)
+    return graph.save(ontology.Node(topic.type, {"name": value}))

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import random
-from collections.abc import Mapping
-from dataclasses import replace
+from collections.abc import Awaitable, Callable, Mapping
+from dataclasses import dataclass, replace
+from typing import TypeVar
 
-from ravestate.errors import RavestateError
+from ravestate.errors import PlatformError, RavestateError
 from ravestate.modules import ontology
 from ravestate.modules.meta.verbaliser.intents import Intent
 
@@ -17,97 +18,118 @@ from .replies import asking, learned, memorable, say, stating, summary
 from .talk import FORGET, Talk
 from .topics import NAME, TOPICS, Fact
 from .understanding import Meaning
-from .wording import same
+from .wording import among, same
 
-__all__ = ["respond_to"]
+__all__ = ["Response", "respond_to"]
 
-Response = tuple[Intent | None, Acquaintance]
+T = TypeVar("T")
 
 
-async def respond_to(
-    meaning: Meaning,
-    user: Acquaintance,
-    memory: ontology.Memory | None,
-    now: float,
-    chance: random.Random,
-) -> Response:
-    """Return what to say to an utterance, None if nothing, and the user as he is known after it.
+@dataclass(frozen=True, slots=True)
+class Response:
+    """What comes of an utterance.
 
-    Memory that fails is told in ``talk.trouble``; nothing is raised for it.
+    Attributes:
+        answer: What to say to it; None if nothing.
+        user: As he is known after it.
+        errand: What is to be done with memory (None where there is none) before it can be answered: it returns the response
+            after that. A memory that fails is told in ``talk.trouble``; nothing is raised for it.
+    """
+
+    answer: Intent | None
+    user: Acquaintance
+    errand: Callable[[ontology.Memory | None], Awaitable[Response]] | None = None
+
+
+def respond_to(meaning: Meaning, user: Acquaintance, now: float, chance: random.Random) -> Response:
+    """Return what comes of an utterance.
 
     Args:
         meaning: What was said.
         user: As he was known before.
-        memory: None if there is none.
         now: Seconds since the context began.
         chance: Decides what is mentioned.
     """
     listening = replace(user, talk=user.talk.listening(leave=meaning.leave))
     match meaning.kind:
         case "nothing":
-            return None, listening
+            return Response(None, listening)
         case "told" | "corrected":
-            return await _told(meaning, listening, memory, now, chance)
+            return _told(meaning, listening, now, chance)
         case "declined" | "unsure":
             return _closed(meaning.kind, meaning.topic, listening)
         case "none":
-            _, closed = _closed("none", meaning.topic, listening)
-            none = Meaning("told", (Fact(meaning.topic, (), gone=True),), meaning.topic)
-            _, after = await _told(none, closed, memory, now, chance)
-            return say("none", after.known), after
+            closed = _closed("none", meaning.topic, listening).user
+            none = Meaning("none", (Fact(meaning.topic, (), gone=True),), meaning.topic)
+            return _told(none, closed, now, chance)
         case "which":
             talk = replace(user.talk, ignored=0)  # the question stands
-            return say("which", user.known), replace(user, talk=talk)
+            return Response(say("which", user.known), replace(user, talk=talk))
         case "asked":
             return _asked(meaning.facts[0], listening, now)
         case "forget":
             if not user.known:
-                return say("forget_nobody", {}), listening
-            return say("forget_ask", user.known), replace(listening, talk=listening.talk.asking(FORGET, now))
+                return Response(say("forget_nobody", {}), listening)
+            asking_back = replace(listening, talk=listening.talk.asking(FORGET, now))
+            return Response(say("forget_ask", user.known), asking_back)
         case "forget_no":
-            return say("forget_not", user.known), replace(listening, talk=listening.talk.closing())
+            talk = listening.talk.closing()
+            return Response(say("forget_not", user.known), replace(listening, talk=talk))
         case "forget_yes":
-            return await _forget(listening, memory)
+            return Response(None, listening, lambda memory: _forget(listening, memory))
 
 
 def _closed(intent: str, topic: str, user: Acquaintance) -> Response:
-    return say(intent, user.known), replace(user, talk=user.talk.closing(topic))
+    return Response(say(intent, user.known), replace(user, talk=user.talk.closing(topic)))
+
+
+async def _at_once(memory: ontology.Memory | None, operations: Callable[[ontology.Graph], T]) -> T:
+    if memory is None:
+        raise PlatformError("there is no memory")
+    return await memory.together(operations)
 
 
 # ------------------------------------------------------------------------------------ told
 
 
-async def _told(
-    meaning: Meaning,
-    user: Acquaintance,
-    memory: ontology.Memory | None,
-    now: float,
-    chance: random.Random,
-) -> Response:
+def _told(meaning: Meaning, user: Acquaintance, now: float, chance: random.Random) -> Response:
     names = [fact for fact in meaning.facts if fact.topic == NAME]
     name = next((fact.values[0] for fact in names if not fact.gone), None)
     if names and name is None:  # my name is not Ada
-        return asking(NAME, {}), replace(user, talk=user.talk.asking(NAME, now))
+        return Response(asking(NAME, {}), replace(user, talk=user.talk.asking(NAME, now)))
     before = user
-    instead_of = user.talk.latest if meaning.kind == "corrected" else ()
-    news = learn(user.facts, meaning.facts, instead_of)
+    news = learn(user.facts, meaning.facts, user.talk.latest if meaning.kind == "corrected" else ())
     user = replace(user, facts=news.facts, talk=_learning(user.talk, meaning, news, name))
-    again = name is not None and before.name is not None
-    try:
+    if name is not None and user.who is None:
+        user = replace(user, who=ontology.Node("Person", {NAME: name}))
+
+    async def write(memory: ontology.Memory | None) -> Response:
+        after = await _written(user, name, memory)
+        if after.talk.trouble and not user.talk.warned:
+            warned = replace(after, talk=replace(after.talk, warned=True))
+            return Response(say("unsaved_name" if name is not None else "unsaved", after.known), warned)
+        if meaning.kind == "none":
+            return Response(say("none", after.known), after)
         if name is not None:
-            user = await _named(user, name, memory)
-        user = await user.noted(memory)
-        user = replace(user, talk=replace(user.talk, trouble=""))
+            return _of_name(name, before, after, chance)
+        return Response(_of_facts(meaning, news, before, after), after)
+
+    return Response(None, user, write)
+
+
+async def _written(user: Acquaintance, name: str | None, memory: ontology.Memory | None) -> Acquaintance:
+    """Write down what is known of the user, who has said that this is his name, if he has."""
+    again = name is not None and not (user.name and same(user.name, name))
+    try:
+        if user.who is not None:  # else it is kept for the talk
+            user = await _at_once(
+                memory, lambda graph: (user.renamed(graph, name) if again and name else user).noted(graph)
+            )
+        return replace(user, talk=replace(user.talk, trouble=""))
     except RavestateError as error:
         user = replace(user, talk=replace(user.talk, trouble=str(error)))
-        if name is not None and not (user.name and same(user.name, name)):
-            user = replace(user, who=ontology.Node("Person", {NAME: name}))  # for as long as the talk lasts
-        if not user.talk.warned:
-            user = replace(user, talk=replace(user.talk, warned=True))
-            return say("unsaved_name" if name is not None else "unsaved", user.known), user
-    if name is None:
-        return _of_facts(meaning, news, before, user), user
-    return _of_name(name, again, before, user, chance)
+        # for as long as the talk lasts
+        return replace(user, who=ontology.Node("Person", {NAME: name})) if again else user
 
 
 def _learning(talk: Talk, meaning: Meaning, news: News, name: str | None) -> Talk:
@@ -115,32 +137,23 @@ def _learning(talk: Talk, meaning: Meaning, news: News, name: str | None) -> Tal
     main = NAME if name is not None else _main(meaning, news)
     latest = (name,) if name is not None else next((f.values for f in meaning.facts if f.topic == main), ())
     talk = talk.learning(topics, main, latest)
-    return replace(talk, told=talk.told - {NAME})
+    once = {topic: (*talk.once.get(topic, ()), *news.facts.get(topic, ())) for topic in news.topics}
+    once = {topic: tuple(dict.fromkeys(values)) for topic, values in once.items()}
+    return replace(talk, told=talk.told - {NAME}, once={**talk.once, **once})
 
 
-async def _named(user: Acquaintance, name: str, memory: ontology.Memory | None) -> Acquaintance:
-    """The user has this name."""
-    if user.who is None:
-        return replace(user, who=ontology.Node("Person", {NAME: name}))
-    if user.name is not None and same(user.name, name):
-        return user
-    return await user.renamed(memory, name)
-
-
-def _of_name(
-    name: str, again: bool, before: Acquaintance, user: Acquaintance, chance: random.Random
-) -> Response:
+def _of_name(name: str, before: Acquaintance, user: Acquaintance, chance: random.Random) -> Response:
     known = user.known
-    if again and before.name is not None and same(before.name, name):
-        return stating("known_already", NAME, (name,), known), user
+    if before.name is not None and same(before.name, name):
+        return Response(stating("known_already", NAME, (name,), known), user)
     remembered = {topic: values for topic, values in user.talk.remembered.items() if values}
     if remembered:
         topic = memorable(remembered, chance)
-        return (
+        return Response(
             stating("welcome_back", topic, remembered[topic], known),
             replace(user, talk=replace(user.talk, reminded=True)),
         )
-    return say("renamed" if again else "learned_name", known), user
+    return Response(say("learned_name" if before.name is None else "renamed", known), user)
 
 
 def _main(meaning: Meaning, news: News) -> str:
@@ -171,30 +184,36 @@ def _asked(fact: Fact, user: Acquaintance, now: float) -> Response:
     topic = fact.topic
     if topic == EVERYTHING:
         if any(known.values()):
-            return summary(known), replace(user, talk=replace(user.talk, reminded=True))
-        return say("recall_nothing", known), user
-    mentioned = replace(user, talk=user.talk.mentioning(topic, known.get(topic, ())))
-    if fact.values and known.get(topic):
-        right = all(any(same(asked, value) for value in known[topic]) for asked in fact.values)
-        return stating("confirm" if right else "deny", topic, known[topic], known), mentioned
-    if known.get(topic):
-        return stating("recall_name" if topic == NAME else "recall", topic, known[topic], known), mentioned
+            return Response(summary(known), replace(user, talk=replace(user.talk, reminded=True)))
+        return Response(say("recall_nothing", known), user)
+    if values := known.get(topic):
+        if fact.values:
+            right = all(among(asked, values) for asked in fact.values)
+            intent = "confirm" if right else "deny"
+        else:
+            intent = "recall_name" if topic == NAME else "recall"
+        mentioned = replace(user, talk=user.talk.mentioning(topic, values))
+        return Response(stating(intent, topic, values, known), mentioned)
     if topic in known:
-        return say("recall_none", known), user
+        return Response(say("recall_none", known), user)
     if topic in user.talk.closed:
-        return say("recall_declined", known), user
+        return Response(say("recall_declined", known), user)
     unknown = "recall_stranger" if topic == NAME else "recall_unknown"
-    return say(unknown, known), replace(user, talk=user.talk.asking(topic, now))
+    return Response(say(unknown, known), replace(user, talk=user.talk.asking(topic, now)))
 
 
 async def _forget(user: Acquaintance, memory: ontology.Memory | None) -> Response:
     """Forget the user, and do not ask him again."""
-    if user.who is not None and memory is not None:
-        try:
-            found = await user.recall(memory)  # he may be remembered although memory failed when he came
-            if found.who is not None:
-                await memory.forget(found.who)
-        except RavestateError as error:
-            talk = replace(user.talk.closing(), trouble=str(error))
-            return say("forget_failed", user.known), replace(user, talk=talk)
-    return say("forgotten", {}), Acquaintance(None, {}, Talk(closed=frozenset(TOPICS), met=False))
+
+    def forget(graph: ontology.Graph) -> None:
+        found = user.recall(graph)  # he may be remembered although memory failed when he came
+        if found.who is not None:
+            graph.forget(found.who)
+
+    try:
+        if user.who is not None:
+            await _at_once(memory, forget)
+    except RavestateError as error:
+        talk = replace(user.talk.closing(), trouble=str(error))
+        return Response(say("forget_failed", user.known), replace(user, talk=talk))
+    return Response(say("forgotten", {}), Acquaintance(None, {}, Talk(closed=frozenset(TOPICS))))

@@ -8,8 +8,8 @@ import ravestate as rs
 from ravestate.errors import RavestateError
 from ravestate.modules import idle, interloc, nlp, ontology, rawio, verbaliser
 
-from . import Settings, facts, module, reply, talk, who
-from .acquaintance import Acquaintance
+from . import Settings, facts, module, noted, reply, talk, who
+from .acquaintance import Acquaintance, Noted
 from .profile import Facts
 from .replies import asking, memorable, stating
 from .response import respond_to
@@ -70,11 +70,15 @@ async def ask(ctx: rs.RuleContext) -> rs.Resign | None:
     & nlp.question.changed
     & nlp.yesno.changed,
     reads=ontology.memory,
-    writes=(talk, who, facts, interloc.users),
-    emits=reply,
+    writes=(talk, who, facts),
+    emits=(reply, noted),
 )
 async def listen(ctx: rs.RuleContext) -> None:
-    """Learn what the user tells of himself, and raise what to say to it, if it is for this module to answer."""
+    """Learn what the user tells of himself, and raise what to say to it, if it is for this module to answer.
+
+    What he has told is in the slots before memory is asked to keep it, so that the next utterance, which does not wait, builds
+    on it. What memory makes of it is for `acknowledge`, which sees the slots as they are then.
+    """
     settings: Settings = ctx.settings
     heard = Heard(
         ctx.payload(rawio.input.changed),
@@ -87,19 +91,32 @@ async def listen(ctx: rs.RuleContext) -> None:
     )
     meaning = understand(heard, ctx[talk], known_of(ctx), ctx.now, settings.within)
     before = acquaintance_of(ctx)
-    memory = ctx[ontology.memory]
-    answer, after = await respond_to(meaning, before, memory, ctx.now, ctx.random)
-    if memory is not None and after.talk.trouble not in ("", before.talk.trouble):  # else it is told already
-        ctx.log.error("%s", after.talk.trouble)
-    keep(ctx, before, after)
-    name = after.name
+    response = respond_to(meaning, before, ctx.now, ctx.random)
+    keep(ctx, before, response.user)
+    if response.errand is not None:
+        memory, base = ctx[ontology.memory], response.user
+        response = await response.errand(memory)
+        if memory is not None and response.user.talk.trouble not in (
+            "",
+            base.talk.trouble,
+        ):  # else it is told already
+            ctx.log.error("%s", response.user.talk.trouble)
+        ctx.emit(noted, Noted(base, response.user, before.name))
+    if response.answer is not None and meaning.aloud:
+        ctx.emit(reply, response.answer)
+
+
+@module.rule(when=noted.max_age(None).detached(), writes=(talk, who, facts, interloc.users), background=True)
+async def acknowledge(ctx: rs.RuleContext) -> None:
+    """Know what memory has made of the user, and tell others his name."""
+    base, after, called = ctx.payload(noted)
+    now = acquaintance_of(ctx)
+    keep(ctx, now, now.rebased(base, after))
     users = ctx[interloc.users]
-    if name != before.name and len(users) == 1:
+    if after.name != called and len(users) == 1:
         [(key, item)] = users.items()
-        if item is None or item == before.name:
-            users.add(key, name)
-    if answer is not None and meaning.aloud:
-        ctx.emit(reply, answer)
+        if item is None or item == called:
+            users.add(key, after.name)
 
 
 @module.rule(when=reply, writes=verbaliser.intent)
@@ -121,41 +138,62 @@ async def overhear(ctx: rs.RuleContext) -> rs.Resign | None:
     when=interloc.users.added.max_age(None).detached(),
     reads=(ontology.memory, interloc.users),
     writes=(talk, who, facts),
+    emits=noted,
     background=True,
 )
 async def welcome(ctx: rs.RuleContext) -> rs.Resign | None:
     """A platform knows who has come: so does memory, perhaps. Others greet; this module reminds him when it is quiet."""
-    item: object = ctx.payload(interloc.users.added).item
     if len(ctx[interloc.users]) > 1:
         return rs.Resign("somebody is there already")
     before = acquaintance_of(ctx)
-    after = replace(before, talk=replace(before.talk, quiet=False))
-    if isinstance(item, ontology.Node) and item.get(NAME):
-        after = replace(after, who=item)
-    elif isinstance(item, str) and item.strip():
-        after = replace(after, who=ontology.Node("Person", {NAME: item.strip()}))
-    memory = ctx[ontology.memory]
-    if memory is not None:
-        try:
-            after = await after.recall(memory)
-        except RavestateError as error:
-            ctx.log.error("%s", error)
-    keep(ctx, before, after)
+    person = person_of(ctx.payload(interloc.users.added).item)
+    if person is None or before.name == person[NAME]:
+        user = before
+    elif before.who is None:
+        user = replace(before, who=person)
+    else:
+        user = Acquaintance(person, {}, Talk())
+    await begin(ctx, replace(user, talk=replace(user.talk, quiet=False)))
     return None
 
 
 @module.rule(
     when=interloc.users.removed.max_age(None).detached(),
-    reads=interloc.users,
+    reads=(ontology.memory, interloc.users),
     writes=(talk, who, facts),
+    emits=noted,
     background=True,
 )
 async def part(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Nobody is left: the next talk is another one, and may be with somebody else."""
-    if ctx[interloc.users]:
+    """The user has left: the next talk is another one, with who is left or comes."""
+    left, known = person_of(ctx.payload(interloc.users.removed).item), ctx[who]
+    others = list(ctx[interloc.users].values())
+    if len(others) > 1 or (others and (left is None or known is None or left[NAME] != known[NAME])):
         return rs.Resign("somebody is still there")
-    keep(ctx, acquaintance_of(ctx), Acquaintance(None, {}, Talk(quiet=True)))
+    person = person_of(others[0]) if others else None
+    await begin(ctx, Acquaintance(person, {}, Talk(quiet=not others)))
     return None
+
+
+def person_of(item: object) -> ontology.Node | None:
+    """Who an item of `interloc.users` is; None for one without a name."""
+    if isinstance(item, ontology.Node):
+        return item if item.get(NAME) else None
+    return ontology.Node("Person", {NAME: item.strip()}) if isinstance(item, str) and item.strip() else None
+
+
+async def begin(ctx: rs.RuleContext, user: Acquaintance) -> None:
+    """Talk with this user; ask memory about him."""
+    keep(ctx, acquaintance_of(ctx), user)
+    memory = ctx[ontology.memory]
+    if memory is None or user.who is None:
+        return
+    try:
+        after = await memory.together(user.recall)
+    except RavestateError as error:
+        ctx.log.error("%s", error)
+    else:
+        ctx.emit(noted, Noted(user, after, after.name))
 
 
 def known_of(ctx: rs.RuleContext) -> Facts:
@@ -169,7 +207,7 @@ def acquaintance_of(ctx: rs.RuleContext) -> Acquaintance:
 
 
 def keep(ctx: rs.RuleContext, before: Acquaintance, after: Acquaintance) -> None:
-    """Put into the slots what is different: two utterances may be listened to at once while memory is slow."""
+    """Put into the slots what is different."""
     if after.who != before.who:
         ctx[who] = after.who
     if after.talk != before.talk:

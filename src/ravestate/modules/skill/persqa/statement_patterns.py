@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from .patterns import patterns
-from .topics import NAME
+from .patterns import Patterns, patterns
+from .topics import NAME, RELATIVES
 
-__all__ = ["ADVERBS", "AM", "GONE", "STATED"]
+__all__ = ["ADVERBS", "AM", "CALLED", "GONE", "STATED"]
 
 ADVERBS = (
     r"((actually|currently|now|still|just|really|also|mostly|originally|mainly|usually|only|sort of|kind of|always|"
@@ -21,6 +21,16 @@ GROUP = (
     r"fire department|circle)\b.*"
 )
 STOP = r"(?=$|[,.;!])"
+
+OWN = r"my ((very )?(best|closest|close|good|other|new|older|elder|younger|big|little|twin|only|late|pet) )*"
+CALLED = rf"""
+    {OWN}({{nouns}})(es|s)?('s? names?| names?)? (is|are)( called| named)? …
+    {OWN}({{nouns}})'s (called|named) …
+    (i have|i've got) (an?|one|two|three|four|some|a few|many) ([\w-]+ )?({{nouns}})(es|s)? (who is |who are |that is )?(called|named) …
+    ^(?P<wanted>[\w ,&'-]{{{{2,60}}}}?) (is|are) {OWN}({{nouns}})s?\b
+    {OWN}({{nouns}}),? (?P<wanted>(?!is\b|was\b|has\b)[\w'-]+)
+"""
+"""Who is called by what he is to the speaker: *my sister is called Emma*."""
 
 STATED = patterns(
     {
@@ -42,9 +52,18 @@ STATED = patterns(
         "origin": rf"""
             {I}(come|came|hail|stem) {ADVERBS}from …
             {AM}from …
-            i was (born|raised|born and raised|brought up) in …
-            i grew up in …
-            my (home ?town|home country|native (town|city|country)|birthplace|place of birth) is …
+            my (home ?town|home country|native (town|city|country)) is …
+        """,
+        "birthplace": rf"""
+            i was {ADVERBS}born (and (raised|brought up) )?in …
+            my (birthplace|place of birth) is …
+        """,
+        "childhood": rf"""
+            i ({ADVERBS}grew up|(was (born and )?|have been )(raised|brought up)) in …
+        """,
+        "age": rf"""
+            {AM}(?P<wanted>\d+)( (years?|yrs?)( old| of age)?)?(?= *($|[.,;!]|and\b|but\b|now\b))
+            my age is …
         """,
         "hobby": r"""
             my (only |main |biggest |favou?rite |big )?(hobby|hobbies|pastimes?)( is| are|'s|'re) …
@@ -54,6 +73,17 @@ STATED = patterns(
         "hobby:verb": rf"""
             {FREE},? {I}((like|love|enjoy) (to )?)?…
             {I}((like|love|enjoy) (to )?)?(?P<wanted>[\w ,'-]+?) {FREE}
+            {I}(?P<wanted>play (?!in\b|at\b|with\b|for\b|along\b|tricks?\b|around\b).+)
+            {I}go (?P<wanted>(?!missing|crazy|shopping)\w+ing\b.*)
+            {AM}(into|keen on) …
+        """,
+        "liking:verb": rf"""
+            {I}(like|love|enjoy|adore) …
+            {AM}(interested in|fond of|crazy about|a (big |huge |great )?(fan|lover) of) …
+        """,
+        "favourite": r"""
+            my (?P<favourite>favou?rite (?!hobb|pastime)[\w-]+( [\w-]+)?) (is|are) …
+            ^(?P<wanted>[\w ,'-]{2,60}?) (is|are) my (?P<favourite>favou?rite (?!hobb|pastime)[\w-]+( [\w-]+)?)$
         """,
         "occupation": rf"""
             {HAVE}work(ed|ing)? (full[- ]time |part[- ]time )?as …
@@ -83,11 +113,7 @@ STATED = patterns(
             i go to (?P<wanted>([\w-]+ ){{0,4}}(university|college)\b.*)
             my (university|college|uni) is (called )?…
         """,
-        "friend": r"""
-            my ((very )?(best|closest|close|good|other|new) )?(friends?|buddy|buddies|mates?)('s names?| names?)? (is|are)( called| named)? …
-            (i have|i've got) (an?|one|two|three|some|a few|many) ((very )?(best|close|good) )?friends? (who is |who are )?(called|named) …
-            ^(?P<wanted>[\w ,&'-]{2,60}?) (is|are) my (best |good |close )?friends?\b
-        """,
+        **{relative.name: CALLED.format(nouns=relative.nouns) for relative in RELATIVES},
         "club": rf"""
             {AM}(an? )?(\w+ )?member (of|in) …
             i belong to …

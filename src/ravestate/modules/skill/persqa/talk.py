@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 
 __all__ = ["FORGET", "Question", "Talk"]
 
@@ -53,6 +53,7 @@ class Talk:
         age: How often the user has spoken since.
         met: Whether memory was asked about the user.
         remembered: What it had of him then.
+        once: What he has told in this talk, whether it still counts or not.
         newcomer: Whether it had never heard of him.
         reminded: Whether the user knows that he is remembered.
         trouble: Why memory failed last; empty while it works.
@@ -70,6 +71,7 @@ class Talk:
     age: int = 0
     met: bool = False
     remembered: Mapping[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
+    once: Mapping[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
     newcomer: bool = False
     reminded: bool = False
     trouble: str = ""
@@ -134,6 +136,12 @@ class Talk:
     def mentioning(self, topic: str, values: tuple[str, ...]) -> Talk:
         """The agent says what it knows about a topic, which the user may put right."""
         return replace(self, last=topic, latest=values, age=0)
+
+    def rebased(self, base: Talk, after: Talk) -> Talk:
+        """The talk as it is now, with what has changed from `base` to `after`; not where it has gone on since `base`."""
+        names = [one.name for one in fields(Talk)]
+        changed = [name for name in names if getattr(self, name) == getattr(base, name)]
+        return replace(self, **{name: getattr(after, name) for name in changed})
 
     @property
     def correctable(self) -> str:

@@ -1,14 +1,15 @@
-"""What people are asked about: one table."""
+"""What people are asked about, and what they tell of themselves: one table."""
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+import re
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Literal
 
-__all__ = ["NAME", "TOPICS", "Fact", "Topic", "due"]
+__all__ = ["ASKED", "NAME", "RELATIVES", "TOPICS", "Fact", "Topic", "about", "due", "favourite", "in_order"]
 
-Kind = Literal["name", "place", "activity", "work", "organisation", "subject", "people"]
+Kind = Literal["name", "place", "activity", "work", "organisation", "subject", "people", "thing", "number"]
 """What the words of an answer are; it decides how they are read and written."""
 
 
@@ -16,14 +17,14 @@ Kind = Literal["name", "place", "activity", "work", "organisation", "subject", "
 class Topic:
     """Something to know of a person.
 
-    Its phrases are the intents ``ask_<name>`` and ``learned_<name>``.
+    Its phrases are the intents ``ask_<name>`` and ``learned_<name>``; what is not asked for needs none of its own.
     """
 
     name: str
     """Also the parameter for its values in phrases."""
     kind: Kind
     relation: str = ""
-    """The relation from the person in memory; empty for the name, which is a property."""
+    """The relation from the person in memory; empty for a property of his."""
     type: str = ""
     """The type of the node at its other end."""
     clause: str = ""
@@ -32,26 +33,73 @@ class Topic:
     """Whether there may be several."""
     only_with: str = ""
     """The topic that must be known for this one to be asked: its follow-up."""
+    asked: bool = True
+    """Whether the agent asks for it of its own accord."""
+    nouns: str = ""
+    """What one calls the persons or animals that it is about, as a pattern: *my sister*."""
+    role: bool = False
+    """Whether the relation stands for several topics, and has in its property ``role`` for which."""
+    besides: tuple[str, ...] = ()
+    """Topics that answer a question for it as well: who was born in Ulm need not be asked where he comes from."""
 
 
 NAME = "name"
 
-TOPICS: Mapping[str, Topic] = {
-    topic.name: topic
+
+def _relative(name: str, relation: str, nouns: str, *, many: bool = True, role: bool = False, type: str = "Person") -> Topic:
+    """Somebody of one's own, whose name may be known."""
+    clause = f"your {name} is {{}}"
+    return Topic(name, "people", relation, type, clause, many, asked=False, nouns=nouns, role=role)
+
+
+class _Topics(dict[str, Topic]):
+    """Favourites are topics as well, without being listed: *favourite food*."""
+
+    def __missing__(self, name: str) -> Topic:
+        if not name.startswith("favourite "):
+            raise KeyError(name)
+        return Topic(name, "thing", "favours", "Thing", f"your {name} is {{}}", asked=False, role=True)
+
+
+TOPICS: Mapping[str, Topic] = _Topics(
+    (topic.name, topic)
     for topic in (
         Topic(NAME, "name", clause="your name is {}"),
         Topic("home", "place", "lives_in", "Place", "you live in {}"),
-        Topic("origin", "place", "comes_from", "Place", "you come from {}"),
+        Topic("origin", "place", "comes_from", "Place", "you come from {}", besides=("birthplace", "childhood")),
+        Topic("birthplace", "place", "born_in", "Place", "you were born in {}", asked=False),
+        Topic("childhood", "place", "grew_up_in", "Place", "you grew up in {}", asked=False),
+        Topic("age", "number", clause="you are {} years old", asked=False),
         Topic("hobby", "activity", "has_hobby", "Hobby", "you like {}", many=True),
+        Topic("liking", "thing", "likes", "Thing", "you like {}", many=True, asked=False, besides=("hobby",)),
         Topic("occupation", "work", "works_as", "Occupation", "you are {}"),
         Topic("employer", "organisation", "works_for", "Organisation", "you work for {}", only_with="occupation"),
         Topic("subject", "subject", "studies", "Subject", "you study {}"),
         Topic("university", "organisation", "studies_at", "Institution", "you study at {}", only_with="subject"),
-        Topic("friend", "people", "friend_of", "Person", "you are a friend of {}", many=True),
+        Topic("friend", "people", "friend_of", "Person", "you are a friend of {}", many=True, nouns="friend|buddy|mate"),
         Topic("club", "organisation", "member_of", "Organisation", "you are a member of {}", many=True),
+        _relative("mother", "has_mother", "mother|mum|mummy|mom|mommy", many=False),
+        _relative("father", "has_father", "father|dad|daddy", many=False),
+        _relative("sister", "sibling_of", "sister", role=True),
+        _relative("brother", "sibling_of", "brother", role=True),
+        _relative("wife", "partner_of", "wife", many=False, role=True),
+        _relative("husband", "partner_of", "husband", many=False, role=True),
+        _relative("partner", "partner_of", "partner|boyfriend|girlfriend|fianc[eé]e?", many=False, role=True),
+        _relative("daughter", "has_child", "daughter", role=True),
+        _relative("son", "has_child", "son", role=True),
+        _relative("child", "has_child", "child(?:ren)?|kid", role=True),
+        _relative("dog", "has_pet", "dog|puppy", role=True, type="Animal"),
+        _relative("cat", "has_pet", "cat|kitten", role=True, type="Animal"),
+        _relative("pet", "has_pet", "pet", role=True, type="Animal"),
     )
-}  # fmt: skip
+)  # fmt: skip
 """All topics by name, in the order in which they are asked."""
+
+ASKED = tuple(topic.name for topic in TOPICS.values() if topic.asked)
+"""What the agent asks for."""
+
+RELATIVES = tuple(topic for topic in TOPICS.values() if topic.nouns)
+"""Who is called by what he is to the user."""
 
 NOT_EMPLOYED = frozenset(
     ["student", "pupil", "retired", "self-employed", "freelancer", "freelance", "pensioner"]
@@ -70,6 +118,29 @@ class Fact:
     values: tuple[str, ...]
     gone: bool = False
     """That it is not, or no longer, so; without values: that there is none."""
+
+
+def favourite(words: str) -> str:
+    """The topic of something that one likes best.
+
+    Example:
+        >>> favourite("favorite Food")
+        'favourite food'
+    """
+    return re.sub(r"^favou?rite", "favourite", words.lower().strip())
+
+
+def about(relation: str, role: object) -> str:
+    """The topic for which a relation in memory stands; empty if it stands for none."""
+    if isinstance(role, str) and (role in TOPICS or role.startswith("favourite ")):
+        return role if TOPICS[role].relation == relation else ""
+    return next((t.name for t in TOPICS.values() if t.relation == relation and not t.role), "")
+
+
+def in_order(topics: Iterable[str]) -> list[str]:
+    """Topics in the order of the table, favourites last."""
+    order = list(TOPICS)
+    return sorted(set(topics), key=lambda name: (order.index(name) if name in order else len(order), name))
 
 
 def due(
@@ -118,5 +189,7 @@ def _follows(name: str, last: str) -> bool:
 def _makes_sense(name: str, known: Mapping[str, tuple[str, ...]]) -> bool:
     before = TOPICS[name].only_with
     if before and not known.get(before):
+        return False
+    if any(known.get(other) for other in TOPICS[name].besides):
         return False
     return name != "employer" or not NOT_EMPLOYED & {value.lower() for value in known["occupation"]}

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 from .topics import TOPICS, Topic
 from .words import SMALL
 
-__all__ = ["clause", "joined", "same", "spoken", "tidy"]
+__all__ = ["among", "clause", "joined", "same", "spoken", "tidy"]
 
 BARE = frozenset(["retired", "self-employed", "freelance", "unemployed"])
 """Occupations that take no article."""
@@ -62,6 +62,11 @@ def same(one: str, other: str) -> bool:
         True
     """
     return _key(one) == _key(other)
+
+
+def among(value: str, others: Iterable[str]) -> bool:
+    """Whether one of `others` means the same as `value`."""
+    return any(same(value, other) for other in others)
 
 
 def _key(value: str) -> str:

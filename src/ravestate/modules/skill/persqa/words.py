@@ -5,6 +5,7 @@ from __future__ import annotations
 __all__ = [
     "DETERMINERS",
     "NEVER_IN",
+    "NOT_DONE",
     "NO_EMPLOYER",
     "NO_HOBBY",
     "NO_PLACE",
@@ -66,7 +67,13 @@ NO_SUBJECT = word_set(
     "hard alone here there much lot every every day you people them too now well better more nothing with for at in on this that"
 )
 
-NO_HOBBY = word_set("you me it that this them him her one two three many few none nothing something fun nice")
+NO_HOBBY = word_set(
+    """you me it that this these those them him her my your his its our their one two three many few none nothing something anything
+    everything everybody everyone all fun nice being having getting more most when if better each"""
+)
+
+NOT_DONE = word_set("thing king ring spring string morning evening wedding pudding clothing building ceiling")
+"""Words that end like *sailing*, and are nothing that one does."""
 
 OCCUPATIONS = word_set(
     """accountant actor actress analyst architect artist assistant attorney author baker banker barber barista bartender biologist
