@@ -128,8 +128,7 @@ def goal(
         when=condition | goals.changed.where(is_over).detached(),
         reads=reads,
         writes=(rawio.output, goals) if intent is None else (verbaliser.intent, rawio.output, goals),
-        weight=priority,
-        cooldown=cooldown,
+        weight=priority,  # and no cooldown: it rests by resigning, whether or not there is a rival
         until=rawio.input.changed | goals.changed.where(is_over),  # it may be reached while it is worded
         detached=True,  # an answer to it may be answered: what comes of it begins a new causal group
         name=name,
