@@ -54,11 +54,15 @@ def emotions(text: str) -> str:
     return emotion.recognise(text, Settings().agent_names) or "-"
 
 
+NOT_ABOUT_ITSELF = ("time", "date", "privacy")
+"""Topics of agentqa that the set, which asks about the agent alone, leaves to others."""
+
+
 def agentqa(text: str) -> str:
     """By agentqa, which is told by nlp whether it is a question."""
     found = _router().route(text, question=_seen(text).question is not None)
     topic = found.topic if isinstance(found, Match) else "-"
-    return {"abilities": "can_do"}.get(topic, topic)
+    return {"abilities": "can_do", **dict.fromkeys(NOT_ABOUT_ITSELF, "-")}.get(topic, topic)
 
 
 def plain(text: str) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import logging
 from collections.abc import AsyncGenerator, Sequence
-from datetime import date
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
@@ -172,7 +172,7 @@ def test_whoever_is_in_distress_is_told_who_helps(tmp_path: Path) -> None:
 
 def test_a_question_that_is_said_for_ever_is_answered_once(tmp_path: Path) -> None:
     with start(tmp_path, chatter) as sim:
-        sim.put(agentqa.today, date(2026, 3, 1))
+        sim.put(agentqa.clock, lambda: datetime(2026, 3, 1, 12, 5, tzinfo=UTC))
         assert "2 years" in say(sim, "How old are you? " * 6_000)
 
 
@@ -184,13 +184,88 @@ def test_how_are_you_is_answered_with_the_mood(tmp_path: Path) -> None:
         assert say(sim, "Hello, how are you today?") == "I am a little shy. And you?"
 
 
-def test_the_age_is_counted_from_the_day_of_the_context_and_goes_on(tmp_path: Path) -> None:
+def test_the_age_is_counted_by_the_clock_and_goes_on(tmp_path: Path) -> None:
     own = "{facts: {born: 2020-03-02}, topics: {age: {phrases: '{age}'}}}"
     with start(tmp_path, own=own) as sim:
-        sim.put(agentqa.today, date(2026, 3, 1))
+        sim.put(agentqa.clock, lambda: datetime(2026, 3, 1, 12, 5, tzinfo=UTC))
         assert say(sim, "how old are you") == "5 years"
-        sim.advance(86_400)
+        sim.put(agentqa.clock, lambda: datetime(2026, 3, 2, 0, 0, tzinfo=UTC))
         assert say(sim, "how old are you") == "6 years"
+
+
+def test_the_time_and_the_date_are_those_of_the_clock(tmp_path: Path) -> None:
+    with start(tmp_path, chatter, encyclopaedia) as sim:
+        sim.put(agentqa.clock, lambda: datetime(2026, 3, 1, 9, 5, tzinfo=UTC))
+        for text in ("what time is it?", "Do you know what time it is?", "whats the time"):
+            assert "09:05" in say(sim, text)
+        sim.put(agentqa.clock, lambda: datetime(2026, 3, 2, 23, 59, tzinfo=UTC))
+        for text in ("what day is it today?", "what's the date?"):
+            assert "Monday, 2 March 2026" in say(sim, text)
+        assert say(sim, "What time is it in Tokyo?") == "encyclopaedia"
+
+
+@pytest.mark.parametrize(
+    ("question", "answer", "topic"),
+    [
+        ("Hello! How are you?", "I'm fine thanks, and you?", "how_are_you"),
+        ("Hello! How are you?", "fine. you?", "how_are_you"),
+        ("Where do you live?", "in Ulm. What about you?", "home"),
+        ("What is your name?", "what's yours?", "name"),
+        ("What do you do in your free time?", "sailing, and you", "hobbies"),
+    ],
+)
+def test_what_it_asked_may_be_asked_back(question: str, answer: str, topic: str, tmp_path: Path) -> None:
+    own = f"topics: {{{topic}: {{phrases: 'This is my {topic}. And yours?'}}}}"
+    with start(tmp_path, chatter, encyclopaedia, own=own) as sim:
+        sim.put(rawio.output, question)
+        assert say(sim, answer) == f"This is my {topic}."  # the rest it has been told
+
+
+def test_nothing_is_asked_back_where_nothing_was_asked(tmp_path: Path) -> None:
+    with start(tmp_path, chatter) as sim:
+        assert say(sim, "and you") == "chatter"
+
+
+@pytest.mark.parametrize(
+    ("question", "begins"),
+    [
+        ("can you dance?", ("Not that", "No, ")),
+        ("Do you speak German?", ("Not that", "No, ")),
+        ("do you speak English", ("Yes, I speak English.",)),
+        ("do you play chess", ("Yes, chess", "Oh yes, chess")),
+        ("do you like pizza?", ("Not that", "I can't")),
+        ("do you like ice cream", ("Yes, I do", "Ice cream?")),
+        ("what can you do?", ("What I can do", "I am good", "My talents")),
+        ("can you do anything useful?", ("What I can do", "I am good", "My talents")),
+    ],
+)
+def test_a_question_for_one_thing_has_yes_or_no_for_an_answer(
+    question: str, begins: tuple[str, ...], tmp_path: Path
+) -> None:
+    with start(tmp_path, chatter) as sim:
+        assert say(sim, question).startswith(begins)
+
+
+def test_it_tells_what_becomes_of_what_it_is_told(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
+    with start(tmp_path, chatter, encyclopaedia) as sim:
+        for text in ("why do you want to know?", "what do you do with what I tell you?"):
+            assert "forget me" in say(sim, text)
+        assert say(sim, "why do cats sleep") == "encyclopaedia"
+    (tmp_path / "memory.lbug").unlink()
+    (tmp_path / "memory.lbug").write_text("this is no memory")
+    with caplog.at_level(logging.CRITICAL, "ravestate"), start(tmp_path) as sim:
+        assert "no memory" in say(sim, "why do you want to know?")
+
+
+def test_it_is_quiet_when_it_is_told_to_be(tmp_path: Path) -> None:
+    with start(tmp_path, chatter, bored=5.0) as sim:
+        said = say(sim, "Shut up!")
+        assert said != "chatter" and "?" not in said
+        sim.advance(300.0)
+        assert len(sim.said) == 1
+        sim.say("hello")
+        sim.advance(6.0)
+        assert len(sim.said) == 3  # chatter, and an offer
 
 
 def test_it_does_not_say_the_same_twice_running(tmp_path: Path) -> None:

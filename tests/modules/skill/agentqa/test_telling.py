@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from datetime import date
+from datetime import UTC, date, datetime
 
 import pytest
 
@@ -14,7 +14,7 @@ DAY = date(2026, 3, 1)
 
 
 def told(topic: Topic, question: str = "", **facts: Fact) -> tuple[str, ...] | None:
-    return telling(topic, question, facts, mood="fine", today=DAY)
+    return telling(topic, question, facts, mood="fine", now=datetime(2026, 3, 1, 9, 5, tzinfo=UTC))
 
 
 @pytest.mark.parametrize(

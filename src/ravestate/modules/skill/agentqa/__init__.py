@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from datetime import date
+from collections.abc import Callable
+from datetime import datetime
 from pathlib import Path
 from typing import Annotated
 
@@ -26,13 +27,13 @@ __all__ = [
     "Settings",
     "Topic",
     "asked",
+    "clock",
     "life",
     "module",
     "mood",
     "read_life",
     "remarked",
     "rules",
-    "today",
 ]
 
 
@@ -69,8 +70,14 @@ life: rs.Slot[Life | None] = module.slot("life", None, type=Life, input=True)
 mood: rs.Slot[str] = module.slot("mood", "fine", type=str, input=True)
 """How the agent is, as an adjective: what it says when it is asked how it is. Whoever knows better may write it."""
 
-today: rs.Slot[date | None] = module.slot("today", None, input=True)
-"""The day on which the context began, by the machine's clock; the agent's age is counted from it."""
+
+def machine_clock() -> datetime:
+    """The moment where the machine is."""
+    return datetime.now().astimezone()
+
+
+clock: rs.Slot[Callable[[], datetime]] = module.slot("clock", machine_clock, input=True)
+"""What tells the moment, by default the machine's clock; the agent's age, the date and the time of day follow from it."""
 
 prompted: rs.Slot[float | None] = module.slot("prompted", None)
 """When the agent last offered to be asked, in seconds since the context began."""

@@ -10,7 +10,7 @@ import re
 from collections.abc import Collection, Iterable
 from dataclasses import dataclass
 
-__all__ = ["Asked", "about_agent", "plain", "statements"]
+__all__ = ["Asked", "about_agent", "plain", "returns", "statements"]
 
 LONGEST = 2000
 """So many characters of an utterance are looked at."""
@@ -69,6 +69,17 @@ def about_agent(
 def plain(question: str) -> str:
     """Return an example question in the plain form."""
     return " ".join(_unwrapped(_words(question, ()))[0])
+
+
+def returns(utterance: str) -> bool:
+    """Whether the user turns round what he was asked.
+
+    Example:
+        >>> returns("I'm fine thanks, and you?"), returns("What's yours?"), returns("I like you.")
+        (True, True, False)
+    """
+    sentences = _SENTENCE.findall(utterance[:LONGEST])
+    return bool(sentences) and _RETURNS.fullmatch(" ".join(_words(sentences[-1], ()))) is not None
 
 
 def statements(utterance: str, names: Collection[str] = ()) -> list[str]:
@@ -170,9 +181,14 @@ _SOME = _set("a an any some many brothers sisters siblings friends hobbies paren
 _SOMEBODY = _set("he she him his her hers them their")
 _ABOUT_BOTH = re.compile(
     r"\b(?:(?:should|shall|can|may|do|must|could|might) i (?:call|address|reach|find) (?=you)|"
-    r"(?:am i|i am) (?:\w+ )?(?:talking|speaking|chatting) (?:to|with)|(?:for|help|tell|about) me\b)"
+    r"(?:am i|i am) (?:\w+ )?(?:talking|speaking|chatting) (?:to|with)|(?:for|help|tell|about) me\b|"
+    r"(?:what|whatever|everything|things) i (?:tell|told|say|said)\b|ask(?:ing)? me\b|my (?:data|privacy|information|secrets))"
 )
 """Where the user is mentioned in a question about the agent."""
+_RETURNS = re.compile(
+    r"(?:.* )?(?:and|what about|how about) (?:you|yours|yourself|your own)(?: (?:robot|then|my friend))?|"
+    r"(?:and )?what (?:is|are) (?:yours|your own)|you|yours|yourself"
+)
 _QUESTION_WORDS = _set("who whom whose what which where when why how")
 _FIRST = _QUESTION_WORDS | _set(
     "do does did are is was were have has had can could will would may should since in from by of to with at on until under am "

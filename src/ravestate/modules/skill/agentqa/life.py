@@ -25,6 +25,8 @@ class Topic:
     """What it says when each of the phrases lacks a fact; without any it leaves the question to others."""
     named: tuple[tuple[str, tuple[str, ...]], ...] = ()
     """For a fact: what it says when the question names one of its values, ``{it}``; of pairs, ``{that}`` is the other one."""
+    unnamed: tuple[str, ...] = ()
+    """What it says when it is asked about something in particular (*can you dance*) that is no value of a fact."""
     remarks: tuple[str, ...] = ()
     """Regular expressions of whole words for what is said rather than asked, and is not to be left to anybody else."""
 

@@ -21,13 +21,15 @@ if TYPE_CHECKING:
 
 __all__ = ["read_life"]
 
-KNOWN = ("name", "born", "age", "mood")
-"""Parameters that any phrase may have; `age` is counted, and `mood` is a slot."""
+COUNTED = ("age", "mood", "time", "date", "memory")
+"""Facts that follow from elsewhere: the clock, slots."""
+KNOWN = ("name", "born", *COUNTED)
+"""Parameters that any phrase may have."""
 NAMED = ("it", "that")
 """Parameters of phrases about what a question names."""
 
 _PARTS = ("facts", "topics", "others")
-_PARTS_OF_TOPIC = ("questions", "remarks", "phrases", "otherwise", "named")
+_PARTS_OF_TOPIC = ("questions", "remarks", "phrases", "otherwise", "named", "unnamed")
 
 
 def read_life(own: Path | None = None) -> Life:
@@ -135,7 +137,7 @@ def _topic(key: str, node: yaml.Node, before: Topic | None, known: _Known) -> To
     if "remarks" in parts:
         topic = replace(topic, remarks=(*topic.remarks, *_expressions(known.file, parts["remarks"])))
     if "phrases" in parts:
-        topic = replace(topic, phrases=known.check(parts["phrases"]), otherwise=(), named=())
+        topic = replace(topic, phrases=known.check(parts["phrases"]), otherwise=(), named=(), unnamed=())
     if "otherwise" in parts:
         topic = replace(topic, otherwise=known.check(parts["otherwise"]))
     if "named" in parts:
@@ -145,6 +147,8 @@ def _topic(key: str, node: yaml.Node, before: Topic | None, known: _Known) -> To
         ):
             named.append((fact, known.check(phrases, NAMED)))
         topic = replace(topic, named=tuple(named))
+    if "unnamed" in parts:
+        topic = replace(topic, unnamed=known.check(parts["unnamed"]))
     for part, there in (("questions", topic.questions or topic.remarks), ("phrases", topic.phrases)):
         if not there:
             raise _fault(known.file, node, f"the topic {key} has no {part}: write\n{key}:\n  {part}: [...]")
@@ -167,7 +171,7 @@ def _expressions(file: str, node: yaml.Node) -> tuple[str, ...]:
 
 
 def _fact(name: str, key: str, node: yaml.Node) -> Fact | None:
-    if key in ("age", "mood"):
+    if key in COUNTED:
         instead = "born: 2024-03-01" if key == "age" else "another name"
         raise _fault(name, node, f"{key} is not told here, but follows from elsewhere: write {instead}")
     if _is_null(node):

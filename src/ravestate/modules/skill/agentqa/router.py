@@ -52,6 +52,8 @@ class Match:
     """The example that is nearest."""
     margin: float
     """By how much the score is greater than the next best."""
+    returned: bool = False
+    """Whether it is the agent's own question, turned round: *fine, and you?*"""
 
 
 @dataclass(frozen=True, slots=True)

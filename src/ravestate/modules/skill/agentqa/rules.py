@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 from collections.abc import Mapping, Sequence
-from datetime import date, datetime, timedelta
+from dataclasses import replace
 
 import ravestate as rs
 from ravestate.errors import PlatformError, RavestateError, RuleError
@@ -13,23 +13,20 @@ from ravestate.modules import idle, interloc, nlp, ontology, rawio, verbaliser
 from ravestate.modules._room import give_back
 from ravestate.modules.meta.verbaliser.intents import Intent
 
-from . import Settings, asked, life, module, mood, prompted, remarked, today
+from . import Settings, asked, clock, life, module, mood, prompted, remarked
+from .asking import returns
 from .itself import recall, settle
 from .life import Fact, Life
 from .life_file import read_life
 from .remarks import remark_in
-from .router import Miss, router_of
-from .telling import telling
-
-DAY = 86_400.0
-"""Seconds."""
+from .router import Match, Miss, router_of
+from .telling import telling, without_question
 
 
-@module.rule(when=rs.startup.detached(), writes=(life, today, interloc.agent), detached=True)
+@module.rule(when=rs.startup.detached(), writes=(life, interloc.agent), detached=True)
 async def be_born(ctx: rs.RuleContext) -> None:
-    """Read who the agent is, and what day it is; tell its name to whoever calls it by that."""
+    """Read who the agent is; tell its name to whoever calls it by that."""
     settings: Settings = ctx.settings
-    ctx[today] = datetime.now().astimezone().date()  # where the user is
     told = read_life(settings.life)
     ctx[interloc.agent] = told.name
     ctx[life] = told
@@ -64,14 +61,21 @@ async def remember(ctx: rs.RuleContext) -> rs.Resign | None:
     return None
 
 
-@module.rule(when=rawio.input.changed & nlp.question.changed, reads=life, emits=asked)
+@module.rule(when=rawio.input.changed & nlp.question.changed, reads=(life, idle.asked), emits=asked)
 async def understand(ctx: rs.RuleContext) -> rs.Resign | None:
     """Notice that the user asks something about the agent, and what."""
     told = ctx[life]
     if told is None:
         return rs.Resign("nobody has said who I am")
     heard, question = ctx.payload(rawio.input.changed), ctx.payload(nlp.question.changed) is not None
-    found = await asyncio.to_thread(router_of(told).route, heard, question=question)
+    route = router_of(told).route
+    found: Match | Miss = Miss("")
+    if ctx[idle.asked] and returns(heard):
+        found = await asyncio.to_thread(route, ctx[idle.asked], question=True)
+    if isinstance(found, Match):
+        found = replace(found, returned=True)
+    else:
+        found = await asyncio.to_thread(route, heard, question=question)
     if isinstance(found, Miss):
         return rs.Resign(found.reason)
     ctx.log.debug("%s", found)
@@ -92,7 +96,7 @@ async def heed(ctx: rs.RuleContext) -> rs.Resign | None:
 
 @module.rule(
     when=remarked,
-    reads=(life, mood, today),
+    reads=(life, mood, clock),
     writes=verbaliser.intent,
     weight=25.0,  # before whoever else has an answer, even to a question of his own: few things go before it by themselves
 )
@@ -100,14 +104,20 @@ async def respond(ctx: rs.RuleContext) -> None:
     """Say what is to be said to such a remark."""
     told, remark = ctx[life], ctx.payload(remarked)
     assert told is not None  # else nothing would have been noticed
-    phrases = telling(told.topics[remark.topic], remark.text, told.facts, mood=ctx[mood], today=day(ctx))
+    phrases = telling(told.topics[remark.topic], remark.text, told.facts, mood=ctx[mood], now=ctx[clock]())
     if phrases is not None:
         ctx[verbaliser.intent] = intent(remark.topic, phrases)
 
 
+@module.rule(when=idle.hushed, writes=verbaliser.intent, weight=25.0)  # as above
+async def keep_quiet(ctx: rs.RuleContext) -> None:
+    """Say that it will be quiet, which `idle` sees to."""
+    ctx[verbaliser.intent] = Intent("hushed", package=__package__)
+
+
 @module.rule(
     when=asked,
-    reads=(life, mood, today, ontology.memory),
+    reads=(life, mood, clock, ontology.memory),
     writes=verbaliser.intent,
     weight=1.5,  # before who finds an answer to the same question elsewhere: nobody knows better
 )
@@ -116,9 +126,11 @@ async def answer(ctx: rs.RuleContext) -> rs.Resign | None:
     match, told = ctx.payload(asked), ctx[life]
     assert told is not None  # else nothing would have been understood
     facts = await known(ctx, told, ctx[ontology.memory])
-    phrases = telling(told.topics[match.topic], match.question, facts, mood=ctx[mood], today=day(ctx))
+    phrases = telling(told.topics[match.topic], match.question, facts, mood=ctx[mood], now=ctx[clock]())
     if phrases is None:
         return rs.Resign(f"I don't know what to say about {match.topic}: its phrases lack a fact")
+    if match.returned:
+        phrases = [without_question(phrase) for phrase in phrases]
     ctx[verbaliser.intent] = intent(match.topic, phrases)
     return None
 
@@ -140,13 +152,6 @@ async def offer(ctx: rs.RuleContext) -> rs.Resign | None:
     return None
 
 
-def day(ctx: rs.RuleContext) -> date:
-    """The day that it is."""
-    began = ctx[today]
-    assert began is not None  # written with the life
-    return began + timedelta(days=ctx.now // DAY)
-
-
 def intent(topic: str, phrases: Sequence[str]) -> Intent:
     """What is meant by phrases that are filled in: braces that are left are a fact's own."""
     texts = [phrase.replace("{", "{{").replace("}", "}}") for phrase in phrases]
@@ -158,7 +163,7 @@ async def known(ctx: rs.RuleContext, told: Life, memory: ontology.Memory | None)
     if memory is None:
         return told.facts
     try:
-        return await recall(told, memory)
+        return {**await recall(told, memory), "memory": "my memory"}
     except RavestateError as error:
         ctx.log.warning("memory does not answer, so the file counts: %s", error)
         return told.facts

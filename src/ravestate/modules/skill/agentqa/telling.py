@@ -5,16 +5,16 @@ from __future__ import annotations
 import re
 import string
 from collections.abc import Mapping, Sequence
-from datetime import date
+from datetime import date, datetime
 
 from .itself import texts
 from .life import Fact, Topic
 
-__all__ = ["age", "listed", "telling"]
+__all__ = ["age", "listed", "telling", "without_question"]
 
 
 def telling(
-    topic: Topic, question: str, facts: Mapping[str, Fact], *, mood: str, today: date
+    topic: Topic, question: str, facts: Mapping[str, Fact], *, mood: str, now: datetime
 ) -> tuple[str, ...] | None:
     """Return what may be said, of which any will do; None if nothing that the phrases need is known.
 
@@ -23,13 +23,15 @@ def telling(
         question: As it was understood; if it names the value of a fact, that is what the answer is about.
         facts: What is true of the agent.
         mood: How it is.
-        today: The day from which its age is counted.
+        now: The moment: its age, the date and the time of day follow from it.
     """
-    values = _in_words(facts, mood, today)
+    values = _in_words(facts, mood, now)
     for fact, phrases in topic.named:
         for it, that in _pairs(facts.get(fact, ())):
             if _names(question, it):
                 return _filled(phrases, {**values, "it": it, "that": that})
+    if topic.unnamed and _PARTICULAR.match(question):
+        return _filled(topic.unnamed, values) or None
     return _filled(topic.phrases, values) or _filled(topic.otherwise, values) or None
 
 
@@ -61,13 +63,23 @@ def age(born: date, today: date) -> str:
     return f"{count} {unit}{'' if count == 1 else 's'}"
 
 
-def _in_words(facts: Mapping[str, Fact], mood: str, today: date) -> dict[str, str]:
+def without_question(phrase: str) -> str:
+    """What is said, but for the question at its end, if anything is said besides.
+
+    Example:
+        >>> without_question("I am fine, thank you. And you?"), without_question("Who knows?")
+        ('I am fine, thank you.', 'Who knows?')
+    """
+    return _QUESTION_AT_THE_END.sub("", phrase)
+
+
+def _in_words(facts: Mapping[str, Fact], mood: str, now: datetime) -> dict[str, str]:
     values = {name: listed(texts(fact)) for name, fact in facts.items() if fact}
-    values["mood"] = mood
+    values |= {"mood": mood, "time": f"{now:%H:%M}", "date": f"{now:%A}, {now.day} {now:%B} {now.year}"}
     if "born" in values:
         born = date.fromisoformat(values["born"])
         values["born"] = f"{born.day} {born:%B} {born.year}"
-        values["age"] = age(born, today)
+        values["age"] = age(born, now.date())
     return values
 
 
@@ -93,5 +105,10 @@ def _parameters(phrase: str) -> set[str]:
     return {name for _, name, _, _ in string.Formatter().parse(phrase) if name}
 
 
+_PARTICULAR = re.compile(
+    r"(?:can|could|do|are) you (?!(?:[\w-]+ )*(?:have|any|anything|anybody|some|something|everything|what|which|or)\b)"
+)
+"""Begins a question for one thing, to which the answer is yes or no."""
+_QUESTION_AT_THE_END = re.compile(r"(?<=[.!…])\s+[^.!?…]+\?$")
 _BEGINNING = re.compile(r"^\W*\w|[.!?…:] +\w")
 """The first letter of a sentence, which may be that of a fact."""
