@@ -66,7 +66,9 @@ def test_the_text_of_a_lookup_error_is_not_quoted() -> None:
         ("abel", ["ablest", "able"], "; did you mean 'able'?"),  # neighbours exchanged are one slip
         ("ba", ["ab"], "; did you mean 'ab'?"),
         ("gretting", ["getting_on", "greeting"], "; did you mean 'greeting'?"),
-        ("x", ["y"], ""),
+        ("bored", ["board", "bored_after_a_long_while"], "; did you mean 'bored_after_a_long_while'?"),
+        ("m:mood", ["m:go", "m:mood:changed"], "; did you mean 'm:mood:changed'?"),
+        ("x", ["y", "x_and_y"], ""),
         ("xyz", ["rawio:input"], ""),
         ("anything", [], ""),
     ],

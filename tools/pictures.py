@@ -40,7 +40,7 @@ def pictures() -> dict[str, str]:
     """Every picture: file name and text."""
     made = {
         "guide.svg": diagram("README.md", "guide"),
-        "tutorial.svg": diagram("docs/tutorial/first-agent.md", "module"),
+        "tutorial.svg": diagram("docs/tutorial/first-agent.md", "guide"),
         "utility.svg": diagram("docs/explanation/utility.md", "games"),
         "loop.svg": diagram(MODEL, "quiz"),
         "life.svg": life(),

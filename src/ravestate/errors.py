@@ -97,6 +97,8 @@ def nearest(name: str, names: Iterable[str]) -> str:
 
     def likeness(other: str) -> float:
         if _is_a_slip(name, other):
+            return 3.0
+        if len(name) > 2 and other.startswith(name):
             return 2.0
         return difflib.SequenceMatcher(None, other, name).ratio()
 
