@@ -13,7 +13,17 @@ from ravestate.modules.meta.nlp import rules
 from ravestate.modules.meta.nlp.pipeline import Pipeline
 from ravestate.testing import simulate
 
-SLOTS = (nlp.tokens, nlp.lemmas, nlp.pos, nlp.tags, nlp.entities, nlp.triples, nlp.question, nlp.yesno)
+SLOTS = (
+    nlp.text,
+    nlp.tokens,
+    nlp.lemmas,
+    nlp.pos,
+    nlp.tags,
+    nlp.entities,
+    nlp.triples,
+    nlp.question,
+    nlp.yesno,
+)
 
 
 @pytest.fixture(autouse=True)
@@ -24,6 +34,7 @@ def loaded(reader: Pipeline) -> Iterator[None]:
 def test_all_slots_are_written() -> None:
     with simulate(nlp) as sim:
         sim.say("Where do you live?")
+        assert sim.read(nlp.text) == "Where do you live?"
         assert sim.read(nlp.tokens) == ("Where", "do", "you", "live", "?")
         assert sim.read(nlp.lemmas) == ("where", "do", "you", "live", "?")
         assert sim.read(nlp.pos)[2:4] == ("PRON", "VERB")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import subprocess
 import sys
 from pathlib import Path
@@ -413,6 +414,21 @@ def test_what_is_said_in_one_breath_is_all_learnt_and_kept(file: Path, look: Loo
         "friend_of": ["Tom"],
     }
     assert look() == {"Ada": known, "Tom": {}}
+
+
+def test_what_takes_long_to_read_is_learnt_all_the_same(
+    file: Path, look: Look, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    async def slowly(function: Any, *arguments: Any) -> Any:
+        await asyncio.sleep(30.0)  # of virtual time: a machine that is loading the pipeline
+        return function(*arguments)
+
+    monkeypatch.setattr("ravestate.modules.meta.nlp.rules.asyncio.to_thread", slowly)
+    with simulate(persqa, settings={"ontology": {"path": file}}) as sim:
+        at_once(sim, "my name is ada", "i live in ulm")
+        sim.advance(31.0)
+        assert meant(sim.said[0], "learned_name")
+    assert look() == {"Ada": {"lives_in": ["Ulm"]}}
 
 
 def test_who_comes_back_may_go_on_talking_while_he_is_looked_up(file: Path, look: Look) -> None:

@@ -28,6 +28,7 @@ __all__ = [
     "question",
     "rules",
     "tags",
+    "text",
     "tokens",
     "triples",
     "yesno",
@@ -45,6 +46,10 @@ class Settings(rs.Settings):
 
 
 module = rs.Module("nlp", requires=[rawio, interloc], settings=Settings)
+
+text: rs.Slot[str] = module.slot("text", "", always=True)
+"""The last utterance, which the other slots are about. Who needs both its words and what they mean stands on this: however
+long it has taken to read them, it is as young as they are."""
 
 tokens: rs.Slot[tuple[str, ...]] = module.slot("tokens", (), always=True)
 """The words and marks of the last utterance, as written."""

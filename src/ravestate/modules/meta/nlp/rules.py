@@ -23,6 +23,7 @@ from . import (
     pos,
     question,
     tags,
+    text,
     tokens,
     triples,
     yesno,
@@ -43,7 +44,7 @@ def load(ctx: rs.RuleContext) -> None:
 @module.rule(
     when=rawio.input.changed,
     reads=interloc.agent,
-    writes=(tokens, lemmas, pos, tags, entities, triples, question, yesno),
+    writes=(text, tokens, lemmas, pos, tags, entities, triples, question, yesno),
     emits=(is_question, about_agent, intent_play, intent_hi, intent_bye),
 )
 async def understand(ctx: rs.RuleContext) -> None:
@@ -54,6 +55,7 @@ async def understand(ctx: rs.RuleContext) -> None:
     names = settings.agent_names if named else (ctx[interloc.agent],)
     seen = await asyncio.to_thread(analyse, heard, pipeline(settings.pipeline), names)
     words = seen.tree.words
+    ctx[text] = heard
     ctx[tokens] = tuple(word.text for word in words)
     ctx[lemmas] = tuple(word.lemma for word in words)
     ctx[pos] = tuple(word.pos for word in words)

@@ -62,7 +62,7 @@ async def ask(ctx: rs.RuleContext) -> rs.Resign | None:
 
 
 @module.rule(
-    when=rawio.input.changed
+    when=nlp.text.changed
     & nlp.tokens.changed
     & nlp.pos.changed
     & nlp.entities.changed
@@ -81,7 +81,7 @@ async def listen(ctx: rs.RuleContext) -> None:
     """
     settings: Settings = ctx.settings
     heard = Heard(
-        ctx.payload(rawio.input.changed),
+        ctx.payload(nlp.text.changed),
         ctx.payload(nlp.yesno.changed),
         ctx.payload(nlp.question.changed),
         ctx.payload(nlp.entities.changed),
