@@ -44,8 +44,9 @@ async def settle(life: Life, memory: Memory) -> Node:
         PlatformError: Memory failed.
     """
     node = await memory.ensure("Robot", name=life.name)
+    changed = False
     if life.born is not None and node.get("born") != life.born:
-        node = await memory.update(node, born=life.born)
+        node, changed = await memory.update(node, born=life.born), True
     known = await memory.relations(node)
     for fact, (relation, type) in RELATIONS.items():
         if fact not in life.facts:
@@ -54,11 +55,14 @@ async def settle(life: Life, memory: Memory) -> Node:
         there = [one.target for one in known if one.name == relation and one.source == node]
         for other in there:
             if other.get("name") not in wanted:
+                changed = True
                 await memory.unrelate(node, relation, other)
         for text in wanted:
             if text not in [other.get("name") for other in there]:
+                changed = True
                 await memory.relate(node, relation, await memory.ensure(type, name=text))
-    await memory.tidy()  # the first time that was a whole life
+    if changed:
+        await memory.tidy()  # the first time that was a whole life
     return node
 
 

@@ -92,6 +92,8 @@ class Router:
         Raises:
             PlatformError: The sentence model is missing or broken. The message says what to do.
         """
+        if self._learnt is not None:  # whoever only asks waits for nobody
+            return
         with self._lock:
             if self._learnt is None:
                 with LOADING:
