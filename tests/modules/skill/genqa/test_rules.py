@@ -78,6 +78,45 @@ def test_whatever_else_is_left_to_others(settings: dict[str, dict[str, Any]], he
         assert sim.failures == []
 
 
+def test_a_question_may_refer_to_the_one_before_for_a_while(settings: dict[str, dict[str, Any]]) -> None:
+    with simulate(genqa, talk, settings=settings) as sim:
+        for text, answer in (
+            ("And its capital?", "Hm."),
+            ("Population of Austria?", "The population of Austria is"),
+            ("And its capital?", "The capital of Austria is Vienna."),
+            ("It is nice.", "Hm."),
+            ("And of Spain?", "The capital of Spain is Madrid."),
+            ("how many people live there?", "The population of Spain is"),
+        ):
+            sim.say(text)
+            assert answer in sim.said[-1], text
+        sim.advance(200.0)
+        sim.say("And of Peru?")
+        assert sim.said[-1] == "Hm."
+        assert "refers to something" in str(sim.explain("genqa:find"))
+
+
+@pytest.mark.parametrize(
+    ("text", "answer"),
+    [
+        ("Is Paris the capital of Germany?", "The capital of Germany is Berlin."),
+        ("Is Peru in Africa?", "South America"),
+    ],
+)
+def test_a_question_of_yes_or_no_is_answered_by_what_is_so(
+    text: str, answer: str, settings: dict[str, dict[str, Any]]
+) -> None:
+    with simulate(genqa, talk, settings=settings) as sim:
+        sim.say(text)
+        assert answer in sim.said[-1]
+
+
+def test_what_they_are_is_not_sure_where_nobody_says_who(settings: dict[str, dict[str, Any]]) -> None:
+    with simulate(genqa, talk, settings=settings) as sim:
+        sim.say("Can they fly?")
+        assert sim.said[-1].startswith(("I'm not sure", "Perhaps"))
+
+
 def test_a_doubtful_answer_is_given_with_the_doubt(settings: dict[str, dict[str, Any]]) -> None:
     settings["genqa"] |= {"sure": 1.0}
     with simulate(genqa, talk, settings=settings) as sim:

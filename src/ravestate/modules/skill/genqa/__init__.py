@@ -11,8 +11,9 @@ import ravestate as rs
 from ravestate.modules import nlp, rawio, verbaliser
 
 from .answering import Answer, Answerer, Candidate
+from .referring import Before
 
-__all__ = ["Answer", "Answerer", "Candidate", "Settings", "found", "module", "rules"]
+__all__ = ["Answer", "Answerer", "Before", "Candidate", "Settings", "before", "found", "module", "rules"]
 
 Probability = Annotated[float, Field(ge=0, le=1)]
 
@@ -46,5 +47,8 @@ module = rs.Module("genqa", requires=[rawio, nlp, verbaliser], settings=Settings
 
 found = module.signal("found", payload=Answer)
 """The documents have an answer to what the user asks, probable enough to be told."""
+
+before: rs.Slot[Before | None] = module.slot("before", None, type=Before)
+"""The question that was answered last: *and its capital?* refers to it."""
 
 from . import rules  # noqa: E402  # they use what is declared above

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from ravestate.modules._text import printable
 
-__all__ = ["Question", "as_question"]
+__all__ = ["Question", "as_question", "is_vague"]
 
 LONGEST = 2000
 """Characters of an utterance: what is longer is no question to the world."""
@@ -116,3 +116,16 @@ def as_question(heard: str) -> Question:
     if not words:
         return Question(asked, words, kinds, "it has no word to look for")
     return Question(asked, words, kinds)
+
+
+def is_vague(question: str) -> bool:
+    """Whether it asks about an *it* or *they* of which it says next to nothing.
+
+    Example:
+        >>> is_vague("Can they fly?"), is_vague("When did it start to rain?")
+        (True, False)
+    """
+    return _SOMETHING.search(question) is not None and len(as_question(question).words) < 2
+
+
+_SOMETHING = re.compile(r"\b(?:it|they|them|he|she|him|her|his)\b", re.IGNORECASE)

@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import contextlib
+from dataclasses import replace
 
 import ravestate as rs
 from ravestate.errors import DeclarationError, DeclarationErrors, PlatformError
 from ravestate.modules import nlp, rawio, verbaliser
 from ravestate.modules._room import give_back
 
-from . import Settings, found, module
+from . import Settings, before, found, module
+from .answering import Answer, Answerer
 from .places import answerer_of
+from .question import is_vague
+from .referring import Before, completed, other_wordings
 from .wording import intent_of, wording_rule
 
 
@@ -36,23 +40,47 @@ async def choose_wording(ctx: rs.RuleContext) -> None:
             ) from error
 
 
+REMEMBERED = 120.0
+"""Seconds for which a question may be referred to."""
+
+
 # Of every utterance, question or not: a rule that waited for the signal of a question would hold each statement for
 # seconds, and nobody would be bored meanwhile.
-@module.rule(when=rawio.input.changed & nlp.question.changed, emits=found)
+@module.rule(when=rawio.input.changed & nlp.question.changed, reads=before, writes=before, emits=found)
 def find(ctx: rs.RuleContext) -> rs.Resign | None:
     """Ask the documents."""
     if ctx.payload(nlp.question.changed) is None:
         return rs.Resign("it is no question")
     settings: Settings = ctx.settings
-    answer = answerer_of(settings).answer(ctx.payload(rawio.input.changed))
+    last = ctx[before]
+    if last is not None and ctx.now - last.at > REMEMBERED:
+        last = None
+    heard = completed(ctx.payload(rawio.input.changed), last)
+    if heard is None:
+        return rs.Resign("it refers to something that nobody has asked about")
+    answer = best_answer(answerer_of(settings), heard, settings)
     if not answer.text:
         return rs.Resign(answer.reason)
     if answer.confidence < settings.unsure:
         return rs.Resign(
             f"the documents have only {answer.text!r}, with a confidence of {answer.confidence:.2f}"
         )
+    ctx[before] = Before(answer.question.rstrip(" ?!."), answer.title, ctx.now)
     ctx.emit(found, answer)
     return None
+
+
+def best_answer(answerer: Answerer, heard: str, settings: Settings) -> Answer:
+    """What the documents say; to a question of yes or no also what decides it. What is asked vaguely is not sure."""
+    answer = answerer.answer(heard)
+    if answer.confidence < settings.unsure and not answer.reason:
+        for wording in other_wordings(answer.question):
+            other = answerer.answer(wording)
+            if other.confidence >= settings.sure:
+                return other
+    if is_vague(answer.question) and answer.confidence >= settings.sure:
+        return replace(answer, confidence=(settings.sure + settings.unsure) / 2)
+    return answer
 
 
 @module.rule(when=found, writes=verbaliser.intent)
