@@ -46,6 +46,15 @@ def test_an_intent_is_worded() -> None:
     assert greeting in ("Hello!", "Hi there!", "Hello Ada!", "Hi Ada, good to see you!")
 
 
+def test_a_file_is_looked_for_where_one_is(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in ("here", "there"):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "my.yaml").write_text(f"place: I am {name}.")
+        monkeypatch.chdir(tmp_path / name)
+        assert said(Intent("place", file=Path("my.yaml"))) == [f"I am {name}."]
+        assert said("place", phrases=["my.yaml"]) == [f"I am {name}."]
+
+
 def test_no_phrase_comes_twice_running_and_the_seed_decides() -> None:
     first = said(*["think"] * 20)
     assert all(one != next_one for one, next_one in pairwise(first))

@@ -15,7 +15,19 @@ def test_a_greeting_greets_and_does_not_take_leave(text: str) -> None:
 
 
 @pytest.mark.parametrize(
-    "text", ["bye", "Goodbye!", "see you later", "bye-bye", "Good night", "I have to go", "Tschüss"]
+    "text",
+    [
+        "bye",
+        "Goodbye!",
+        "see you later",
+        "bye-bye",
+        "Good night",
+        "I have to go",
+        "i must go to bed",
+        "i need to go now",
+        "take care!",
+        "Tschüss",
+    ],
 )
 def test_a_farewell_takes_leave_and_does_not_greet(text: str) -> None:
     assert is_farewell(text)
@@ -33,6 +45,10 @@ def test_a_farewell_takes_leave_and_does_not_greet(text: str) -> None:
         "say hello to your mother",
         "byebug is a debugger, I think so",
         "I said goodbye",
+        "take care of your mother",
+        "I have to go to work",
+        "i must go shopping",
+        "farewell party tonight",
         "🙂",
         "شكرا",
     ],

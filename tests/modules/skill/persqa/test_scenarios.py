@@ -688,6 +688,7 @@ def test_forget_me(file: Path, look: Look) -> None:
         sim.advance(300.0)
         assert len(sim.said) == before
         assert meant(answers(sim, "forget me"), "forget_nobody")
+        assert meant(answers(sim, "what is my name?"), "recall_stranger")
         assert dict(sim.read(interloc.users)) == {"console": None}
     assert look() == {}
 

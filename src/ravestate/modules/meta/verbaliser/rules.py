@@ -26,7 +26,8 @@ async def verbalise(ctx: rs.RuleContext) -> None:
         book = PhraseBook({meant.name: meant.phrases}, language=settings.language)
     else:
         own = settings.phrases if meant.file is None else (meant.file, *settings.phrases)
-        book = phrase_book(meant.package, own, settings.language)
+        here = tuple(path.expanduser().absolute() for path in own)  # the same name elsewhere is another file
+        book = phrase_book(meant.package, here, settings.language)
     phrase = book.choose(meant.name, meant.parameters, ctx.random, ctx[last].get(meant.name))
     ctx[rawio.output] = phrase.text
     ctx[last].add(meant.name, phrase.template)
@@ -50,7 +51,7 @@ def as_intent(value: object) -> Intent:
 
 @lru_cache(maxsize=256)
 def phrase_book(package: str | None, own: tuple[Path, ...], language: str) -> PhraseBook:
-    """Read the verbaliser's phrases, those of `package`, and the user's `own`, in this order.
+    """Read the verbaliser's phrases, those of `package`, and the user's `own` (absolute paths), in this order.
 
     Files are read once per process: contexts share a book, and never change it.
     """
@@ -61,4 +62,4 @@ def phrase_book(package: str | None, own: tuple[Path, ...], language: str) -> Ph
         raise RuleError(
             f"verbaliser.Intent: there is no package {package!r}; write package=__package__"
         ) from error
-    return PhraseBook.load([*inside, *(path.expanduser() for path in own)], language)
+    return PhraseBook.load([*inside, *own], language)

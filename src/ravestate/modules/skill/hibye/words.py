@@ -11,8 +11,9 @@ GREETING = re.compile(
     re.IGNORECASE,
 )
 FAREWELL = re.compile(
-    r"(bye+([ -]bye+)?|goodbye|good bye|good night|see (you|ya)( later| soon| tomorrow)?|farewell|cheerio|ciao|"
-    r"take care|tschüss|auf wiedersehen|gute nacht|i (have to|must|need to|gotta) go)\b",
+    r"(bye+([ -]bye+)?|goodbye|good bye|good night|see (you|ya)( later| soon| tomorrow)?|farewell(?! \w)|cheerio|ciao|"
+    r"take care(?! (of|that|not|to)\b)|tschüss|auf wiedersehen|gute nacht|"
+    r"i (have to|must|need to|gotta) go(?! (to (?!bed|sleep)|\w+ing\b|on\b|through\b)))\b",
     re.IGNORECASE,
 )
 EXTRA_WORDS = 3

@@ -14,8 +14,8 @@ from ravestate.modules.meta.verbaliser.intents import Intent
 from .acquaintance import Acquaintance
 from .inquiries import EVERYTHING
 from .profile import News, learn
-from .replies import asking, learned, memorable, say, stating, summary
-from .talk import FORGET, Talk
+from .replies import asking, clauses, learned, memorable, say, stating, summary
+from .talk import FORGET, TRIES, Talk
 from .topics import NAME, TOPICS, Fact
 from .understanding import Meaning
 from .wording import among, same
@@ -67,6 +67,8 @@ def respond_to(meaning: Meaning, user: Acquaintance, now: float, chance: random.
             return Response(say("which", user.known), replace(user, talk=talk))
         case "asked":
             return _asked(meaning.facts[0], listening, now)
+        case "strike":
+            return _struck(meaning.facts, listening)
         case "forget":
             if not user.known:
                 return Response(say("forget_nobody", {}), listening)
@@ -137,6 +139,12 @@ def _learning(talk: Talk, meaning: Meaning, news: News, name: str | None) -> Tal
     main = NAME if name is not None else _main(meaning, news)
     latest = (name,) if name is not None else next((f.values for f in meaning.facts if f.topic == main), ())
     talk = talk.learning(topics, main, latest)
+    if (
+        talk.question is not None
+        and (asked := TOPICS.get(talk.question.topic))
+        and set(asked.besides) & set(topics)
+    ):
+        talk = replace(talk, question=None)
     once = {topic: (*talk.once.get(topic, ()), *news.facts.get(topic, ())) for topic in news.topics}
     once = {topic: tuple(dict.fromkeys(values)) for topic, values in once.items()}
     return replace(talk, told=talk.told - {NAME}, once={**talk.once, **once})
@@ -168,7 +176,7 @@ def _of_facts(meaning: Meaning, news: News, before: Acquaintance, user: Acquaint
     fact = next(fact for fact in meaning.facts if fact.topic == topic)
     known = user.known
     if fact.gone:
-        return say("struck", known)
+        return say("struck" if topic in news.changed else "none", known)
     if topic in news.changed and (meaning.kind == "corrected" or not TOPICS[topic].many):
         return stating("corrected", topic, user.facts[topic], known)
     if topic not in news.new and before.facts.get(topic):
@@ -186,20 +194,46 @@ def _asked(fact: Fact, user: Acquaintance, now: float) -> Response:
         if any(known.values()):
             return Response(summary(known), replace(user, talk=replace(user.talk, reminded=True)))
         return Response(say("recall_nothing", known), user)
-    if values := known.get(topic):
+    if not topic:  # what nobody has thought of
+        return Response(say("recall_not", known), user)
+    answers = {name: known[name] for name in (topic, *TOPICS[topic].besides) if known.get(name)}
+    if answers:
         if fact.values:
-            right = all(among(asked, values) for asked in fact.values)
+            right = all(any(among(asked, values) for values in answers.values()) for asked in fact.values)
             intent = "confirm" if right else "deny"
         else:
             intent = "recall_name" if topic == NAME else "recall"
-        mentioned = replace(user, talk=user.talk.mentioning(topic, values))
-        return Response(stating(intent, topic, values, known), mentioned)
+        last = next(iter(answers))
+        mentioned = replace(user, talk=user.talk.mentioning(last, answers[last]))
+        return Response(say(intent, known, fact=clauses(answers)), mentioned)
     if topic in known:
         return Response(say("recall_none", known), user)
     if topic in user.talk.closed:
         return Response(say("recall_declined", known), user)
     unknown = "recall_stranger" if topic == NAME else "recall_unknown"
     return Response(say(unknown, known), replace(user, talk=user.talk.asking(topic, now)))
+
+
+def _struck(facts: tuple[Fact, ...], user: Acquaintance) -> Response:
+    """Forget something of what he has told."""
+    gone: dict[str, tuple[str, ...]] = {}
+    left = dict(user.facts)
+    for fact in facts:
+        for topic in (fact.topic, *TOPICS[fact.topic].besides):
+            known = left.get(topic, ())
+            gone[topic] = tuple(value for value in known if not fact.values or among(value, fact.values))
+            left[topic] = tuple(value for value in known if value not in gone[topic])
+    topics = [topic for topic in gone if gone[topic]]
+    if not topics:
+        return Response(say("strike_unknown", user.known), user)
+    left = {topic: values for topic, values in left.items() if values or topic not in gone}
+    user = replace(user, facts=left, talk=user.talk.striking({topic: gone[topic] for topic in topics}))
+
+    async def write(memory: ontology.Memory | None) -> Response:
+        after = await _written(user, None, memory)
+        return Response(say("forget_failed" if after.talk.trouble else "strike", after.known), after)
+
+    return Response(None, user, write)
 
 
 async def _forget(user: Acquaintance, memory: ontology.Memory | None) -> Response:
@@ -216,4 +250,4 @@ async def _forget(user: Acquaintance, memory: ontology.Memory | None) -> Respons
     except RavestateError as error:
         talk = replace(user.talk.closing(), trouble=str(error))
         return Response(say("forget_failed", user.known), replace(user, talk=talk))
-    return Response(say("forgotten", {}), Acquaintance(None, {}, Talk(closed=frozenset(TOPICS))))
+    return Response(say("forgotten", {}), Acquaintance(None, {}, Talk(tries=dict.fromkeys(TOPICS, TRIES))))

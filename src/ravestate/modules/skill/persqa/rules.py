@@ -13,12 +13,9 @@ from .acquaintance import Acquaintance, Noted
 from .profile import Facts
 from .replies import asking, memorable, stating
 from .response import respond_to
-from .talk import Talk
+from .talk import TRIES, Talk
 from .topics import NAME, due
 from .understanding import Heard, understand
-
-TRIES = 2
-"""So often a topic is brought up in one talk at most."""
 
 
 @module.rule(

@@ -5,10 +5,16 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, fields, replace
 
-__all__ = ["FORGET", "Question", "Talk"]
+__all__ = ["FORGET", "TRIES", "Question", "Talk"]
 
 FORGET = "forget"
 """What is asked about when the user wants to be forgotten; no topic."""
+
+ENOUGH = 1_000
+"""Whoever was asked so often is not asked again."""
+
+TRIES = 2
+"""So often a topic is brought up in one talk at most."""
 
 CORRECTABLE = 2
 """So many utterances long "no, Bremen" means what was learnt last."""
@@ -132,6 +138,17 @@ class Talk:
             latest=latest,
             age=0,
         )
+
+    def striking(self, gone: Mapping[str, tuple[str, ...]]) -> Talk:
+        """These values, by topic, are to be forgotten; nobody asks for others."""
+        remembered = {
+            topic: tuple(value for value in values if value not in gone.get(topic, ()))
+            for topic, values in self.remembered.items()
+        }
+        once = {topic: (*self.once.get(topic, ()), *values) for topic, values in gone.items()}
+        tries = dict.fromkeys(gone, ENOUGH)
+        talk = self.learning(gone.keys(), "", ())
+        return replace(talk, remembered=remembered, once={**self.once, **once}, tries={**self.tries, **tries})
 
     def mentioning(self, topic: str, values: tuple[str, ...]) -> Talk:
         """The agent says what it knows about a topic, which the user may put right."""
