@@ -1,6 +1,8 @@
 """The sentence models: what they say, that they are shared, and what is told when they are missing."""
 
+import os
 import shutil
+import subprocess
 import sys
 import threading
 from importlib.machinery import ModuleSpec
@@ -153,3 +155,11 @@ def test_a_broken_file_is_an_error_of_ours(tmp_path: Path) -> None:
     (tmp_path / "tokenizer.json").write_text("{}", encoding="utf-8")
     with pytest.raises(rs.PlatformError, match="cannot be loaded"):
         Encoder(tmp_path).load()
+
+
+def test_nothing_is_reported_to_anybody(tmp_path: Path) -> None:
+    """onnxruntime keeps a record of its use in the user's folders, and sends it to its makers, unless it is told not to."""
+    program = "from ravestate.modules._sentences import Encoder; Encoder().encode(['Hello.'])"
+    environment = {k: v for k, v in os.environ.items() if not k.startswith(("ORT_", "XDG_"))}
+    subprocess.run([sys.executable, "-c", program], env={**environment, "HOME": str(tmp_path)}, check=True)
+    assert list(tmp_path.rglob("*")) == []

@@ -85,6 +85,8 @@ class SentenceModel:
         Raises:
             PlatformError: A package or a file is missing or broken.
         """
+        # The library reports its use to its makers unless it is told not to before it is imported.
+        os.environ.setdefault("ORT_DISABLE_TELEMETRY", "1")
         try:
             with LOADING:
                 import onnxruntime  # pyright: ignore[reportMissingTypeStubs]

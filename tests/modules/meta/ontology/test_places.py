@@ -6,6 +6,7 @@ from pathlib import Path
 import pydantic
 import pytest
 
+import ravestate as rs
 from ravestate.modules import ontology
 from ravestate.modules.meta.ontology.places import default_path, open_memory, types_of
 
@@ -61,3 +62,17 @@ def test_types_are_read_once_for_all_who_open_a_memory_and_again_when_a_file_cha
     own.write_text("Boat: {is: Thing}\nPort: {is: Place}")
     assert "Port" in types_of(settings)
     assert "Port" not in first
+
+
+@pytest.mark.parametrize(
+    ("text", "why"), [("Person: {has: {x: nmber}}", "did you mean 'number'"), (None, "does not exist")]
+)
+def test_a_mistake_in_a_file_of_types_is_told_before_anything_runs(
+    tmp_path: Path, text: str | None, why: str
+) -> None:
+    file = tmp_path / "types.yaml"
+    if text is not None:
+        file.write_text(text)
+    with pytest.raises(rs.DeclarationErrors) as caught:
+        rs.Context(ontology, settings={"ontology": {"types": [file]}})
+    assert why in str(caught.value)

@@ -5,9 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Annotated
 
-from pydantic import Field, SecretStr
+from pydantic import Field, SecretStr, field_validator
+from pydantic_core import PydanticCustomError
 
 import ravestate as rs
+from ravestate.errors import RavestateError
 
 from .graph import Graph
 from .memory import Memory
@@ -50,6 +52,18 @@ class Settings(rs.Settings):
     """The database on the server, which should be memory's own; by default the server's."""
     timeout: Annotated[float, Field(gt=0)] = 10.0
     """Seconds until a server that does not answer counts as absent."""
+
+    @field_validator("types")
+    @classmethod
+    def _can_be_read(cls, types: tuple[Path, ...]) -> tuple[Path, ...]:
+        """A mistake in a file is told before anything runs."""
+        from .places import types_in
+
+        try:
+            types_in(types)
+        except RavestateError as error:
+            raise PydanticCustomError("types", "{why}", {"why": str(error)}) from None
+        return types
 
 
 module = rs.Module("ontology", settings=Settings)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Iterable
 from functools import lru_cache
 from importlib.resources import files
 from pathlib import Path
@@ -18,7 +19,7 @@ from .types import Types
 if TYPE_CHECKING:
     from . import Settings
 
-__all__ = ["default_path", "open_memory", "path_of", "types_of"]
+__all__ = ["default_path", "open_memory", "path_of", "types_in", "types_of"]
 
 
 def default_path(agent: str) -> Path:
@@ -27,17 +28,22 @@ def default_path(agent: str) -> Path:
 
 
 def types_of(settings: Settings) -> Types:
-    """The types that come with the module, and the user's. Files are read once, unless one has changed since.
+    """The types that come with the module, and the user's; see `types_in`."""
+    return types_in(settings.types)
+
+
+def types_in(paths: Iterable[Path]) -> Types:
+    """The types that come with the module, and those of files. Files are read once, unless one has changed since.
 
     Raises:
         DeclarationError: A file is no file of types, or contradicts another.
         PlatformError: A file cannot be read.
     """
-    return _types_in(tuple((path.expanduser(), _state_of(path.expanduser())) for path in settings.types))
+    return _read(tuple((path.expanduser(), _state_of(path.expanduser())) for path in paths))
 
 
 @lru_cache(maxsize=8)  # each visitor of a page opens memory
-def _types_in(own: tuple[tuple[Path, object], ...]) -> Types:
+def _read(own: tuple[tuple[Path, object], ...]) -> Types:
     built_in = files("ravestate.modules.meta.ontology") / "types.yaml"
     return read_types([built_in, *(path for path, _ in own)])
 
