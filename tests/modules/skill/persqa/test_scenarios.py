@@ -92,7 +92,7 @@ def answers(sim: Simulation, text: str) -> str:
 ANSWERS = {
     "name": "ada",
     "home": "hannover",
-    "origin": "i was born in new york",
+    "origin": "i come from new york",
     "hobby": "chess, and a bit of football",
     "occupation": "i'm a baker",
     "employer": "at siemens",
@@ -314,7 +314,7 @@ def test_what_is_told_beside_a_question_is_learnt_in_silence(file: Path, look: L
 
 
 @pytest.mark.parametrize(
-    "text", ["what a nice day", "fine thanks", "i like trains", "", "...", "let's play a game"]
+    "text", ["what a nice day", "fine thanks", "trains are nice", "", "...", "let's play a game"]
 )
 def test_small_talk_is_left_to_others_at_once(file: Path, text: str) -> None:
     with agent(file) as sim:
@@ -613,6 +613,8 @@ def test_a_friend_of_ones_own_name_is_somebody_else(file: Path, look: Look) -> N
     ("text", "name"),
     [
         ("my name is 🦊", "🦊"),
+        ("my name is ada 🎉", "Ada"),
+        ("👋 my name is 🦊 ada👍🏽❤️!", "Ada"),
         ('my name is "; DROP', "Drop"),
         ("my name is Robert'); MATCH (n) DETACH DELETE n;--", "Robert"),
         ("my name is o'brien", "O'Brien"),

@@ -104,7 +104,7 @@ def _value(piece: str, topic: Topic) -> str | None:
     value = ENDS[topic.kind].sub("", " " + value).strip()
     while (shorter := TAIL.sub("", " " + value).strip()) != value:
         value = shorter
-    value = value.strip(" '-_*~.,")
+    value = _without_pictures(value).strip(" '-_*~.,")
     if topic.kind in ("work", "subject", "activity", "thing"):
         value = re.sub(r"^(?:a|an)\s+(?=\S)", "", value, flags=re.IGNORECASE)
     if topic.kind == "work":
@@ -153,6 +153,22 @@ def is_value(value: str, topic: Topic) -> bool:
             return first not in NO_HOBBY
         case "number":
             return value.isdecimal() and 0 < int(value) < 120
+
+
+def _without_pictures(value: str) -> str:
+    """A value without the pictures around it, which are no part of a name; one that is nothing else stays."""
+    if not any(map(str.isalnum, value)):
+        return value
+    while _is_picture(value[-1]):
+        value = value[:-1].rstrip()
+    while _is_picture(value[0]):
+        value = value[1:].lstrip()
+    return value
+
+
+def _is_picture(letter: str) -> bool:
+    """Whether a character is a picture, its shade, or what joins or colours pictures."""
+    return unicodedata.category(letter) in ("So", "Sk", "Cf") or letter == "\ufe0f"
 
 
 def _tells(letter: str) -> bool:
