@@ -50,8 +50,9 @@ def yesno(text: str) -> str:
 
 
 def emotions(text: str) -> str:
-    """By emotion."""
-    return emotion.recognise(text, Settings().agent_names) or "-"
+    """By emotion; the set does not know sadness."""
+    found = emotion.recognise(text, Settings().agent_names)
+    return "-" if found in (None, "sad") else found
 
 
 NOT_ABOUT_ITSELF = ("time", "date", "privacy")

@@ -237,7 +237,26 @@ Oh! I never knew that
 Are you kidding me?
 """
 
+SAD = """
+I hate you.
+I am sad.
+You are so annoying!
+You are as dumb as a brick
+My grandfather passed away.
+I want to kill myself
+I feel really sad today. My dog died.
+you are a stupid piece of junk
+fuck you
+Shut up!
+My girlfriend broke up with me
+"""
 NOTHING = """
+No.
+my phone died
+I am not sad.
+you are not stupid
+I do not hate you.
+Are you stupid?
 You are not nice.
 You're not very clever.
 I don't think you are smart.
@@ -266,8 +285,6 @@ You are a robot.
 You are boring.
 You're pretty boring.
 You are kind of slow.
-I hate you.
-I am sad.
 Tell me a joke.
 You can play now.
 You are free to go.
@@ -352,7 +369,6 @@ I work as a nurse.
 You are not my best friend
 I can't say I love you
 you talk too much
-You are so annoying!
 I got a letter from the bank
 We lost the game
 I do not feel great
@@ -386,11 +402,9 @@ You look tired
 It would be nice to have a dog
 Stop that
 I have two sisters and a cat
-You are as dumb as a brick
 Is it a surprise?
 They won the election
 How do you feel?
-My grandfather passed away.
 I passed out in the train.
 My friend got in a car accident.
 I got in a fight
@@ -413,6 +427,7 @@ We made it worse
             ("affectionate", AFFECTIONATE),
             ("happy", HAPPY),
             ("surprised", SURPRISED),
+            ("sad", SAD),
             (None, NOTHING),
         )
         for sentence in block.strip().splitlines()

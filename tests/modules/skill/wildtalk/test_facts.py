@@ -15,6 +15,11 @@ Nice. And where is Timbuktu?
 How many legs does a spider have?
 What is the weather like today?
 Which planet is the largest?
+And its population?
+And of Spain?
+Is Scotland a country?
+does Peru have a king?
+What's 12 times 12?
 Was ist die Hauptstadt von Peru?
 Weißt du, wie hoch die Zugspitze ist?
 """
@@ -23,6 +28,11 @@ Hello!
 How are you?
 What is your name?
 What's up?
+Is it nice outside?
+Are there any news?
+Will it rain today?
+Is that a joke?
+Is your name Bob?
 What is new?
 What about some music?
 What a nice day!

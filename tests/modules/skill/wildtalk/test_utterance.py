@@ -36,11 +36,13 @@ def said(*pieces: str, name: str = "Rosie", sentences: int = 2) -> str:
         ("One... two. Three. Four.", "One... two. Three."),
         ("I met Dr. Who. He is nice. He left.", "I met Dr. Who. He is nice."),
         ("Pi is 3.14 or so. Yes. No.", "Pi is 3.14 or so. Yes."),
-        ("Hi! 😊 How are you? Fine?", "Hi! 😊 How are you?"),
+        ("Hi! 😊 How are you? Fine?", "Hi! How are you?"),
         ("Bots are fun, and so is AI.", "Bots are fun, and so is AI."),
         ("Red\x1b \x00and\x07 blue\ud800", "Red and blue�"),
         ("User: Hello!", ""),
         ("", ""),
+        ("👍🏽👍🏽👍🏽", "👍"),
+        ("Fine ❤️👨‍👩‍👧!", "Fine !"),
     ],
 )
 def test_what_is_said(written: str, expected: str) -> None:

@@ -1,4 +1,4 @@
-"""What the agent feels: shy, surprised, happy or affectionate, by itself or because of what it is told."""
+"""What the agent feels: shy, surprised, happy, affectionate or sad, by itself or because of what it is told."""
 
 from __future__ import annotations
 
@@ -21,6 +21,7 @@ __all__ = [
     "module",
     "recognise",
     "rules",
+    "sad",
     "shy",
     "surprised",
 ]
@@ -31,9 +32,9 @@ Probability = Annotated[float, Field(ge=0, le=1)]
 class Settings(rs.Settings):
     """How easily the agent is moved, and whether it shows that in text."""
 
-    shy: Probability = 0.25
+    shy: Probability = 0.1
     """How likely it is shy when something is said about it."""
-    surprised: Probability = 0.1
+    surprised: Probability = 0.03
     """How likely it is surprised when it is asked something."""
     happy: Probability = 0.25
     """How likely it is happy when it is greeted or thanked."""
@@ -58,6 +59,9 @@ happy = module.signal("happy")
 
 affectionate = module.signal("affectionate")
 """The agent likes its user."""
+
+sad = module.signal("sad")
+"""The agent is sad: with its user, or because it was insulted."""
 
 felt: rs.Slot[Feeling | None] = module.slot("felt", None, always=True, keep="latest")
 """What the agent felt last; None before it felt anything."""

@@ -13,6 +13,7 @@ EMOJI: dict[Feeling, tuple[str, ...]] = {
     "surprised": ("😮", "😲", "😯"),
     "happy": ("😄", "😀", "😊"),
     "affectionate": ("🤗", "🥰", "💕"),
+    "sad": ("😢", "😔", "🥺"),
 }
 """The emoji of each feeling."""
 

@@ -6,7 +6,7 @@ from typing import Literal
 
 __all__ = ["FEELINGS", "Feeling"]
 
-Feeling = Literal["shy", "surprised", "happy", "affectionate"]
+Feeling = Literal["shy", "surprised", "happy", "affectionate", "sad"]
 """The name of a feeling, which is also that of its signal."""
 
-FEELINGS: tuple[Feeling, ...] = ("shy", "surprised", "happy", "affectionate")
+FEELINGS: tuple[Feeling, ...] = ("shy", "surprised", "happy", "affectionate", "sad")

@@ -14,6 +14,7 @@ __all__ = [
     "IMAGINED",
     "JOY",
     "PRAISE",
+    "SORROW",
     "SURPRISE",
     "SURPRISE_ASKED",
 ]
@@ -114,10 +115,23 @@ JOY = _patterns(
     r"jumping for joy|tears of joy|dancing with joy|full of joy|celebrat(?:e|ing)",
 )
 
+SORROW = _patterns(
+    r"(?:kill|killing|hurt|hurting|harm|cut) myself$|suicidal|suicide|want to die|end my(?: own)? life|(?:was|were) dead|better off dead",
+    r"(?:my|our) (?:(?!phone|battery|car|laptop|computer|plants?)\w+ ){1,3}(?:died|is dead|is dying|has died|passed away|was put down)(?: \w+)*",
+    r"(?:i|we)(?: am| are| was| feel| felt| have been)? ~(?:sad|depressed|lonely|miserable|heartbroken|unhappy|devastated|hopeless|desperate)",
+    r"feeling ~(?:sad|depressed|lonely|miserable|unhappy|hopeless|down)|(?:want|could|have) (?:to )?cry|(?:am|was|been) crying",
+    r"lost my (?:\w+ )?(?:mother|father|mum|mom|dad|wife|husband|son|daughter|child|baby|brother|sister|friend|dog|cat|job)",
+    r"(?:broke up with|cheated on|left) me$|nobody (?:likes|loves) me|my heart is broken",
+    r"(?:i|we) ~(?:hate|despise|detest|loathe) you|(?:fuck|screw) (?:you|off)|piss off|shut up|go to hell|you ~(?:suck|stink)",
+    r"(?<!like )(?:you are|you look|you sound) (?:(?!not |never |no )\w+ ){0,4}(?:stupid|dumb|idiots?|morons?|useless|worthless|ugly|pathetic|annoying|"
+    r"rubbish|trash|garbage|junk|crap|shit|asshole|bastard|bitch|loser|disgusting|horrible)",
+)
+"""What makes sad: the user's sorrow, and insults."""
+
 SURPRISE = _patterns(
     r"wo+w+|woa+h+|who+a+|oh my(?: god| gosh| goodness)?|my goodness|goodness(?: me| gracious)?|good (?:heavens|grief|lord)|gosh|gee|blimey|crikey|"
     r"holy (?:cow|moly|smokes?|crap|shit)|for heaven is sake|jeez|yikes|ooh+|oha",
-    r"^(?:oh )?(?:no way|really|seriously|for real|what|huh|wait what|no kidding|no|come on|is it|did you|are you|you did|you do)$",
+    r"^(?:oh )?(?:no way|really|seriously|for real|what|huh|wait what|no kidding|come on|is it|did you|are you|you did|you do)$",
     r"no way|you do not say|i do not believe (?:it|this|my \w+|what i)|unbelievable|inconceivable|unimaginable|unexpected(?:ly)?",
     r"can not (?:~)believe|hard to believe|could not believe|can hardly believe",
     r"(?:i|we)(?: would| had| have| did| was)? ?(?:not|never)(?: would)?(?: have)? (?:~)(?:expect|expected|expecting|thought|guessed|imagined|dreamed|dreamt|see|seen|heard of|known|knew|know)"
@@ -126,7 +140,7 @@ SURPRISE = _patterns(
     r"surpris(?:e|ing|ingly)|(?:i|we)(?: am| are| was| were| feel| felt)? ~(?:surprised|shocked|astonished|astounded|amazed|stunned|speechless|baffled|"
     r"flabbergasted|startled|perplexed|taken aback|blown away|at a loss for words|lost for words|gobsmacked|dumbfounded)",
     r"astonishing|astounding|incredible|mind ?blowing|mind blown|bl(?:ew|own) my mind|shocking|jaw ?dropping|extraordinary|remarkable|amazing|stunning",
-    r"(?:out of the blue|from nowhere|out of nowhere)|you (?:are|must be|have got to be|got to be) (?:kidding|joking|pulling my leg)(?: me)?|you must be joking|get out of here|shut up",
+    r"(?:out of the blue|from nowhere|out of nowhere)|you (?:are|must be|have got to be|got to be) (?:kidding|joking|pulling my leg)(?: me)?|you must be joking|get out of here",
     r"i had no idea|is that (?:~)(?:true|possible|right|real)|that is (?:new to me|news to me|impossible|crazy|insane|wild|nuts|unreal)",
 )
 

@@ -17,6 +17,7 @@ from .patterns import (
     IMAGINED,
     JOY,
     PRAISE,
+    SORROW,
     SURPRISE,
     SURPRISE_ASKED,
 )
@@ -57,7 +58,8 @@ _POLITE = re.compile(
 def recognise(text: str, names: Iterable[str] = ()) -> Feeling | None:
     """Return the feeling that an agent should have at hearing `text` (English), or None if there is no reason for any.
 
-    Of several the stronger one is returned: affection goes before praise, praise before joy, joy before surprise.
+    Of several the stronger one is returned: sorrow goes before affection, affection before praise, praise before joy, joy
+    before surprise.
 
     Args:
         text: What the user said; the first 1000 characters count.
@@ -89,6 +91,11 @@ def praises(sentence: Sentence) -> bool:
     )
 
 
+def saddens(sentence: Sentence) -> bool:
+    """Whether somebody tells of sorrow, or insults the agent."""
+    return not sentence.asks and _has(sentence, SORROW)
+
+
 def rejoices(sentence: Sentence) -> bool:
     """Whether somebody tells of joy, or of good news."""
     return not sentence.asks and _has(sentence, JOY, of=IMAGINED) and polarity(sentence.text) > SAD
@@ -112,6 +119,7 @@ def delights(sentence: Sentence) -> bool:
 
 
 SIGNS: tuple[tuple[Feeling, Callable[[Sentence], bool]], ...] = (
+    ("sad", saddens),
     ("affectionate", is_affectionate),
     ("shy", praises),
     ("happy", rejoices),

@@ -5,8 +5,8 @@ from __future__ import annotations
 import ravestate as rs
 from ravestate.modules import interloc, rawio
 
-from . import Settings, affectionate, felt, happy, module, shy, surprised
-from .chance import by_chance
+from . import Settings, affectionate, felt, happy, module, sad, shy, surprised
+from .chance import OCCASIONS, by_chance
 from .emoji import emoji_for
 from .feeling import FEELINGS, Feeling
 from .recogniser import recognise
@@ -16,6 +16,7 @@ SIGNALS: dict[Feeling, rs.Signal[None]] = {
     "surprised": surprised,
     "happy": happy,
     "affectionate": affectionate,
+    "sad": sad,
 }
 
 
@@ -27,7 +28,9 @@ def be_moved(ctx: rs.RuleContext) -> None:
     names = settings.names or (ctx[interloc.agent],)
     feeling = recognise(heard, names)
     if feeling is None:
-        likely: dict[Feeling, float] = {name: getattr(settings, name) for name in FEELINGS}
+        likely: dict[Feeling, float] = {
+            name: getattr(settings, name) for name in (*dict(OCCASIONS), "surprised")
+        }
         feeling = by_chance(heard, likely, ctx.random, names)
     if feeling is not None:
         ctx.emit(SIGNALS[feeling])

@@ -51,7 +51,7 @@ class Settings(rs.Settings):
     """Utterances and answers that show the model how to talk; small models need some."""
     facts: bool = False
     """Whether the model may answer questions for facts, which small models make up."""
-    no_facts: str = "I don't know that, I'm afraid. I'm only good at small talk."
+    no_facts: str = "I don't know that, I'm afraid."
     """What is said otherwise."""
     no_model: str = "I cannot think just now."
     """What is said when the model cannot be had, or fails before its first word."""

@@ -22,6 +22,14 @@ _PERSONAL = re.compile(
     r"\b(?:i|me|my|mine|we|us|our|you|your|yours|ich|mir|mich|meine?[rnms]?|wir|uns|unsere?[rnms]?|du|dir|dich|"
     r"deine?[rnms]?|sie|ihnen|ihre?[rnms]?)\b"
 )
+# "And its capital?", "is Scotland a country?": of the world, and not of the weather here and now.
+_ASKS_OF_IT = re.compile(
+    r"(?:(?:what|how) about |of |in |for )?(?:its|their) \w+(?: \w+)?\W*$|of (?:the )?\w+(?: \w+)?\?$|"
+    r"(?:is|are|was|were|does|do|did|has|have|can) (?:the |an? )?(?!(?:it|there|that|this|those|these|they|he|she|anybody|anyone|"
+    r"somebody|someone|anything|something|everything|everybody|everyone)\b)"
+    r"[\w'-]+ (?:\w+ ){0,4}?(?:an?|the|in|of|on|from|have|has|than|eat|live|fly|swim)\b.*\?$|"
+    r"(?:what(?:'s| is)? )?\d+(?:[.,]\d+)? ?(?:times|plus|minus|divided by|x|[*+/-]) ?\d"
+)
 _CHAT = re.compile(
     r"(?:what|was)(?:'s| is| are)? (?:up|new|going on|next|about|if|else|a|an|now|for|the matter|wrong|neues|ist los|geht)\b|"
     r"what(?:'s| is)? happening\b|who's there\b|(?:when|where|who|what|which|how|wer|was|wo|wann)\W*$|how much fun\b"
@@ -41,7 +49,7 @@ def asks_for_fact(text: str) -> bool:
     for sentence in re.split(r"[.!?]+\s+", text[:2000].lower().replace("’", "'")):
         question = _FRONT.sub("", sentence.strip(), count=1)
         if (
-            _ASKS.match(question)
+            (_ASKS.match(question) or _ASKS_OF_IT.match(question))
             and not _CHAT.match(question.rstrip("?!. "))
             and not _PERSONAL.search(question)
         ):

@@ -17,14 +17,19 @@ _BEGUN = re.compile(r"(?:<[|/]?[^|<>\n]{0,16}\|?|\[/?[INST]{0,4}|^\#{1,4}|[\"“
 # What is no word, such as an emoji, belongs to the sentence before it.
 _SENTENCE_END = re.compile(r"[.!?…。！？]+[\"”’)\]]*(?:\s+[^\w\s\"“‘(\[]+)*\s+(?=[\"“‘(\[]?\w)")
 _ABBREVIATION = re.compile(r"\b(?:Mr|Mrs|Ms|Dr|Prof|St|vs|e\.g|i\.e|etc|[A-Z])\.\s*\Z")
+# Pictures, their variants, and what joins them.
+_EMOJI = re.compile(
+    "[\U0001f000-\U0001faff\u2600-\u27bf\u2b00-\u2bff\u2300-\u23ff\u200d\u20e3\ufe0e\ufe0f\U000e0020-\U000e007f]"
+)
 _QUOTES = '"“”«»'
 
 
 class Utterance:
     """Takes pieces of a model's output; gives the part of it that may be said.
 
-    It leaves out what the model thinks aloud, its own name in front, quotation marks around all of it and
-    control characters; white space becomes single spaces. It is `complete`, and takes no more, after
+    It leaves out what the model thinks aloud, its own name in front, quotation marks around all of it,
+    control characters, and emoji, of which small models are fond: one is left where there is nothing else, and feelings
+    are a matter of `emotion`. White space becomes single spaces. It is `complete`, and takes no more, after
     `sentences` sentences, and where the model begins to speak for somebody else.
 
     However the output is cut into pieces, the same is said. To that end it holds back an end that may yet turn
@@ -50,6 +55,7 @@ class Utterance:
         self._sentences = sentences
         self._written = ""
         self._said = ""
+        self._emoji = ""
         self.complete = False
 
     @property
@@ -61,12 +67,17 @@ class Utterance:
         """Take the next piece; return what may be said now."""
         if self.complete:
             return ""
-        self._written += without_controls(piece)
+        piece = without_controls(piece)
+        if not self._emoji and (found := _EMOJI.search(piece)) is not None:
+            self._emoji = found[0]
+        self._written += _EMOJI.sub("", piece)
         return self._say(last=False)
 
     def finish(self) -> str:
         """The model has ended: return what was held back."""
         rest = "" if self.complete else self._say(last=True)
+        if not self.worth_saying() and self._emoji:
+            rest = self._said = self._emoji
         self.complete = True
         return rest
 
