@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Container, Mapping
 from typing import Any, TypeVar
 
 from ravestate.errors import RuleError
@@ -92,13 +92,16 @@ class Graph:
             self._must_know(other)
             self._relate(node, relation, other, values)
 
-    def unrelate(self, node: Node, relation: str, other: Node) -> None:
-        """End a relation."""
+    def unrelate(self, node: Node, relation: str, other: Node, *, forget: bool = False) -> None:
+        """End a relation; `forget`: and what was known on its account alone."""
         self._types.check_relation(node.type, relation, other.type)
-        self._store.write(
-            f"MATCH (a:`{node.type}` {{`id`: $a}})-[r:`{relation}`]->(b:`{other.type}` {{`id`: $b}}) DELETE r",
-            {"a": node.id, "b": other.id},
-        )
+        with self._store.transaction():
+            self._store.write(
+                f"MATCH (a:`{node.type}` {{`id`: $a}})-[r:`{relation}`]->(b:`{other.type}` {{`id`: $b}}) DELETE r",
+                {"a": node.id, "b": other.id},
+            )
+            if forget and not self._is_wanted(other, ()) and not self._has_own_life(other, node):
+                self.forget(other)
 
     def related(self, node: Node, relation: str, *, back: bool) -> list[Node]:
         """The nodes at the other end of a relation."""
@@ -210,7 +213,7 @@ class Graph:
             raw.values.get("id") != start.id for _, raw in self._edges(other, back=False)
         )
 
-    def _is_wanted(self, node: Node, going: Mapping[str, Node]) -> bool:
+    def _is_wanted(self, node: Node, going: Container[object]) -> bool:
         """Whether anything that stays is related to it."""
         return any(raw.values.get("id") not in going for _, raw in self._edges(node, back=True))
 

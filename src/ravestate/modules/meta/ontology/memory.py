@@ -129,9 +129,17 @@ class Memory:
         """
         return self._do("relate", lambda graph: graph.relate(node, relation, other, properties))
 
-    def unrelate(self, node: Node, relation: str, other: Node, /) -> Reply[None]:
-        """End a relation; without one it does nothing."""
-        return self._do("unrelate", lambda graph: graph.unrelate(node, relation, other))
+    def unrelate(self, node: Node, relation: str, other: Node, /, *, forget: bool = False) -> Reply[None]:
+        """End a relation; without one it does nothing.
+
+        Args:
+            node: From which it leads.
+            relation: Its name.
+            other: Where it leads to.
+            forget: Also forget `other`, unless something else is related to it, or it is an agent (a person, a robot) of
+                which more than the name is known.
+        """
+        return self._do("unrelate", lambda graph: graph.unrelate(node, relation, other, forget=forget))
 
     def related(self, node: Node, relation: str, /, *, back: bool = False) -> Reply[list[Node]]:
         """The nodes to which `node` has a relation, oldest first; `back`: those that have it to `node`."""

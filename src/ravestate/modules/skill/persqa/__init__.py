@@ -13,16 +13,16 @@ from ravestate.modules.meta.verbaliser.intents import Intent
 
 from .acquaintance import Noted
 from .talk import Question, Talk
-from .topics import TOPICS
+from .topics import ASKED
 
 __all__ = ["Question", "Settings", "Talk", "facts", "module", "reply", "rules", "talk", "who"]
 
 
 def _known(topics: tuple[str, ...]) -> tuple[str, ...]:
     for name in topics:
-        if name not in TOPICS:
+        if name not in ASKED:
             raise ValueError(
-                f"there is no topic {name!r}{nearest(name, TOPICS)}; there are {', '.join(TOPICS)}"
+                f"there is no topic {name!r}{nearest(name, ASKED)}; there are {', '.join(ASKED)}"
             )
     return topics
 
@@ -30,7 +30,7 @@ def _known(topics: tuple[str, ...]) -> tuple[str, ...]:
 class Settings(rs.Settings):
     """What is asked, and how insistently."""
 
-    topics: Annotated[tuple[str, ...], AfterValidator(_known)] = tuple(TOPICS)
+    topics: Annotated[tuple[str, ...], AfterValidator(_known)] = ASKED
     """What to ask about, in this order. What the user tells of his own accord is learnt in any case."""
     gap: Annotated[float, Field(ge=0)] = 30.0
     """Seconds that a question is left to the user before the next one."""

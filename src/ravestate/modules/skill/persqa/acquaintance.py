@@ -10,7 +10,7 @@ from ravestate.modules import ontology
 from . import records
 from .profile import Facts, merged, told_apart
 from .talk import Talk
-from .topics import NAME, TOPICS
+from .topics import NAME, in_order
 
 __all__ = ["Acquaintance", "Noted"]
 
@@ -60,7 +60,7 @@ class Acquaintance:
             return now
         remembered = now.talk.remembered
         new = {topic for topic, values in now.facts.items() if values != remembered.get(topic)}
-        topics = [topic for topic in TOPICS if topic in new | now.talk.told]
+        topics = in_order(new | now.talk.told)
         records.note(graph, now.who, {topic: now.facts.get(topic, ()) for topic in topics}, now._once)
         return now
 
@@ -68,7 +68,7 @@ class Acquaintance:
     def _once(self) -> Facts:
         """All that memory may have of him on this talk's account, by topic."""
         remembered, once = self.talk.remembered, self.talk.once
-        return {topic: remembered.get(topic, ()) + once.get(topic, ()) for topic in TOPICS}
+        return {topic: remembered.get(topic, ()) + once.get(topic, ()) for topic in {**remembered, **once}}
 
     def renamed(self, graph: ontology.Graph, name: str) -> Acquaintance:
         """He is called otherwise than it was understood.
@@ -97,7 +97,7 @@ class Acquaintance:
         `base` stays as it is: the user has gone on talking."""
         same_user = (self.who, self.talk.met) == (base.who, base.talk.met)
         facts = dict(self.facts)
-        for topic in TOPICS:
+        for topic in {**base.facts, **after.facts}:
             if facts.get(topic) == base.facts.get(topic) != after.facts.get(topic):
                 facts.pop(topic, None)
                 if topic in after.facts:

@@ -3,12 +3,18 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
+
+from ravestate.modules import nlp
 
 from .patterns import either, patterns, wanted
 from .phrase import values
-from .topics import NAME, TOPICS, Fact
+from .statements import gerund, likings, statements
+from .topics import NAME, RELATIVES, TOPICS, Fact, favourite
+from .wording import among
+from .words import word_set
 
-__all__ = ["EVERYTHING", "inquiry", "wants_to_be_forgotten"]
+__all__ = ["EVERYTHING", "about_oneself", "inquiry", "of_whom", "to_forget", "wants_to_be_forgotten"]
 
 EVERYTHING = "everything"
 """In place of a topic: all that is known."""
@@ -43,11 +49,25 @@ QUESTIONS = patterns(
             where('s| is| was)? my (home|house|flat|apartment)~
             (in )?(what|which) {PLACE} (do )?i {ALSO}live( in)?~
             where (my home is|i live)\b
+            my home~
         """,
         "origin": rf"""
-            where ((am|was|do|did) )?i {ALSO}(am |was |come |came )?(originally )?(from|born|grow up|grew up)~
+            where ((am|was|do|did) )?i {ALSO}(am |was |come |came )?(originally )?from~
             (what|which) {PLACE} (am i|i am|do i come) from~
-            (what|where)('s| is)? my (home ?town|home country|birthplace|origin)~
+            ((what|where)('s| is)? )?my (home ?town|home country|origin)~
+        """,
+        "birthplace": rf"""
+            where (was i |i was )?{ALSO}born~
+            (in )?(what|which) {PLACE} (was i|i was) born( in)?~
+            ((what|where)('s| is)? )?my (birthplace|place of birth)~
+        """,
+        "childhood": rf"""
+            where (did )?i {ALSO}(grow|grew) up~
+            (in )?(what|which) {PLACE} did i grow up( in)?~
+        """,
+        "age": """
+            how old (am i|i am)~
+            (what('s| is)? )?my age~
         """,
         "hobby": r"""
             (what|which)('s| is| are|s)? (one of )?my (favou?rite )?(hobby|hobbies|pastimes?)( is| are)?~
@@ -55,6 +75,15 @@ QUESTIONS = patterns(
             what (do )?i (like|love|enjoy)?( to)? ?(do|doing) (for fun|in my (free|spare) time)
             do i have (any |a )?hobb(y|ies)~
             (which|what) hobb(y|ies) (do )?i have
+            what (do )?i play~
+        """,
+        "liking": r"""
+            what (do )?i (really )?(like|love|enjoy)( to do| doing)?~
+            what (am i|i am) (into|interested in|fond of|keen on)~
+        """,
+        "favourite": r"""
+            ((what|who|which)('s| is| are|s)? )?my (?P<favourite>favou?rite (?!hobb|pastime)[\w-]+( [\w-]+)?)( is| are)?~
+            (what|which) (?P<favourite>[\w-]+) (do )?i like (best|most)~
         """,
         "occupation": r"""
             what('s| is| was|s)? my (job|occupation|profession|work|trade)( is)?~
@@ -74,12 +103,13 @@ QUESTIONS = patterns(
             (where|(at )?(which|what) (university|college)) (do |did |am )?i (study|studying|studied|go to|attend|enrolled)( at)?~
             (what|which)('s| is)? my (university|college|school)( is)?~
         """,
-        "friend": r"""
-            (who|what)('s| is| are|s)? (the names? of )?my (best |good )?friends?( is| are)?~
-            what (is|are) my (best )?friend'?s'? names?
-            do i have (any )?friends~
-            my friends~
-        """,
+        **{
+            relative.name: rf"""
+                ((who|what)('s| is| are|s)? )?(the names? of )?my (\w+ )?({relative.nouns})('?s'? names?|s)?( is| are)?( called| named)?~
+                do i have (an? |any )?(\w+ )?({relative.nouns})s?~
+            """
+            for relative in RELATIVES
+        },
         "club": r"""
             (what|which|where)( club| clubs| group| team| organi[sz]ation)? (am i|i am) (a )?member( of| in)?~
             (what|which) (club|group|team|choir|band)s? (am i|i am|do i belong|did i join)( in| to)?~
@@ -93,20 +123,34 @@ GUESSES = patterns(
     {
         NAME: "(is my name|isn't my name|am i called) …",
         "home": "(do i|don't i) (still )?live in …",
-        "origin": "(am i (originally )?from|do i come from|was i born in) …",
+        "origin": "(am i (originally )?from|do i come from) …",
+        "birthplace": "was i born in …",
+        "childhood": "did i grow up in …",
+        "age": "am i …",
         "employer": "do i work (for|at) …",
         "university": "(do i study|am i studying) at …",
         "subject": "(do i study|am i studying) …",
         "hobby": "is (?P<wanted>.+?) (one of )?my hobb(y|ies)",
-        "friend": "is (?P<wanted>.+?) (my|a) (best )?friend( of mine)?",
+        "liking:verb": """
+            do i (still )?(like|love|enjoy) …
+            do i (still )?(?P<wanted>(play|go) .+)
+            am i (into|keen on|interested in|fond of) …
+        """,
+        **{
+            relative.name: rf"is (?P<wanted>.+?) (my|an?) (\w+ )?({relative.nouns})( of mine)?~"
+            for relative in RELATIVES
+        },
         "club": "am i a member of (?!a |any )…",
     }
 )
 """Questions whether something is so."""
 
-_LEAD = re.compile(
-    r"^\W*((hey|hi|hello|ok|okay|so|and|but|well|now|please|say)\W+)*"
-    + either(rf"""
+_OPENING = re.compile(
+    r"^\W*((hey|hi|hello|good (morning|day|evening)|there|ok|okay|so|and|but|well|now|please|say|oh)\b\W*)*",
+    re.IGNORECASE,
+)
+_WRAP = re.compile(
+    either(rf"""
         (do|did|can|could|would|will) you {ALSO}(know|remember|recall|tell me|guess|say)
         (please )?tell me
         have you forgotten
@@ -115,10 +159,39 @@ _LEAD = re.compile(
         any idea
         guess
     """)
-    + "? ?",
+    + " ?",
     re.IGNORECASE,
 )  # fmt: skip
 """What only wraps a question: *do you know where I live*."""
+
+_SOMEBODY = patterns(
+    {
+        "people": rf"""
+            (who|what)('s| is) …
+            what (do )?you {ALSO}know (about|of) …
+            (do|did|can) you {ALSO}(know|remember) (who )?(?P<wanted>.+?)( is)?~
+            (please )?tell me (something |more |anything )?(about|of) …
+            what about …
+        """
+    }
+)
+
+
+def of_whom(text: str, known: Mapping[str, tuple[str, ...]]) -> str:
+    """The topic under which somebody stands who is asked about by name; empty if he is not known.
+
+    Example:
+        >>> of_whom("Who is Emma?", {"sister": ("Emma",)})
+        'sister'
+    """
+    bare = _OPENING.sub("", text)
+    for _, pattern in _SOMEBODY:
+        name = wanted(pattern.match(bare)).strip(" .?!")
+        for relative in RELATIVES:
+            if name and among(name, known.get(relative.name, ())):
+                return relative.name
+    return ""
+
 
 _MINE = r"(about me|of me|me|myself|my (personal )?(data|name|information|info|details|profile|memory)|(the )?(data|information) (about|on|of) me)"
 _FORGET = re.compile(
@@ -152,14 +225,32 @@ def inquiry(text: str) -> Fact | None:
         (Fact(topic='home', values=(), gone=False), Fact(topic='home', values=('Bremen',), gone=False))
     """
     for sentence in re.split(r"[.!\n]+|(?<=\?)", text):
-        for asked in (sentence.strip(), _LEAD.sub("", sentence.strip())):
-            for topic, pattern in GUESSES:
-                if guessed := values(wanted(pattern.match(asked)), TOPICS[topic]):
-                    return Fact(topic, guessed)
-            for topic, pattern in QUESTIONS:
-                if pattern.match(asked):
-                    return Fact(topic, ())
+        bare = _OPENING.sub("", sentence.strip())
+        wrap = _WRAP.match(bare)
+        for asked in (bare, bare[wrap.end() :] if wrap else bare):
+            if found := _guessed(asked) or _asked(asked):
+                return found
     return None
+
+
+def _guessed(text: str) -> Fact | None:
+    for name, pattern in GUESSES:
+        topic, _, form = name.partition(":")
+        rest = wanted(pattern.match(text))
+        if guessed := values(gerund(rest) if form else rest, TOPICS[topic]):
+            return likings(guessed)[0] if topic == "liking" else Fact(topic, guessed)
+    return None
+
+
+def _asked(text: str) -> Fact | None:
+    for topic, pattern in QUESTIONS:
+        if found := pattern.match(text):
+            return Fact(_favourite(found["favourite"]) if topic == "favourite" else topic, ())
+    return None
+
+
+def _favourite(words: str) -> str:
+    return favourite(words if words.lower().startswith("favo") else f"favourite {words}")
 
 
 def wants_to_be_forgotten(text: str) -> bool:
@@ -173,4 +264,77 @@ def wants_to_be_forgotten(text: str) -> bool:
         before = text[: match.start()]
         if _ASKED_TO.search(before) or not _OTHERWISE.search(before):
             return True
+    return False
+
+
+_REQUEST = re.compile(
+    r"^\W*(?:(?:please|now|and|ok|okay|just)\W+)*(?:(?:can|could|would|will) you (?:please )?|i want you to )?(?:please |just )?"
+    r"(?:forget|delete|erase|unlearn|don't remember|do not remember) (?:about )?(?:that )?(?P<what>.+)$",
+    re.IGNORECASE,
+)
+_OWN = re.compile(
+    r"(?:(?:what|where|who|when|how old|everything|anything|all) )?(?:i|i'm|my|me)\b", re.IGNORECASE
+)
+
+
+def to_forget(text: str, known: Mapping[str, tuple[str, ...]]) -> list[Fact] | None:
+    """Which facts somebody wants to be forgotten, of all that is known of him; None if he wants nothing of the kind.
+
+    Args:
+        text: As `phrase.plain` makes it.
+        known: Values by topic.
+
+    Example:
+        >>> to_forget("please forget where I live", {"home": ("Ulm",)})
+        [Fact(topic='home', values=(), gone=True)]
+    """
+    request = _REQUEST.match(text)
+    if request is None:
+        return None
+    what = request["what"].strip(" .!?")
+    topics = [
+        topic for topic, values in known.items() if what.casefold() in [value.casefold() for value in values]
+    ]
+    if topics:
+        return [Fact(topic, (what,), gone=True) for topic in topics]
+    found = [Fact(fact.topic, fact.values, gone=True) for fact in statements(what)]
+    if not found and (asked := inquiry(what)):
+        found = [Fact(asked.topic, (), gone=True)]
+    return found if found or _OWN.match(what) else None
+
+
+_OPEN = word_set(
+    """do get find buy call ask say tell talk see start make mean bother disturb win lose use know hear understand look sound need
+    help stop leave become put turn write spell pronounce reach pay order cook bake fix install learn think forget join owe miss"""
+)
+"""What one asks advice about, or the other's opinion."""
+_ADVICE = re.compile(
+    r"\b(?:can|could|may|might|should|shall|will|would|must|have to|need to|going to|if i|supposed)\b",
+    re.IGNORECASE,
+)
+_PRIVATE = word_set("like love enjoy play have live work study speak own eat drink collect")
+
+
+def about_oneself(text: str, question: nlp.QuestionWord, triples: tuple[nlp.Triple, ...]) -> bool:
+    """Whether a question is about something of the speaker's own: *how old is my sister*, *what do I drink*.
+
+    Args:
+        text: What was asked.
+        question: Its kind.
+        triples: What it states.
+    """
+    if _ADVICE.search(text):
+        return False
+    for subject, predicate, thing in triples:
+        whose = str(subject).lower().split()
+        verb = predicate.removeprefix("not ").split()[0]
+        if whose[:1] == ["my"]:
+            return True
+        if whose == ["you"] and verb in ("know", "remember", "recall", "tell", "say", "guess"):
+            continue  # do you know what I drink
+        if whose != ["i"] or question in (nlp.QuestionWord.FORM, nlp.QuestionWord.REASON):
+            return False
+        if question is nlp.QuestionWord.YES_NO:
+            return verb in _PRIVATE and str(thing).lower() not in ("", "you", "it", "that", "this")
+        return verb not in _OPEN
     return False

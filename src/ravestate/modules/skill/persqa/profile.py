@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
-from .topics import NAME, TOPICS, Fact
+from .topics import NAME, TOPICS, Fact, in_order
 from .wording import among
 
 __all__ = ["Facts", "News", "learn", "merged", "told_apart"]
@@ -86,7 +86,7 @@ def merged(remembered: Facts, told: Facts) -> Facts:
     for topic, values in told.items():
         before = remembered.get(topic, ()) if TOPICS[topic].many and values else ()
         found[topic] = before + _without(values, before)
-    return {topic: found[topic] for topic in TOPICS if topic in found}
+    return {topic: found[topic] for topic in in_order(found)}
 
 
 def told_apart(facts: Facts, remembered: Facts, told: Iterable[str]) -> Facts:

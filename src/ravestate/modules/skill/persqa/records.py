@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from ravestate.modules import ontology
 
-from .topics import TOPICS, Topic
+from .topics import NAME, TOPICS, Topic, about, in_order
 from .wording import among
 
 __all__ = ["known", "named", "note"]
@@ -24,11 +24,11 @@ def named(graph: ontology.Graph, name: str) -> ontology.Node | None:
 def known(graph: ontology.Graph, person: ontology.Node) -> dict[str, tuple[str, ...]]:
     """What is known of a person: values by topic, in the order of the topics. The name is not among them."""
     found = _related(graph, person)
-    return {
-        topic.name: tuple(node["name"] for node in found[topic.relation])
-        for topic in TOPICS.values()
-        if topic.relation in found
-    }
+    values = {topic: tuple(node["name"] for node in nodes) for topic, nodes in found.items()}
+    for topic in TOPICS.values():
+        if not topic.relation and topic.name != NAME and (value := person.get(topic.name)) is not None:
+            values[topic.name] = (str(value),)
+    return {topic: values[topic] for topic in in_order(values)}
 
 
 def note(
@@ -51,29 +51,41 @@ def note(
     related = _related(graph, person)
     for name, values in facts.items():
         topic = TOPICS[name]
-        present = related.get(topic.relation, [])
+        if not topic.relation:
+            graph.update(person, {name: int(values[0]) if values else None})
+            continue
+        present = related.get(name, [])
         for node in present:
             if among(node["name"], values):
                 continue
             if not (topic.many and values) or among(node["name"], once.get(name, ())):
-                graph.unrelate(person, topic.relation, node)
+                graph.unrelate(person, topic.relation, node, forget=True)
         for value in values:
             if not among(value, [node["name"] for node in present]):
-                graph.relate(person, topic.relation, _thing(graph, topic, value, person), {})
+                others = [
+                    node
+                    for one, nodes in related.items()
+                    if one != name and TOPICS[one].relation == topic.relation
+                    for node in nodes
+                ]
+                thing = _thing(graph, topic, value, [person, *(others if topic.role else [])])
+                graph.relate(person, topic.relation, thing, {"role": name} if topic.role else {})
+                related.setdefault(name, []).append(thing)
 
 
 def _related(graph: ontology.Graph, person: ontology.Node) -> dict[str, list[ontology.Node]]:
-    """The named nodes to which a person is related, by relation."""
+    """The named nodes to which a person is related, by topic."""
     found: dict[str, list[ontology.Node]] = {}
     for relation in graph.relations(person):
-        if relation.source.id == person.id and relation.target.get("name"):
-            found.setdefault(relation.name, []).append(relation.target)
+        topic = about(relation.name, relation.properties.get("role"))
+        if topic and relation.source.id == person.id and relation.target.get("name"):
+            found.setdefault(topic, []).append(relation.target)
     return found
 
 
-def _thing(graph: ontology.Graph, topic: Topic, value: str, person: ontology.Node) -> ontology.Node:
-    """The node that a value names; nobody is his own friend."""
+def _thing(graph: ontology.Graph, topic: Topic, value: str, others: Sequence[ontology.Node]) -> ontology.Node:
+    """The node that a value names; none of the `others`: nobody is his own friend, or brother and sister."""
     for node in graph.find(topic.type, {"name": value}):
-        if node.id != person.id:
+        if node not in others:
             return node
     return graph.save(ontology.Node(topic.type, {"name": value}))

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import random
-from collections.abc import Iterable
 
 from ravestate.modules.meta.verbaliser.intents import Intent
 
 from .profile import Facts
-from .topics import TOPICS
+from .topics import TOPICS, in_order
 from .wording import clause, joined, spoken
 
-__all__ = ["asking", "learned", "memorable", "say", "stating", "summary"]
+__all__ = ["asking", "clauses", "learned", "memorable", "say", "stating", "summary"]
 
 PACKAGE = __name__.rpartition(".")[0]
 """Where the phrases are."""
@@ -30,6 +29,8 @@ def asking(topic: str, known: Facts) -> Intent:
 
 def learned(topic: str, values: tuple[str, ...], known: Facts) -> Intent:
     """Show that `values` were understood."""
+    if not TOPICS[topic].asked:
+        return stating("learned", topic, values, known)
     return say(f"learned_{topic}", known, **{topic: spoken(topic, values)})
 
 
@@ -45,5 +46,9 @@ def memorable(remembered: Facts, chance: random.Random) -> str:
 
 def summary(known: Facts) -> Intent:
     """Tell the user all that is known of him."""
-    clauses: Iterable[str] = (clause(topic, known[topic]) for topic in TOPICS if known.get(topic))
-    return say("recall_everything", known, facts=joined(list(clauses)))
+    return say("recall_everything", known, facts=clauses(known))
+
+
+def clauses(known: Facts) -> str:
+    """What is known, each topic as a clause."""
+    return joined([clause(topic, known[topic]) for topic in in_order(known) if known[topic]])

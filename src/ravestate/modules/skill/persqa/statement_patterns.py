@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from .patterns import Patterns, patterns
+from .patterns import patterns
 from .topics import NAME, RELATIVES
 
-__all__ = ["ADVERBS", "AM", "CALLED", "GONE", "STATED"]
+__all__ = ["ADVERBS", "AM", "GONE", "STATED"]
 
 ADVERBS = (
     r"((actually|currently|now|still|just|really|also|mostly|originally|mainly|usually|only|sort of|kind of|always|"
@@ -23,14 +23,27 @@ GROUP = (
 STOP = r"(?=$|[,.;!])"
 
 OWN = r"my ((very )?(best|closest|close|good|other|new|older|elder|younger|big|little|twin|only|late|pet) )*"
-CALLED = rf"""
-    {OWN}({{nouns}})(es|s)?('s? names?| names?)? (is|are)( called| named)? …
-    {OWN}({{nouns}})'s (called|named) …
-    (i have|i've got) (an?|one|two|three|four|some|a few|many) ([\w-]+ )?({{nouns}})(es|s)? (who is |who are |that is )?(called|named) …
-    ^(?P<wanted>[\w ,&'-]{{{{2,60}}}}?) (is|are) {OWN}({{nouns}})s?\b
-    {OWN}({{nouns}}),? (?P<wanted>(?!is\b|was\b|has\b)[\w'-]+)
-"""
-"""Who is called by what he is to the speaker: *my sister is called Emma*."""
+
+
+def _called(nouns: str) -> str:
+    """How one tells of somebody who is called by what he is to the speaker: *my sister is called Emma*."""
+    return rf"""
+        {OWN}({nouns})s?('s? names?| names?)? (is|are)( called| named)? …
+        {OWN}({nouns})'s (called|named) …
+        (i have|i've got) (an?|one|two|three|four|some|a few|many) ([\w-]+ )?({nouns})s? (who is |who are |that is )?(called|named) …
+        ^(?P<wanted>[\w ,&'-]{{2,60}}?) (is|are) {OWN}({nouns})s?\b
+        {OWN}({nouns})s?,? (?P<wanted>[\w'-]+)
+    """
+
+
+def _not_called(nouns: str) -> str:
+    return rf"""
+        {NOT}have (an? |any |many )?([\w-]+ )?({nouns})s?
+        i('ve| have)( got)? no ({nouns})s?
+        ^(?P<wanted>[\w ,&'-]{{2,60}}?) (is|are)(n't| not| no longer) {OWN}({nouns})s?\b
+        {OWN}({nouns})('s name)? (is|are)(n't| not) (called |named )?(?P<wanted>.+?){STOP}
+    """
+
 
 STATED = patterns(
     {
@@ -113,7 +126,7 @@ STATED = patterns(
             i go to (?P<wanted>([\w-]+ ){{0,4}}(university|college)\b.*)
             my (university|college|uni) is (called )?…
         """,
-        **{relative.name: CALLED.format(nouns=relative.nouns) for relative in RELATIVES},
+        **{relative.name: _called(relative.nouns) for relative in RELATIVES},
         "club": rf"""
             {AM}(an? )?(\w+ )?member (of|in) …
             i belong to …
@@ -136,6 +149,14 @@ GONE = patterns(
             {AM}not (originally )?from (there|(?P<wanted>.+?)){STOP}
             {NOT}come from (there|(?P<wanted>.+?)){STOP}
         """,
+        "birthplace": rf"i was(n't| not) born (there|in (?P<wanted>.+?)){STOP}",
+        "childhood": rf"i (didn't|did not) grow up (there|in (?P<wanted>.+?)){STOP}",
+        "age": rf"{AM}not (?P<wanted>\d+)( years old)?{STOP}",
+        "liking:verb": rf"""
+            {NOT}(like|love|enjoy) (?P<wanted>.+?)( any ?more)?{STOP}
+            {AM}not (into|keen on|interested in|fond of|a fan of) (?P<wanted>.+?)( any ?more)?{STOP}
+        """,
+        "hobby:verb": rf"{NOT}(?P<wanted>play .+?|go \w+ing\b.*?)( any ?more)?{STOP}",
         "hobby": r"""
             i (don't|do not|dont) (really )?have (any |a |many )?hobb(y|ies)
             i('ve| have)( got)? no hobb(y|ies)
@@ -147,7 +168,7 @@ GONE = patterns(
             {AM}(unemployed|jobless|out of work|between jobs|looking for (a job|work))
             {HAVE}(quit|lost) my job
             {AM}no longer (?P<wanted>an? (?!(\w+ )?member).+?){STOP}
-            {AM}not (?P<wanted>an? (?!(\w+ )?member).+?) any ?more
+            {AM}not (?P<wanted>an? (?!(\w+ )?member).+?)( any ?more)?{STOP}
         """,
         "employer": rf"""
             {NOT}work (there|(for|at) (?P<wanted>.+?))( any ?(more|longer))?{STOP}
@@ -158,11 +179,7 @@ GONE = patterns(
             {I}no longer study
             {HAVE}(stopped|quit|finished) (studying|my studies)
         """,
-        "friend": r"""
-            i (don't|do not|dont) have (any |many )?friends
-            i('ve| have)( got)? no friends
-            ^(?P<wanted>.+?) (is|are) (not|no longer) my friends?\b
-        """,
+        **{relative.name: _not_called(relative.nouns) for relative in RELATIVES},
         "club": rf"""
             {AM}not (a |an )?(\w+ )?members? of (any ?thing|any .*)
             {AM}(no longer|not) (a |an )?(\w+ )?member of (?P<wanted>.+?)( any ?more)?{STOP}

@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterable, Iterator
 
 from .patterns import wanted
 from .phrase import values
 from .statement_patterns import ADVERBS, AM, GONE, STATED
-from .topics import NAME, TOPICS, Fact
-from .words import NO_STUDENT, OCCUPATIONS, STATES, VERBS
+from .topics import NAME, TOPICS, Fact, favourite
+from .words import NO_STUDENT, NOT_DONE, OCCUPATIONS, STATES, VERBS
 
-__all__ = ["gerund", "statements", "worker"]
+__all__ = ["gerund", "likings", "statements", "worker"]
 
 _I_AM = re.compile(rf"(?<![\w'])(?:{AM}|this is )(?P<wanted>.+)", re.IGNORECASE)
 _A = re.compile(r"(?:an? )(.+)", re.IGNORECASE)
+_NAMED = re.compile(r"\b(?:called|named|names?)\b", re.IGNORECASE)
 _STUDENT = re.compile(r"(?:an? )?((?!an? )(?:[\w-]+ ){1,3}?)student\b", re.IGNORECASE)
 _SPEAKER = re.compile(r"(?<![\w'])(?:i|i'm|im|i've|my (?:\w+ )?name)(?![\w'])", re.IGNORECASE)
 _JOINED = re.compile(
@@ -62,9 +63,14 @@ def _stated(text: str, persons: Collection[str], asked: str) -> Iterator[Fact]:
             if _UNREAL.search(text[: match.start()]):
                 continue
             rest = wanted(match)
+            if topic == "favourite":
+                topic = favourite(match["favourite"])
             said = values(gerund(rest) if form else rest, TOPICS[topic])
-            if topic == "friend" and not re.search(r"\b(called|named|names?)\b", match[0], re.IGNORECASE):
-                said = tuple(value for value in said if asked == "friend" or _is_person(value, text, persons))
+            if topic == "liking":
+                yield from likings(said)
+                break
+            if TOPICS[topic].kind == "people" and not _NAMED.search(match[0]):
+                said = tuple(value for value in said if asked == topic or _is_person(value, text, persons))
             if topic == "occupation" and not form and rest.lower().startswith("student"):
                 said = ("student",)
             if said:
@@ -73,10 +79,34 @@ def _stated(text: str, persons: Collection[str], asked: str) -> Iterator[Fact]:
 
 
 def _denied(text: str) -> Iterator[Fact]:
-    for topic, pattern in GONE:
+    for name, pattern in GONE:
+        topic, _, form = name.partition(":")
         match = pattern.search(text)
-        if match is not None and not _UNREAL.search(text[: match.start()]):
-            yield Fact(topic, values(wanted(match), TOPICS[topic]), gone=True)
+        if match is None or _UNREAL.search(text[: match.start()]):
+            continue
+        rest = wanted(match)
+        said = values(gerund(rest) if form else rest, TOPICS[topic])
+        if topic == "liking":
+            yield from (Fact(fact.topic, fact.values, gone=True) for fact in likings(said))
+        elif said or not rest:
+            yield Fact(topic, said, gone=True)
+
+
+def likings(said: Iterable[str]) -> list[Fact]:
+    """What somebody likes: what one does, a hobby, and all else.
+
+    Example:
+        >>> likings(["rock climbing", "pizza"])
+        [Fact(topic='hobby', values=('rock climbing',), gone=False), Fact(topic='liking', values=('pizza',), gone=False)]
+    """
+    by: dict[str, tuple[str, ...]] = {}
+    for value in said:
+        done = any(
+            word.endswith("ing") and len(word) > 4 and word not in NOT_DONE for word in value.lower().split()
+        )
+        topic = "hobby" if done else "liking"
+        by[topic] = (*by.get(topic, ()), value)
+    return [Fact(topic, by[topic]) for topic in ("hobby", "liking") if topic in by]
 
 
 def _being(text: str, persons: Collection[str], asked: str) -> Iterator[Fact]:
@@ -138,12 +168,18 @@ def gerund(text: str) -> str:
         >>> gerund("read books and swim")
         'reading books and swimming'
     """
-    return re.sub(r"(^|\b(?:and|or) |, ?)(?:to )?(\w+)", lambda found: found[1] + _gerund(found[2]), text)
+    text = re.sub(r"\bgo (?=[a-z]{2,}ing\b)", "", text)  # go swimming
+    return re.sub(
+        r"(^|\b(?:and|or) |, ?)(to )?(\w+)",
+        lambda found: found[1] + _gerund(found[3], sure=bool(found[2])),
+        text,
+    )
 
 
-def _gerund(verb: str) -> str:
+def _gerund(verb: str, *, sure: bool) -> str:
+    """`sure`: that it is a verb."""
     low = verb.lower()
-    if low not in VERBS:
+    if low.endswith("ing") or not (sure or low in VERBS):
         return verb
     if low in _DOUBLED:
         return low + low[-1] + "ing"

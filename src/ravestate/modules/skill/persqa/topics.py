@@ -46,7 +46,9 @@ class Topic:
 NAME = "name"
 
 
-def _relative(name: str, relation: str, nouns: str, *, many: bool = True, role: bool = False, type: str = "Person") -> Topic:
+def _relative(
+    name: str, relation: str, nouns: str, *, many: bool = True, role: bool = False, type: str = "Person"
+) -> Topic:
     """Somebody of one's own, whose name may be known."""
     clause = f"your {name} is {{}}"
     return Topic(name, "people", relation, type, clause, many, asked=False, nouns=nouns, role=role)

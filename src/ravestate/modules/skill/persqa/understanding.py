@@ -10,7 +10,7 @@ from typing import Literal
 from ravestate.modules import nlp
 
 from .answers import answer, correction, has_none, refuses
-from .inquiries import inquiry, wants_to_be_forgotten
+from .inquiries import EVERYTHING, about_oneself, inquiry, of_whom, to_forget, wants_to_be_forgotten
 from .phrase import plain
 from .statements import statements
 from .talk import FORGET, Talk
@@ -28,6 +28,7 @@ Kind = Literal[
     "unsure",
     "which",  # he said no more than yes
     "asked",  # what is known of him
+    "strike",  # he wants something of what he told to be forgotten
     "forget",  # he wants to be forgotten
     "forget_yes",
     "forget_no",
@@ -97,8 +98,14 @@ def understand(
     if topic == FORGET:
         fresh = pending is not None and pending.fresh  # a yes to something else must not do it
         return _of_forgetting(heard, leave) if fresh else Meaning("nothing", leave=leave)
-    if heard.question is not None and (asked := inquiry(text)):
-        return Meaning("asked", (asked,))
+    if (strike := to_forget(text, known)) is not None:
+        everything = any(fact.topic == EVERYTHING for fact in strike)
+        return Meaning("forget" if everything else "strike", tuple(strike), leave=leave)
+    if heard.question is not None:
+        if asked := inquiry(text):
+            return Meaning("asked", (asked,))
+        if somebody := of_whom(text, known):
+            return Meaning("asked", (Fact(somebody, ()),))
     told = statements(text, persons=persons_in(heard), asked=topic)
     told = [fact for fact in told if not fact.gone or _matters(fact, known, topic)]
     aside = leave or heard.question is not None
@@ -107,6 +114,8 @@ def understand(
     if aside:
         before = _before_question(text) if heard.question is not None and topic else ""
         side = answer(before, topic) if before else []
+        if heard.question is not None and not side and about_oneself(text, heard.question, heard.triples):
+            return Meaning("asked", (Fact("", ()),))
         return Meaning("told" if side else "nothing", tuple(side), topic, leave, aloud=False)
     if talk.correctable:
         put_right = correction(text, talk.correctable, talk.latest, explicit=pending is not None)

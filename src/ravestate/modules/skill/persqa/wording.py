@@ -109,4 +109,8 @@ def clause(topic: str, values: Sequence[str]) -> str:
         >>> clause("home", ["Hannover"])
         'you live in Hannover'
     """
-    return TOPICS[topic].clause.format(spoken(topic, values))
+    about = TOPICS[topic]
+    if about.kind == "people" and about.role and len(values) > 1:
+        plural = "children" if topic == "child" else f"{topic}s"
+        return f"your {plural} are {joined(values)}"
+    return about.clause.format(spoken(topic, values))

@@ -16,6 +16,7 @@ __all__ = [
     "SMALL",
     "STATES",
     "VERBS",
+    "word_set",
 ]
 
 

@@ -1,0 +1,194 @@
+"""What is told of oneself is answered, put right and forgotten, whatever it is about; what is not told is not made up."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from modules.skill.persqa.conftest import Look
+from modules.skill.persqa.test_scenarios import agent, answers, asked, knower, meant
+from ravestate.modules import ontology, persqa
+from ravestate.modules.meta.ontology.places import open_memory
+
+pytestmark = pytest.mark.usefixtures("reader")
+
+TOLD: list[tuple[str, str, str]] = [
+    ("I was born in Dundee", "where was I born?", "you were born in Dundee"),
+    ("I grew up in Fife", "where did I grow up?", "you grew up in Fife"),
+    ("I am 36 years old", "how old am I?", "you are 36 years old"),
+    ("I love rock climbing and baking bread", "what are my hobbies?", "you like rock climbing and baking bread"),
+    ("I play the violin", "what do I play?", "you like playing the violin"),
+    ("I like pizza", "do I like pizza?", "you like pizza"),
+    ("my favourite food is pizza", "what is my favourite food?", "your favourite food is pizza"),
+    ("My sister is called Emma and she lives in Vienna", "who is my sister?", "your sister is Emma"),
+    ("I have two brothers called Max and Tom", "who are my brothers?", "your brothers are Max and Tom"),
+    ("my husband's name is Tom", "what is my husband called?", "your husband is Tom"),
+    ("my dog is called Rex", "what's my dog's name?", "your dog is Rex"),
+    ("my friend Bob likes sailing", "what do you know about Bob?", "you are a friend of Bob"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("told", "question", "answer"), TOLD, ids=[told for told, _, _ in TOLD])
+def test_what_is_told_is_answered_then_and_another_day_and_forgotten(
+    file: Path, told: str, question: str, answer: str
+) -> None:
+    with agent(file) as sim:
+        sim.say("my name is ada")
+        sim.say(told)
+        assert answer in answers(sim, question)
+    with agent(file) as sim:
+        sim.say("my name is ada")
+        assert answer in answers(sim, question)
+        [(topic, _)] = dict(sim.read(persqa.facts)).items()
+        what = "my " + topic if topic not in ("birthplace", "childhood", "age", "liking") else told
+        assert meant(answers(sim, f"please forget {what}"), "strike")
+        assert dict(sim.read(persqa.facts)) == {}
+        assert sim.failures == []
+    assert everything(file) == {"Ada"}
+    with agent(file) as sim:
+        sim.say("my name is ada")
+        assert answer not in answers(sim, question)
+
+
+def everything(file: Path) -> set[Any]:
+    """The names of all that is in memory when no agent runs."""
+    memory = open_memory(ontology.Settings(path=file))
+    try:
+        return {node["name"] for node in memory.find("Thing").result(20)}
+    finally:
+        memory.close().result(20)
+
+
+def test_facts_of_different_kinds_stand_side_by_side(file: Path, look: Look) -> None:
+    with agent(file) as sim:
+        sim.say("my name is nia")
+        for text in (
+            "I was born in Dundee",
+            "I grew up in Fife",
+            "I come from Scotland",
+            "I like sailing",
+            "I like pizza",
+            "my favourite food is pizza",
+            "my favourite meal is pizza",
+            "my sister is called Kim",
+            "my brother is called Kim",
+        ):
+            assert meant(answers(sim, text), "learned") or text in (
+                "I come from Scotland",
+                "I like sailing",
+            ), sim.said[-1]
+        assert "you were born in Dundee" in answers(sim, "where was I born?")
+        said = answers(sim, "where do I come from?")
+        assert "you come from Scotland, you were born in Dundee and you grew up in Fife" in said
+        assert "you like sailing and you like pizza" in (said := answers(sim, "what do I like?")), said
+        facts = dict(sim.read(persqa.facts))
+    with agent(file) as sim:
+        sim.say("my name is nia")
+        assert dict(sim.read(persqa.facts)) == facts
+    assert look()["Nia"]["sibling_of"] == ["Kim", "Kim"]
+
+
+def test_a_birthplace_answers_the_question_for_the_origin(file: Path) -> None:
+    with agent(file, topics=["origin"]) as sim:
+        assert asked(sim) == "origin"
+        sim.say("I was born in Dundee")
+        assert answers(sim, "trains") == "I see."  # nothing is asked any more
+        before = len(sim.said)
+        sim.advance(100.0)
+        assert len(sim.said) == before
+        assert "you were born in Dundee" in answers(sim, "where am I from?")
+
+
+def test_somebody_of_ones_own_is_put_right(file: Path, look: Look) -> None:
+    with agent(file) as sim:
+        sim.say("my name is ada")
+        sim.say("my sister is called Emma")
+        assert meant(answers(sim, "no, Kim"), "corrected")
+        assert meant(answers(sim, "I don't have a sister"), "struck")
+        assert meant(answers(sim, "who is my sister?"), "recall_none")
+    assert look() == {"Ada": {}}
+
+
+def test_a_denied_occupation(file: Path, look: Look) -> None:
+    with agent(file) as sim:
+        sim.say("my name is ada")
+        sim.say("I work as a teacher")
+        assert meant(answers(sim, "I'm not a teacher"), "struck")
+        assert answers(sim, "I'm not a morning person") == "I see."
+        assert meant(answers(sim, "I don't have any hobbies"), "none")
+    assert look() == {"Ada": {}}
+
+
+@pytest.mark.parametrize("question", ["who is my sister?", "what is my favourite food?", "how old am I?"])
+def test_what_is_not_known_is_asked_back_and_may_be_answered_in_a_word(file: Path, question: str) -> None:
+    with agent(file, knower()) as sim:
+        assert meant(answers(sim, question), "recall_unknown")
+        assert meant(answers(sim, "36" if "old" in question else "Emma"), "learned")
+        assert (
+            sim.said[-1].rstrip(".").endswith(("36 years old", "Emma"))
+            or "Emma" in sim.said[-1]
+            or "36" in sim.said[-1]
+        )
+
+
+@pytest.mark.parametrize(
+    "question",
+    [
+        "how old is my sister?",
+        "what does my mother do?",
+        "when is my birthday?",
+        "do I speak French?",
+        "what do I drink?",
+    ],
+)
+def test_what_nobody_could_know_is_not_made_up(file: Path, question: str) -> None:
+    with agent(file, knower()) as sim:
+        assert meant(answers(sim, question), "recall_not")
+
+
+@pytest.mark.parametrize(
+    "question",
+    [
+        "what should I do?",
+        "who am I talking to?",
+        "can I ask you something?",
+        "how do I get to Ulm?",
+        "where do I find a doctor?",
+    ],
+)
+def test_advice_is_for_others(file: Path, question: str) -> None:
+    with agent(file, knower()) as sim:
+        assert answers(sim, question) == "I know it."
+
+
+def test_a_greeting_before_a_question_is_no_matter(file: Path) -> None:
+    with agent(file, knower()) as sim:
+        assert meant(answers(sim, "hello, do you remember me?"), "recall_stranger")
+        assert meant(answers(sim, "ada"), "learned_name")
+
+
+@pytest.mark.parametrize("what", ["my sister", "my shoe size", "what I said yesterday"])
+def test_what_is_not_known_cannot_be_forgotten(file: Path, what: str) -> None:
+    with agent(file) as sim:
+        sim.say("my name is ada")
+        assert meant(answers(sim, f"forget {what}"), "strike_unknown")
+        assert answers(sim, "forget it") == "I see."
+
+
+def test_what_was_replaced_is_not_left_behind(file: Path) -> None:
+    with agent(file) as sim:
+        for text in ("I'm called Nia", "I live in Dundee", "no, in Fife", "forget me", "yes"):
+            sim.say(text)
+    assert everything(file) == set()
+
+
+def test_what_others_are_related_to_stays(file: Path) -> None:
+    with agent(file) as sim:
+        for text in ("I'm called Bob", "I live in Dundee"):
+            sim.say(text)
+    with agent(file) as sim:
+        for text in ("I'm called Nia", "I live in Dundee", "I moved to Fife"):
+            sim.say(text)
+    assert everything(file) == {"Bob", "Nia", "Dundee", "Fife"}
