@@ -813,6 +813,23 @@ with simulate(persqa, settings={"ontology": {"path": sys.argv[1]}}) as sim:
     assert look() == {"Ada": {"lives_in": ["Ulm"], "works_as": ["baker"], "has_hobby": ["chess"]}}
 
 
+def test_who_is_remembered_is_known_although_nothing_can_be_written(
+    file: Path, look: Look, caplog: pytest.LogCaptureFixture
+) -> None:
+    with agent(file) as sim:
+        sim.say("my name is ada and i live in ulm")
+    with agent(file) as sim:
+        sim.read(ontology.memory).opened().result(20)  # pyright: ignore[reportOptionalMemberAccess]
+        in_the_way = file.with_name(f"{file.name}.wal")
+        in_the_way.mkdir()
+        assert meant(answers(sim, "my name is ada"), "unsaved_name")
+        assert answers(sim, "where do i live").endswith("you live in Ulm.")
+        assert "cannot be opened (Is a directory): name another file" in caplog.text
+        in_the_way.rmdir()
+        sim.say("i work as a baker")
+    assert look() == {"Ada": {"lives_in": ["Ulm"], "works_as": ["baker"]}}
+
+
 def test_without_nlp_it_leaves_the_talk_to_others(file: Path) -> None:
     with simulate(
         persqa, chatter(), settings={"ontology": {"path": file}, "nlp": {"pipeline": "nonsense"}}

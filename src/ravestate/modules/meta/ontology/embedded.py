@@ -132,6 +132,8 @@ class EmbeddedStore:
                     f"memory {self._path} cannot be written: {reason(said)}. Make room on the disk; what was acknowledged is "
                     "safe, and memory goes on when there is"
                 ) from error
+            if "Cannot open file" in said:  # its log's, in a folder that is read-only, say
+                raise PlatformError(why_not_opened(self._path, said)) from error
             raise PlatformError(f"memory {self._path} failed: {said.strip()}") from error
 
     # ------------------------------------------------------------------------------------ tables

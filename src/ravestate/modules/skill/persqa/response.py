@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import random
 from collections.abc import Awaitable, Callable, Mapping
 from dataclasses import dataclass, replace
@@ -130,8 +131,11 @@ async def _written(user: Acquaintance, name: str | None, memory: ontology.Memory
         return replace(user, talk=replace(user.talk, trouble=""))
     except RavestateError as error:
         user = replace(user, talk=replace(user.talk, trouble=str(error)))
-        # for as long as the talk lasts
-        return replace(user, who=ontology.Node("Person", {NAME: name})) if again else user
+    if again:
+        return replace(user, who=ontology.Node("Person", {NAME: name}))  # for as long as the talk lasts
+    with contextlib.suppress(RavestateError):  # where nothing can be written, reading may go on
+        return await _at_once(memory, user.recall)
+    return user
 
 
 def _learning(talk: Talk, meaning: Meaning, news: News, name: str | None) -> Talk:
