@@ -88,10 +88,16 @@ def keys(monkeypatch: pytest.MonkeyPatch) -> Keys:
 
 def test_what_a_terminal_needs_is_loaded_off_the_loop(keys: Keys, monkeypatch: pytest.MonkeyPatch) -> None:
     threads: list[threading.Thread] = []
-    monkeypatch.setattr(conio.rules, "prepare", lambda: threads.append(threading.current_thread()))
+
+    def note(**_: Any) -> Console:
+        threads.append(threading.current_thread())
+        return Console(keys)
+
+    monkeypatch.setattr(conio.rules, "prepare", note)
+    monkeypatch.setattr(conio.rules, "Console", note)
     with simulate(parrot, conio):
         pass
-    assert len(threads) == 1 and threads[0] is not threading.current_thread()
+    assert len(threads) == 2 and threading.current_thread() not in threads
 
 
 def test_who_types_is_not_silent(keys: Keys, monkeypatch: pytest.MonkeyPatch) -> None:

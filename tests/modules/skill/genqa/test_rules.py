@@ -78,6 +78,18 @@ def test_whatever_else_is_left_to_others(settings: dict[str, dict[str, Any]], he
         assert sim.failures == []
 
 
+def test_what_is_asked_in_short_is_answered_if_that_is_sure(settings: dict[str, dict[str, Any]]) -> None:
+    with simulate(genqa, talk, settings=settings) as sim:
+        for text, answer in (
+            ("capital of France", "Paris"),
+            ("and of spain", "Madrid"),
+            ("a cup of tea", "Hm."),
+            ("the end of the story", "Hm."),
+        ):
+            sim.say(text)
+            assert answer in sim.said[-1], text
+
+
 def test_a_question_may_refer_to_the_one_before_for_a_while(settings: dict[str, dict[str, Any]]) -> None:
     with simulate(genqa, talk, settings=settings) as sim:
         for text, answer in (

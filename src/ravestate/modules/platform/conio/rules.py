@@ -31,7 +31,8 @@ async def listen(ctx: rs.RuleContext) -> None:
         ctx.emit(rawio.typing)
 
     try:
-        console = Console(prompt=ctx.settings.prompt, history=history, on_key=tell)
+        # Off the loop, too: while models are loaded beside it, a moment becomes a while.
+        console = await asyncio.to_thread(Console, prompt=ctx.settings.prompt, history=history, on_key=tell)
     except PlatformError as error:
         ctx.stop(error)  # else the agent would run on, and nobody could talk with it
         return

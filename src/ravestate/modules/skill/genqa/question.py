@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from ravestate.modules._text import printable
 
-__all__ = ["Question", "as_question", "is_vague"]
+__all__ = ["Question", "as_question", "asks_in_short", "is_vague"]
 
 LONGEST = 2000
 """Characters of an utterance: what is longer is no question to the world."""
@@ -128,4 +128,18 @@ def is_vague(question: str) -> bool:
     return _SOMETHING.search(question) is not None and len(as_question(question).words) < 2
 
 
+def asks_in_short(text: str) -> bool:
+    """Whether it may ask for something although it is no sentence.
+
+    Example:
+        >>> asks_in_short("capital of France"), asks_in_short("I am fond of France")
+        (True, False)
+    """
+    return _SHORT.fullmatch(text.strip()) is not None
+
+
+_SHORT = re.compile(
+    r"(?:and )?(?:the )?(?:(?!i\b|my\b|you\b)[\w-]+ ){1,3}of (?:the )?[\w-]+(?: [\w-]+){0,2}\W*|and of [\w-]+(?: [\w-]+){0,2}",
+    re.IGNORECASE,
+)
 _SOMETHING = re.compile(r"\b(?:it|they|them|he|she|him|her|his)\b", re.IGNORECASE)

@@ -13,7 +13,7 @@ from ravestate.modules._room import give_back
 from . import Settings, before, found, module
 from .answering import Answer, Answerer
 from .places import answerer_of
-from .question import is_vague
+from .question import asks_in_short, is_vague
 from .referring import Before, completed, other_wordings
 from .wording import intent_of, wording_rule
 
@@ -49,9 +49,10 @@ REMEMBERED = 120.0
 @module.rule(when=rawio.input.changed & nlp.question.changed, reads=before, writes=before, emits=found)
 def find(ctx: rs.RuleContext) -> rs.Resign | None:
     """Ask the documents."""
-    if ctx.payload(nlp.question.changed) is None:
-        return rs.Resign("it is no question")
     settings: Settings = ctx.settings
+    short = ctx.payload(nlp.question.changed) is None
+    if short and not asks_in_short(ctx.payload(rawio.input.changed)):
+        return rs.Resign("it is no question")
     last = ctx[before]
     if last is not None and ctx.now - last.at > REMEMBERED:
         last = None
@@ -61,7 +62,7 @@ def find(ctx: rs.RuleContext) -> rs.Resign | None:
     answer = best_answer(answerer_of(settings), heard, settings)
     if not answer.text:
         return rs.Resign(answer.reason)
-    if answer.confidence < settings.unsure:
+    if answer.confidence < (settings.sure if short else settings.unsure):
         return rs.Resign(
             f"the documents have only {answer.text!r}, with a confidence of {answer.confidence:.2f}"
         )
