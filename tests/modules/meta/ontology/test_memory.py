@@ -187,6 +187,25 @@ def test_nodes_are_related_once_and_in_one_direction(memory: Memory) -> None:
     assert memory.get(london.id).result() == london
 
 
+def test_what_was_known_on_account_of_a_relation_alone_goes_with_it(memory: Memory) -> None:
+    ada, bob = (memory.create("Person", name=name).result() for name in ("Ada", "Bob"))
+    london, kim = memory.create("City", name="London").result(), memory.create("Person", name="Kim").result()
+    for person in (ada, bob):
+        memory.relate(person, "lives_in", london).result()
+    memory.relate(ada, "friend_of", kim).result()
+    memory.relate(ada, "friend_of", bob).result()
+    memory.unrelate(ada, "lives_in", london, forget=True).result()
+    assert memory.get(london.id).result() == london  # it is Bob's as well
+    for friend in (kim, bob):
+        memory.unrelate(ada, "friend_of", friend, forget=True).result()
+    assert (memory.get(kim.id).result(), memory.get(bob.id).result()) == (
+        None,
+        bob,
+    )  # he has a life of his own
+    memory.unrelate(bob, "lives_in", london, forget=True).result()
+    assert memory.get(london.id).result() is None
+
+
 def test_a_relation_has_properties(open_here: Open, place: dict[str, Any], tmp_path: Path) -> None:
     types = tmp_path / "mine.yaml"
     types.write_text("Person: {relations: {works_for: {to: Company, has: {since: date, hours: number}}}}")

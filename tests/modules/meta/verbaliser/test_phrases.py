@@ -212,3 +212,18 @@ def test_a_file_that_cannot_be_read(tmp_path: Path) -> None:
     (tmp_path / "latin.yaml").write_bytes(b"a: caf\xe9")
     with pytest.raises(DeclarationError, match=r"latin.yaml: this is no text in UTF-8 .*at byte 6"):
         PhraseBook.load([tmp_path / "latin.yaml"])
+
+
+@pytest.mark.parametrize(
+    ("template", "value", "text"),
+    [
+        ("{it}? Show me!", "rock climbing", "Rock climbing? Show me!"),
+        ("{it}? Show me!", "eBay", "eBay? Show me!"),
+        ("{it}!", "élan", "Élan!"),
+        ("{it}", "", ""),
+        ("so {it}", "chess", "so chess"),
+    ],
+)
+def test_a_parameter_at_the_beginning_has_a_capital(template: str, value: str, text: str) -> None:
+    book = PhraseBook({"x": {"en": [template]}})
+    assert book.choose("x", {"it": value}, random.Random(1)).text == text

@@ -192,3 +192,13 @@ def test_what_others_are_related_to_stays(file: Path) -> None:
         for text in ("I'm called Nia", "I live in Dundee", "I moved to Fife"):
             sim.say(text)
     assert everything(file) == {"Bob", "Nia", "Dundee", "Fife"}
+
+
+@pytest.mark.parametrize("told", ["I have two brothers", "i've got a little brother"])
+def test_who_is_mentioned_is_asked_for(file: Path, look: Look, told: str) -> None:
+    with agent(file) as sim:
+        sim.say("my name is ada")
+        assert meant(answers(sim, told), "ask_relative")
+        assert meant(answers(sim, "they are called Max and Tom"), "learned")
+        assert answers(sim, told) == "I see."  # they are known
+    assert look()["Ada"] == {"sibling_of": ["Max", "Tom"]}

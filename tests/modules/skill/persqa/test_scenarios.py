@@ -731,7 +731,7 @@ def test_without_memory_the_talk_goes_on_and_the_user_is_told_once() -> None:
         assert meant(answers(sim, "i live in ulm"), "learned_home")
         assert answers(sim, "where do i live").endswith("you live in Ulm.")
         assert meant(answers(sim, "no, my name is bob"), "renamed")
-        assert [rule for rule, _ in sim.failures] == ["ontology:open_up"]
+        assert sim.failures == []  # a memory in use is no rule's fault
 
 
 def test_what_could_not_be_written_is_written_later(

@@ -57,7 +57,7 @@ def bound(module: rs.Module, name: str, type: str) -> rs.Slot[Node | None]:
             return
         opened = ctx[memory]
         if opened is None:
-            raise PlatformError(f"{node.id} is not remembered: there is no memory, see the error before")
+            raise PlatformError(f"{node.id} is not remembered: there is no memory, see the warning before")
         await opened.save(node, of=type)
 
     return slot

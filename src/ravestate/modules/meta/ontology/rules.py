@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 
 import ravestate as rs
+from ravestate.errors import PlatformError
 
 from . import memory, module
 from .places import open_memory
@@ -15,11 +16,18 @@ async def open_up(ctx: rs.RuleContext) -> None:
     """Open memory where the settings say. The slot has it at once, as what is asked of it waits until it is open."""
     opening = open_memory(ctx.settings)
     ctx[memory] = opening
-    try:
-        await opening.opened()
-    except BaseException:
+
+    def let_go() -> None:
         ctx[memory] = None  # the talk goes on without
         opening.close()
+
+    try:
+        await opening.opened()
+    except PlatformError as error:  # for which no rule is to blame
+        let_go()
+        ctx.log.warning("there is no long-term memory in this talk: %s", error)
+    except BaseException:
+        let_go()
         raise
 
 

@@ -160,7 +160,8 @@ class PhraseBook:
     ) -> Phrase:
         """Choose a phrase at random, and fill it in.
 
-        A phrase is eligible if all of its parameters are given; more may be given than it has.
+        A phrase is eligible if all of its parameters are given; more may be given than it has. One that begins with a
+        parameter begins with a capital.
 
         Args:
             intent: What is meant.
@@ -185,7 +186,7 @@ class PhraseBook:
         fresh = [template for template in eligible if template.text != last] or eligible
         chosen = rng.choice(fresh)
         values = {name: str(given[name]) for name in chosen.parameters}
-        return Phrase(chosen.text.format_map(values), chosen.text)
+        return Phrase(_begun(chosen.text, chosen.text.format_map(values)), chosen.text)
 
     # ------------------------------------------------------------------------------- internals
 
@@ -217,6 +218,12 @@ class PhraseBook:
             raise _fault(name, node, "there are no phrases; leave the language out, or write some")
         before = intent.get(tag, ()) if added else ()
         intent[tag] = (*before, *templates)
+
+
+def _begun(template: str, text: str) -> str:
+    """A text, with a capital where a parameter begins it: *Chess? You must show me*, but *eBay*."""
+    first = text.split(maxsplit=1)[0] if template.startswith("{") and text.strip() else ""
+    return text[:1].upper() + text[1:] if first.islower() else text
 
 
 def _tag(language: str) -> str:

@@ -66,6 +66,9 @@ def respond_to(meaning: Meaning, user: Acquaintance, now: float, chance: random.
         case "which":
             talk = replace(user.talk, ignored=0)  # the question stands
             return Response(say("which", user.known), replace(user, talk=talk))
+        case "mentioned":
+            asking_on = replace(listening, talk=listening.talk.asking(meaning.topic, now))
+            return Response(say("ask_relative", user.known), asking_on)
         case "asked":
             return _asked(meaning.facts[0], listening, now)
         case "strike":

@@ -5,7 +5,7 @@ from __future__ import annotations
 from .patterns import patterns
 from .topics import NAME, RELATIVES
 
-__all__ = ["ADVERBS", "AM", "GONE", "STATED"]
+__all__ = ["ADVERBS", "AM", "GONE", "HAVING", "STATED"]
 
 ADVERBS = (
     r"((actually|currently|now|still|just|really|also|mostly|originally|mainly|usually|only|sort of|kind of|always|"
@@ -137,6 +137,14 @@ STATED = patterns(
     }
 )  # fmt: skip
 """What is so; ``hobby:verb`` says what one does."""
+
+HAVING = patterns(
+    {
+        relative.name: rf"(i have|i've got) (an?|one|two|three|four|five|six|seven|\d|some) ([\w-]+ )?({relative.nouns})(?P<several>s|ren)?\b"
+        for relative in RELATIVES
+    }
+)
+"""Whom one has, without saying how he is called."""
 
 GONE = patterns(
     {

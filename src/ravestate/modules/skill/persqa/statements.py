@@ -7,11 +7,11 @@ from collections.abc import Collection, Iterable, Iterator
 
 from .patterns import wanted
 from .phrase import values
-from .statement_patterns import ADVERBS, AM, GONE, STATED
+from .statement_patterns import ADVERBS, AM, GONE, HAVING, STATED
 from .topics import NAME, TOPICS, Fact, favourite
 from .words import NO_STUDENT, NOT_DONE, OCCUPATIONS, STATES, VERBS
 
-__all__ = ["gerund", "likings", "statements", "worker"]
+__all__ = ["gerund", "likings", "relative_in", "statements", "worker"]
 
 _I_AM = re.compile(rf"(?<![\w'])(?:{AM}|this is )(?P<wanted>.+)", re.IGNORECASE)
 _A = re.compile(r"(?:an? )(.+)", re.IGNORECASE)
@@ -90,6 +90,17 @@ def _denied(text: str) -> Iterator[Fact]:
             yield from (Fact(fact.topic, fact.values, gone=True) for fact in likings(said))
         elif said or not rest:
             yield Fact(topic, said, gone=True)
+
+
+def relative_in(text: str) -> str:
+    """Somebody whom the speaker says to have without telling a name, as a topic; empty if there is none.
+
+    Example:
+        >>> relative_in("I have two brothers")
+        'brother'
+    """
+    found = ((topic, pattern.search(text)) for topic, pattern in HAVING)
+    return next((topic for topic, at in found if at and not _UNREAL.search(text[: at.start()])), "")
 
 
 def likings(said: Iterable[str]) -> list[Fact]:

@@ -12,7 +12,7 @@ from ravestate.modules import nlp
 from .answers import answer, correction, has_none, refuses
 from .inquiries import EVERYTHING, about_oneself, inquiry, of_whom, to_forget, wants_to_be_forgotten
 from .phrase import plain
-from .statements import statements
+from .statements import relative_in, statements
 from .talk import FORGET, Talk
 from .topics import NAME, TOPICS, Fact
 from .words import VERBS
@@ -27,6 +27,7 @@ Kind = Literal[
     "none",  # he has no hobby
     "unsure",
     "which",  # he said no more than yes
+    "mentioned",  # somebody of his own, whose name he did not tell
     "asked",  # what is known of him
     "strike",  # he wants something of what he told to be forgotten
     "forget",  # he wants to be forgotten
@@ -117,6 +118,8 @@ def understand(
         if heard.question is not None and not side and about_oneself(text, heard.question, heard.triples):
             return Meaning("asked", (Fact("", ()),))
         return Meaning("told" if side else "nothing", tuple(side), topic, leave, aloud=False)
+    if (relative := relative_in(text)) and not known.get(relative):
+        return Meaning("mentioned", topic=relative)
     if talk.correctable:
         put_right = correction(text, talk.correctable, talk.latest, explicit=pending is not None)
         if put_right:
