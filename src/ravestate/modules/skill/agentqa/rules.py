@@ -109,7 +109,7 @@ async def respond(ctx: rs.RuleContext) -> None:
         ctx[verbaliser.intent] = intent(remark.topic, phrases)
 
 
-@module.rule(when=idle.hushed, writes=verbaliser.intent, weight=25.0)  # as above
+@module.rule(when=idle.hushed, writes=verbaliser.intent, weight=20.0)  # before all but such a remark
 async def keep_quiet(ctx: rs.RuleContext) -> None:
     """Say that it will be quiet, which `idle` sees to."""
     ctx[verbaliser.intent] = Intent("hushed", package=__package__)
