@@ -22,6 +22,7 @@ from pathlib import Path
 from benchmarks.bench import Bench
 from benchmarks.figures import Figure, measured
 from benchmarks.peers.wire import serve
+from ravestate.cli.complete import COMPLETE
 
 DECIDE, PROMPT, HOLD = 0.015, 1.5, 500e6
 """Seconds from input to decision, seconds to the first prompt, and bytes."""
@@ -42,7 +43,6 @@ def decide(rounds: int) -> dict[str, list[float]]:
 
     import ravestate as rs
     from ravestate import modules
-    from ravestate.cli.chat import COMPLETE
     from ravestate.engine.trace import Born, Record, Started
     from ravestate.modules import rawio
 
@@ -58,7 +58,7 @@ def decide(rounds: int) -> dict[str, list[float]]:
                 decided.set_result(time.perf_counter())
 
         times: list[float] = []
-        parts = [getattr(modules, name) for name in COMPLETE if name != "conio"]
+        parts = [getattr(modules, name) for name in COMPLETE]
         with tempfile.TemporaryDirectory() as folder:
             os.environ["XDG_DATA_HOME"] = folder
             settings = {"idle": {"bored_after": 3600.0}, "emotion": {"emoji": False}}
