@@ -27,6 +27,9 @@ from ravestate.cli.complete import COMPLETE
 DECIDE, PROMPT, HOLD = 0.015, 1.5, 500e6
 """Seconds from input to decision, seconds to the first prompt, and bytes."""
 
+PATIENCE = 60.0
+"""Seconds until an agent that decides nothing has failed."""
+
 UTTERANCES = (
     "hello", "how are you", "what is your name", "i live in a small house by the sea", "do you like games?",
     "where do you live", "what is the capital of peru", "that is very nice of you", "will it rain today",
@@ -69,7 +72,7 @@ def decide(rounds: int) -> dict[str, list[float]]:
                         decided = asyncio.get_running_loop().create_future()
                         begin = time.perf_counter()
                         context.put(rawio.input, text)
-                        took = await decided - begin
+                        took = await asyncio.wait_for(decided, PATIENCE) - begin
                         if number:
                             times.append(took)
                         context.put(rawio.input, "")  # interrupts the model
