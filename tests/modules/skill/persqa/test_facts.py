@@ -156,6 +156,8 @@ def test_what_nobody_could_know_is_not_made_up(file: Path, question: str) -> Non
         "can I ask you something?",
         "how do I get to Ulm?",
         "where do I find a doctor?",
+        "I'd like to know who won the race",
+        "I wonder what time it is",
     ],
 )
 def test_advice_is_for_others(file: Path, question: str) -> None:

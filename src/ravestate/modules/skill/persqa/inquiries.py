@@ -308,6 +308,7 @@ _OPEN = word_set(
     help stop leave become put turn write spell pronounce reach pay order cook bake fix install learn think forget join owe miss"""
 )
 """What one asks advice about, or the other's opinion."""
+_WRAPS = word_set("know remember recall tell say guess wonder ask")
 _ADVICE = re.compile(
     r"\b(?:can|could|may|might|should|shall|will|would|must|have to|need to|going to|if i|supposed)\b",
     re.IGNORECASE,
@@ -330,8 +331,8 @@ def about_oneself(text: str, question: nlp.QuestionWord, triples: tuple[nlp.Trip
         verb = predicate.removeprefix("not ").split()[0]
         if whose[:1] == ["my"]:
             return True
-        if whose == ["you"] and verb in ("know", "remember", "recall", "tell", "say", "guess"):
-            continue  # do you know what I drink
+        if whose in (["you"], ["i"]) and _WRAPS & set(predicate.split()):
+            continue  # do you know, I wonder
         if whose != ["i"] or question in (nlp.QuestionWord.FORM, nlp.QuestionWord.REASON):
             return False
         if question is nlp.QuestionWord.YES_NO:
