@@ -9,7 +9,7 @@ import pytest
 
 from modules.skill.persqa.conftest import Look
 from modules.skill.persqa.test_scenarios import agent, answers, asked, knower, meant
-from ravestate.modules import ontology, persqa
+from ravestate.modules import interloc, ontology, persqa
 from ravestate.modules.meta.ontology.places import open_memory
 
 pytestmark = pytest.mark.usefixtures("reader")
@@ -177,6 +177,18 @@ def test_what_is_not_known_cannot_be_forgotten(file: Path, what: str) -> None:
         sim.say("my name is ada")
         assert meant(answers(sim, f"forget {what}"), "strike_unknown")
         assert answers(sim, "forget it") == "I see."
+
+
+@pytest.mark.parametrize("text", ["forget where I live", "I don't live there any more", "I live in Bremen"])
+def test_nobody_is_reminded_of_what_is_not_so_any_more(file: Path, text: str) -> None:
+    with agent(file) as sim:
+        sim.say("my name is ada and i live in ulm")
+    with agent(file, topics=[]) as sim:
+        sim.put(interloc.users, {"console": "Ada"})
+        sim.say(text)
+        before = len(sim.said)
+        sim.advance(60.0)
+        assert len(sim.said) == before and sim.failures == []
 
 
 def test_what_was_replaced_is_not_left_behind(file: Path) -> None:

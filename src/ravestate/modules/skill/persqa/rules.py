@@ -44,8 +44,9 @@ async def ask(ctx: rs.RuleContext) -> rs.Resign | None:
     if now.ignored >= settings.ignored:
         return rs.Resign(f"the user left {now.ignored} questions without a word")
     known = known_of(ctx)
-    if now.remembered and not now.reminded:
-        topic = memorable(now.remembered, ctx.random)
+    remembered = {name: had for name, had in now.remembered.items() if had and had == known.get(name)}
+    if remembered and not now.reminded:  # of what still is so
+        topic = memorable(remembered, ctx.random)
         values = now.remembered[topic]
         ctx[talk] = replace(now, reminded=True, question=None).mentioning(topic, values)
         ctx[verbaliser.intent] = stating("remind", topic, values, known)
