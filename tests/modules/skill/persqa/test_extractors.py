@@ -19,7 +19,8 @@ from modules.skill.persqa.sentences import (
     UNCORRECTED,
 )
 from ravestate.modules.skill.persqa.answers import answer, correction, has_none, refuses
-from ravestate.modules.skill.persqa.inquiries import inquiry, wants_to_be_forgotten
+from ravestate.modules.skill.persqa.forgetting import wants_to_be_forgotten
+from ravestate.modules.skill.persqa.inquiries import inquiry
 from ravestate.modules.skill.persqa.phrase import plain
 from ravestate.modules.skill.persqa.statements import statements
 from ravestate.modules.skill.persqa.topics import Fact

@@ -1,4 +1,4 @@
-"""What somebody asks about himself: *do you know my name*, *where do I live*; and whether he wants to be forgotten."""
+"""What somebody asks about himself: *do you know my name*, *where do I live*."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from ravestate.modules import nlp
 
 from .patterns import either, patterns, wanted
 from .phrase import values
-from .statements import gerund, likings, statements
+from .statements import gerund, likings
 from .topics import NAME, RELATIVES, TOPICS, Fact, favourite
 from .wording import among
 from .words import word_set
 
-__all__ = ["EVERYTHING", "about_oneself", "inquiry", "of_whom", "to_forget", "wants_to_be_forgotten"]
+__all__ = ["EVERYTHING", "about_oneself", "inquiry", "of_whom"]
 
 EVERYTHING = "everything"
 """In place of a topic: all that is known."""
@@ -193,27 +193,6 @@ def of_whom(text: str, known: Mapping[str, tuple[str, ...]]) -> str:
     return ""
 
 
-_MINE = r"(about me|of me|me|myself|my (personal )?(data|name|information|info|details|profile|memory)|(the )?(data|information) (about|on|of) me)"
-_FORGET = re.compile(
-    r"(?<![\w'])"
-    + either(rf"""
-        (forget|erase|delete|remove|wipe|clear) (all |everything |anything |whatever )?((that )?(you (know|have|remember|stored|saved)|i told you) )?{_MINE}(?= *($|[.,;!?]|please|now|and|again|completely|entirely|for ?ever|from your))
-        (forget|delete|erase) (all|everything) (that )?(i (have )?(told|said)|i've told)( to)?( you)?
-        (please )?(don't|do not) remember me\b
-    """),
-    re.IGNORECASE,
-)  # fmt: skip
-_ASKED_TO = re.compile(
-    r"((can|could|would|will) you |(want|like) (you )?to )(please |just )*$", re.IGNORECASE
-)
-_OTHERWISE = re.compile(
-    r"((don't|do not|never|won't|didn't|not|will|did|have|would|could) (\w+ )?(you )?(ever )?|"
-    r"\b(i|we|you|they|he|she|people|everybody|everyone|who|to) (will |would |always |might |may |could )*)$",
-    re.IGNORECASE,
-)
-"""Before *forget me*: it is no request."""
-
-
 def inquiry(text: str) -> Fact | None:
     """What somebody asks about himself: a fact without values, or with those that he wants to have confirmed.
 
@@ -251,56 +230,6 @@ def _asked(text: str) -> Fact | None:
 
 def _favourite(words: str) -> str:
     return favourite(words if words.lower().startswith("favo") else f"favourite {words}")
-
-
-def wants_to_be_forgotten(text: str) -> bool:
-    """Whether somebody asks for all that is known of him to be forgotten.
-
-    Example:
-        >>> wants_to_be_forgotten("please forget me"), wants_to_be_forgotten("don't forget me")
-        (True, False)
-    """
-    for match in _FORGET.finditer(text):
-        before = text[: match.start()]
-        if _ASKED_TO.search(before) or not _OTHERWISE.search(before):
-            return True
-    return False
-
-
-_REQUEST = re.compile(
-    r"^\W*(?:(?:please|now|and|ok|okay|just)\W+)*(?:(?:can|could|would|will) you (?:please )?|i want you to )?(?:please |just )?"
-    r"(?:forget|delete|erase|unlearn|don't remember|do not remember) (?:about )?(?:that )?(?P<what>.+)$",
-    re.IGNORECASE,
-)
-_OWN = re.compile(
-    r"(?:(?:what|where|who|when|how old|everything|anything|all) )?(?:i|i'm|my|me)\b", re.IGNORECASE
-)
-
-
-def to_forget(text: str, known: Mapping[str, tuple[str, ...]]) -> list[Fact] | None:
-    """Which facts somebody wants to be forgotten, of all that is known of him; None if he wants nothing of the kind.
-
-    Args:
-        text: As `phrase.plain` makes it.
-        known: Values by topic.
-
-    Example:
-        >>> to_forget("please forget where I live", {"home": ("Ulm",)})
-        [Fact(topic='home', values=(), gone=True)]
-    """
-    request = _REQUEST.match(text)
-    if request is None:
-        return None
-    what = request["what"].strip(" .!?")
-    topics = [
-        topic for topic, values in known.items() if what.casefold() in [value.casefold() for value in values]
-    ]
-    if topics:
-        return [Fact(topic, (what,), gone=True) for topic in topics]
-    found = [Fact(fact.topic, fact.values, gone=True) for fact in statements(what)]
-    if not found and (asked := inquiry(what)):
-        found = [Fact(asked.topic, (), gone=True)]
-    return found if found or _OWN.match(what) else None
 
 
 _OPEN = word_set(

@@ -10,7 +10,8 @@ from typing import Literal
 from ravestate.modules import nlp
 
 from .answers import answer, correction, has_none, refuses
-from .inquiries import EVERYTHING, about_oneself, inquiry, of_whom, to_forget, wants_to_be_forgotten
+from .forgetting import to_forget, wants_to_be_forgotten
+from .inquiries import EVERYTHING, about_oneself, inquiry, of_whom
 from .phrase import plain
 from .statements import relative_in, statements
 from .talk import FORGET, Talk
