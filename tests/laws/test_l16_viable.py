@@ -527,3 +527,17 @@ def test_a_rule_waits_for_what_stands_at_the_end_of_a_long_chain(play: Any) -> N
         sim.emit(links[0])
         sim.advance(5.0)
         assert moments(sim, out) == [(3.0, "end")]
+
+
+def test_patience_does_not_begin_anew_when_a_rival_touches_what_another_gets(play: Any) -> None:
+    m = rs.Module("m")
+    speech, gesture, out = m.signal("speech"), m.signal("gesture"), output(m)
+    writer(m, "fuse", speech & gesture, out)
+    writer(m, "alone", speech, out)
+    with play(m) as sim:
+        for pause in (0.4, 0.4, 0.1):
+            sim.emit(speech)
+            sim.advance(pause)
+        sim.emit(gesture)
+        sim.advance(5.0)
+        assert moments(sim, out) == [(0.9, "fuse"), (1.4, "alone"), (1.8, "alone")]

@@ -175,3 +175,26 @@ def test_after_a_crash_it_resumes_where_it_was() -> None:
         resumed.tracer = [].append
         redo(resumed, live.log[:count])
         assert snapshot(resumed) == picture
+
+
+@pytest.mark.parametrize("trace", [True, False])
+def test_rules_start_in_the_same_order_whether_anybody_looks_on_or_not(trace: bool) -> None:
+    m = rs.Module("m")
+    heard, noted, out, face = m.signal("heard"), m.signal("noted"), m.slot("out", ""), m.slot("face", "")
+
+    @m.rule(when=heard, writes=out, emits=noted, weight=3)
+    async def best(ctx: rs.RuleContext) -> None:
+        ctx.emit(noted)
+
+    @m.rule(when=heard, writes=out, weight=2)
+    async def second(ctx: rs.RuleContext) -> None: ...
+
+    @m.rule(when=noted)
+    async def note(ctx: rs.RuleContext) -> None: ...
+
+    @m.rule(when=heard, writes=face)
+    async def smile(ctx: rs.RuleContext) -> None: ...
+
+    with simulate(m, trace=trace) as sim:
+        sim.emit(heard)
+        assert sim.fired == ["m:best", "m:smile", "m:note"]

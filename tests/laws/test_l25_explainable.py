@@ -290,3 +290,18 @@ def test_the_state_is_plain_data(play: Any) -> None:
         assert state == sim.snapshot()
         for activation in state["activations"]:
             assert {"rule", "state", "holds", "lacks", "waits_for", "until"} <= set(activation)
+
+
+def test_a_snapshot_shows_also_what_has_no_repr(play: Any) -> None:
+    class Odd:
+        def __repr__(self) -> str:
+            raise ValueError("no")
+
+    m = rs.Module("m")
+    odd = m.slot("odd", None)
+    with play(m) as sim:
+        sim.put(odd, {"a": Odd(), "b": {Odd()}})
+        assert sim.snapshot()["slots"]["m:odd"] == {
+            "a": "<Odd without a repr>",
+            "b": ["<Odd without a repr>"],
+        }

@@ -11,6 +11,7 @@ import pytest
 
 import ravestate as rs
 from ravestate.runtime import runner as runner_file
+from ravestate.runtime.workers import SHARE
 from ravestate.testing import simulate
 from runtime.on_loop import on_loop, turns
 
@@ -577,6 +578,46 @@ def test_the_end_waits_for_no_loop_in_the_background() -> None:
     with simulate(ending.module) as sim:
         sim.advance(1)
     assert ending.told == ["farewell", "1.35 s"]
+
+
+def test_the_end_waits_for_who_waits_for_shutdown_to_grow_old_and_for_what_is_detached_from_it() -> None:
+    ending = Ending()
+
+    @ending.rule(rs.shutdown.min_age(0.5), emits=ending.then, detached=True)
+    async def farewell(ctx: rs.RuleContext) -> None:
+        ctx.emit(ending.then)
+
+    @ending.rule(ending.then, background=True)
+    async def speak(ctx: rs.RuleContext) -> None:
+        await ctx.sleep(1)
+        ending.told.append(f"{ctx.now:g} s")
+
+    with simulate(ending.module):
+        pass
+    assert ending.told == ["1.5 s"]
+
+
+@on_loop
+async def test_functions_that_hang_do_not_silence_the_others() -> None:
+    ending = Ending()
+    release = threading.Event()
+
+    @ending.rule(ending.go, timeout=0.01)
+    def hang(ctx: rs.RuleContext) -> None:
+        release.wait(20)
+
+    @ending.rule(ending.then)
+    def speak(ctx: rs.RuleContext) -> None:
+        ending.told.append("spoken")
+
+    async with rs.Context(ending.module) as context:
+        for _ in range(SHARE + 8):
+            context.emit(ending.go)
+        await context.quiet()
+        context.emit(ending.then)
+        await context.quiet()
+    release.set()
+    assert ending.told == ["spoken"]
 
 
 def test_nothing_begins_while_the_last_clean_up(caplog: pytest.LogCaptureFixture) -> None:

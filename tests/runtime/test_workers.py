@@ -1,6 +1,7 @@
 """Worker threads: as many as are busy at once, kept, never waited for at the end."""
 
 import functools
+import os
 import subprocess
 import sys
 import threading
@@ -106,6 +107,53 @@ def test_no_context_takes_more_than_its_share() -> None:
     assert len(threads) <= SHARE + 1
     greedy.close()
     modest.close()
+
+
+def test_what_hangs_and_is_waited_for_no_more_leaves_its_place_to_others() -> None:
+    workers = Workers(Crew())
+    release = threading.Event()
+    done: SimpleQueue[str] = SimpleQueue()
+
+    def hang() -> None:
+        release.wait(LIMIT)
+        done.put("hung")
+
+    hanging = [workers.submit(hang) for _ in range(SHARE + 2)]
+    workers.submit(lambda: done.put("late"))
+    workers.let_go(hanging[-1])  # which has not begun
+    workers.let_go(hanging[0])  # whose place the next one takes
+    workers.let_go(hanging[1])
+    assert done.get(timeout=LIMIT) == "late"
+    finished(workers)
+    release.set()
+    assert [done.get(timeout=LIMIT) for _ in range(SHARE + 1)] == ["hung"] * (SHARE + 1)
+    for _ in range(3 * SHARE):
+        finished(workers)  # the share is as large as before
+    workers.close()
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="the system has no fork")
+def test_a_forked_process_has_threads_of_its_own() -> None:
+    program = """
+import os, threading
+from queue import SimpleQueue
+from ravestate.runtime.workers import Workers
+
+def do(workers):
+    done = SimpleQueue()
+    workers.submit(lambda: done.put(1))
+    return done.get(timeout=20)
+
+do(Workers())
+child = os.fork()
+if child == 0:
+    os._exit(7 * do(Workers()))
+print(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]))
+"""
+    process = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, timeout=60, check=True
+    )
+    assert process.stdout == "7\n"
 
 
 def test_what_has_not_begun_when_a_context_ends_is_not_done() -> None:

@@ -57,12 +57,12 @@ class Refusal:
         return bool(self.names)
 
 
-def ask(engine: Engine, activation: Activation) -> Refusal:
+def ask(engine: Engine, activation: Activation, horizon: Horizon) -> Refusal:
     """Ask every causal group of a ready activation; an empty refusal is consent."""
     refusal = Refusal()
     clause = activation.clause
     rule = clause.rule
-    horizon: Horizon | None = None
+    judged = False
     for group in activation.firm_groups():
         refusal.interests[group] = None
         taken = False
@@ -77,20 +77,18 @@ def ask(engine: Engine, activation: Activation) -> Refusal:
             if member in engine.benches and member is not activation:
                 engine.unfold(member)
         for rival, member in _rivals(engine, activation, group):
-            if horizon is None:
-                horizon = Horizon(engine)
-            horizon.roots.clear()
-            strength = horizon.viable(rival, member, group, rival.rule.slotset)
+            judged = True
+            strength, roots = horizon.judge(rival, member, group)
             if strength == NO:
                 continue
             refusal.names[rival.rule.name] = None
             if strength == FIRM:
-                refusal.blockers.update(dict.fromkeys(horizon.roots))
+                refusal.blockers.update(roots)
             else:
                 refusal.pressed.append((group, rival, member))
             if clause.rule.cooldown or rival.rule.cooldown:
                 refusal.recheck = min(refusal.recheck, _crossing(engine, clause, rival))
-    if horizon is not None:
+    if judged:
         refusal.interests.update(horizon.visited)
         refusal.hopes = horizon.hopes
     return refusal

@@ -13,7 +13,7 @@ from collections.abc import Iterable
 from typing import Any, get_args
 
 from ravestate.engine import events, trace
-from ravestate.engine.activation import NEVER, RUNNING, WAITING, Activation
+from ravestate.engine.activation import GATHERING, NEVER, RUNNING, WAITING, Activation
 from ravestate.engine.deadlines import EXPIRE, PATIENCE, RECHECK, RIPEN, STANDBY, TIMEOUT, WATCH, Entry
 from ravestate.engine.effects import Effect, Ended
 from ravestate.engine.events import Event
@@ -335,6 +335,8 @@ class Engine(Waves):
             self._update(owner)
         elif kind is PATIENCE:
             owner.pressed = NEVER
+            if owner.state is not GATHERING:
+                return  # it has become ready in time
             self._dirty.update(dict.fromkeys(owner.firm_groups()))
             if self._pressed_for_nothing(owner):
                 return

@@ -305,8 +305,6 @@ class Holdings:
 
     def _complete(self, activation: Activation) -> None:
         """It is ready: a writer asks for consent, others just start."""
-        if activation.pressed != NEVER:
-            activation.pressed = NEVER
         activation.step(COMPLETE)
         clause = activation.clause
         if clause.rule.slots and clause.firm_bits:
@@ -402,8 +400,6 @@ class Holdings:
             self.gated.pop(activation, None)
             if activation.ripens != NEVER:
                 activation.ripens = NEVER
-            if activation.pressed != NEVER:
-                activation.pressed = NEVER
         elif before is READY:
             self._asking.pop(activation, None)
         elif before is WAITING:
@@ -414,6 +410,8 @@ class Holdings:
         else:
             activation.deadline = NEVER
             activation.stands_on = activation.groups = ()
+        if activation.pressed != NEVER:
+            activation.pressed = NEVER
         self.benches.pop(activation, None)
         active = self.active[clause.rule.index]
         del active[activation]

@@ -49,7 +49,7 @@ class Horizon:
         hopes: Whether something was found that only a live rule of another group may bring.
     """
 
-    __slots__ = ("_by_rule", "_cuts", "_known", "engine", "hopes", "roots", "visited")
+    __slots__ = ("_by_rule", "_cuts", "_judged", "_known", "engine", "hopes", "roots", "visited")
 
     def __init__(self, engine: Engine) -> None:
         self.engine = engine
@@ -60,6 +60,7 @@ class Horizon:
         self.roots: list[Activation] = []
         self.visited: dict[Group, None] = {}
         self._by_rule: dict[Group, dict[int, list[Activation]]] = {}
+        self._judged: dict[tuple[Clause, Activation | None, Group], tuple[int, dict[Activation, None]]] = {}
 
     def viable(self, clause: Clause, activation: Activation | None, group: Group, slots: Slots) -> int:
         """How firmly a clause, by an activation of it or (None) in stand-by, may still become ready in a group.
@@ -78,6 +79,17 @@ class Horizon:
                 return self._viable(clause, activation, group, slots, frozenset())
             finally:
                 sys.setrecursionlimit(limit)
+
+    def judge(
+        self, clause: Clause, activation: Activation | None, group: Group
+    ) -> tuple[int, dict[Activation, None]]:
+        """How viable a rival is, and on whose progress that depends: the same whoever asks."""
+        known = self._judged.get((clause, activation, group))
+        if known is None:
+            self.roots.clear()
+            strength = self.viable(clause, activation, group, clause.rule.slotset)
+            known = self._judged[clause, activation, group] = strength, dict.fromkeys(self.roots)
+        return known
 
     def _viable(
         self, clause: Clause, activation: Activation | None, group: Group, slots: Slots, path: Path

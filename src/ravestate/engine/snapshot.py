@@ -77,9 +77,19 @@ def plain(value: Any) -> Any:
     if value is None or isinstance(value, (bool, int, float, str)):
         return value
     if isinstance(value, Mapping):
-        return {str(key): plain(item) for key, item in cast("Mapping[Any, Any]", value).items()}
+        return {
+            key if isinstance(key, str) else _shown(key): plain(item)
+            for key, item in cast("Mapping[Any, Any]", value).items()
+        }
     if isinstance(value, (set, frozenset)):
-        value = sorted(cast("set[Any]", value), key=repr)
+        value = sorted(cast("set[Any]", value), key=_shown)
     if isinstance(value, (list, tuple)):
         return [plain(item) for item in cast("list[Any]", value)]
-    return repr(value)
+    return _shown(value)
+
+
+def _shown(value: Any) -> str:
+    try:
+        return repr(value)
+    except Exception:  # foreign code, as a whole
+        return f"<{type(value).__name__} without a repr>"

@@ -41,6 +41,8 @@ class Waves(Slots):
         self._line: list[
             tuple[int, float, int, int, Activation]
         ] = []  # who is asked in this instant, best first
+        self._horizon: Horizon | None = None
+        """What may yet come, as long as nobody has started since it was looked at."""
         self.ran: dict[int, float] = {}
         """When rules with a cooldown ran last."""
         self._activity = policy.slot_of["core:activity"]
@@ -106,6 +108,7 @@ class Waves(Slots):
     def _guarded(self, activation: Activation) -> bool:
         clause = activation.clause
         if clause.guards and not all(self.holds(s, g, clause.rule) for s, g in clause.guards):
+            self._horizon = None
             self._unready(activation)
             self._update(activation)
             return False
@@ -117,6 +120,7 @@ class Waves(Slots):
         That one is asked in the next wave: as long as rules do not wait, none overwrites what another wrote.
         """
         line = self._line
+        self._horizon = None
         for activation in self._asking:
             heapq.heappush(line, (*self._turn(activation), activation))
         self._asking.clear()
@@ -141,9 +145,10 @@ class Waves(Slots):
                 heapq.heappush(line, (*turn, activation))  # it has run meanwhile, and recovers
                 continue
             if written and not rule.readable.isdisjoint(written):
-                heapq.heappush(line, entry)
-                break
-            if self._ask(activation):
+                if self._ask(activation, start=False):
+                    heapq.heappush(line, entry)
+                    break
+            elif self._ask(activation):
                 written.update(rule.slots)
         if self.waiting and not line and not self._acts and not self._free:
             best = stalemate(self, self._refused)
@@ -158,16 +163,19 @@ class Waves(Slots):
         cause = groups[0].id if len(groups) == 1 else min(group.id for group in groups)
         return (cause, *self.order(activation))
 
-    def _ask(self, activation: Activation) -> bool:
-        """Start an activation if it has consent, else let it wait; whether it has started."""
+    def _ask(self, activation: Activation, *, start: bool = True) -> bool:
+        """Start an activation if it has consent, unless it is not to `start` now; else let it wait. Whether it has consent."""
         if not activation.clause.rule.slots:
             free = self._claimed(activation) is None
-            if free:
+            if free and start:
                 self._start(activation)
             return free
-        refusal = ask(self, activation)
+        if self._horizon is None:
+            self._horizon = Horizon(self)
+        refusal = ask(self, activation, self._horizon)
         if not refusal:
-            self._start(activation)
+            if start:
+                self._start(activation)
             return True
         for group, rival, member in refusal.pressed:
             self._press(group, rival, member, activation)
@@ -242,6 +250,9 @@ class Waves(Slots):
     def _start(self, activation: Activation) -> None:
         """It takes its slots in its groups, and its function runs (L17)."""
         activation.step(GRANT)
+        self._horizon = None
+        if activation.pressed != NEVER:
+            activation.pressed = NEVER
         clause = activation.clause
         rule = clause.rule
         if activation.interests:

@@ -117,12 +117,13 @@ class Context:
         await self.stop()
 
     async def stop(self, grace: float = 5.0) -> None:
-        """End in order: ``rs.shutdown`` is raised, what it triggers may finish within `grace` seconds, the rest is
-        cancelled and may clean up. Cancelling this breaks off: nothing is waited for any more."""
+        """End in order: ``rs.shutdown`` is raised, what begins from then on may finish within `grace` seconds, the rest is
+        cancelled and may clean up. A loop that is to hold up nobody is declared ``background=True``. Cancelling this breaks
+        off: nothing is waited for any more."""
         runner = self._running()
         self.ask_to_stop()
         runner.resume()
-        known = set(runner.alive())
+        known = runner.alive()
         runner.receive(Stop())
         try:
             await runner.wait_for_others(known, grace)

@@ -9,22 +9,22 @@ import logging
 import random
 import threading
 from collections import deque
-from collections.abc import Callable, Container, Coroutine, Mapping
+from collections.abc import Callable, Coroutine, Mapping
 from time import perf_counter
 from typing import Any, cast
 
 from ravestate.declare.outcome import Resign, Retire
 from ravestate.declare.rule import Rule
-from ravestate.engine.activation import Activation
+from ravestate.engine.activation import NEVER, Activation
 from ravestate.engine.effects import Cancel, Effect, Ended, Failed, Run, Spiked
 from ravestate.engine.engine import Engine
 from ravestate.engine.events import AddRule, Event, Finish
-from ravestate.errors import EngineError, PlatformError, RavestateError, RuleError
+from ravestate.errors import EngineError, PlatformError, RavestateError, RuleError, RunEnded
 from ravestate.runtime.clock import Clock
 from ravestate.runtime.journal import Taken
 from ravestate.runtime.nest import Nest
 from ravestate.runtime.rule_context import RuleContext
-from ravestate.runtime.workers import Workers
+from ravestate.runtime.workers import Order, Workers
 
 __all__ = ["BLOCKING", "Runner"]
 
@@ -98,6 +98,7 @@ class Runner:
         self._timer_due = 0.0
         self._contexts: dict[int, RuleContext] = {}
         self._nests: dict[int, Nest] = {}
+        self._orders: dict[int, Order] = {}
         self._cleaning: list[asyncio.Task[Any]] = []  # cancelled just now
         self._spare: Nest | None = None
         self._is_async: dict[Rule[Any, Any], bool] = {}
@@ -140,10 +141,15 @@ class Runner:
         Raises:
             DeclarationErrors: The rule does not fit.
         """
-        if threading.get_ident() != self._thread:
-            asyncio.run_coroutine_threadsafe(self._add_rule_late(rule), self.loop).result()
-        else:
+        if threading.get_ident() == self._thread:
             self.receive(AddRule(self.engine.policy.with_rule(rule, self.settings)))
+            return
+        added = asyncio.run_coroutine_threadsafe(self._add_rule_late(rule), self.loop)
+        while not self.closed:
+            with contextlib.suppress(TimeoutError):
+                added.result(1.0)
+                return
+        raise RunEnded(f"rule {rule.name} was not added: the context has ended")
 
     async def _add_rule_late(self, rule: Rule[Any, Any]) -> None:
         self.add_rule(rule)
@@ -334,11 +340,12 @@ class Runner:
             is_async = self._is_async[rule] = _is_async(rule.function)
         if not is_async:
             try:
-                self.workers.submit(functools.partial(self._work, effect.run, rule, ctx))
+                order = self.workers.submit(functools.partial(self._work, effect.run, rule, ctx))
             except RuntimeError as error:
                 self._finish(effect.run, rule, None, error)
             else:
                 self.threads[effect.run] = rule
+                self._orders[effect.run] = order
             return
         nest = self._spare
         if nest is None:
@@ -391,6 +398,7 @@ class Runner:
         self, run: int, rule: Rule[Any, Any], result: Any, exception: BaseException | None
     ) -> None:
         self.threads.pop(run, None)
+        self._orders.pop(run, None)
         self._finish(run, rule, result, exception)
         if self.serial:
             self._schedule()
@@ -432,6 +440,7 @@ class Runner:
             ctx.ended = effect.reason
             del self._contexts[effect.run]
             self.threads.pop(effect.run, None)
+            self.workers.let_go(self._orders.pop(effect.run))
             self.receive(Finish(effect.run, "done", effect.reason))
             return
         ctx.told = effect.reason
@@ -502,21 +511,27 @@ class Runner:
         """Activations that run, or are ready and wait, by their numbers."""
         return {a.id: a for a in (*self.engine.running.values(), *self.engine.waiting)}
 
-    async def wait_for_others(self, known: Container[int], seconds: float) -> None:
-        """Wait, for some seconds at most, until nothing runs or is kept waiting besides what is `known` by its number.
+    async def wait_for_others(self, known: Mapping[int, Activation], seconds: float) -> None:
+        """Wait, for some seconds at most, until nothing runs or is kept waiting besides what is `known` by its number,
+        and nothing waits for ``rs.shutdown`` to grow old enough.
 
-        What is in the background counts only if it does something about ``rs.shutdown``: it may begin again for ever.
+        Rules in the background that were at work before may begin again for ever: they count only if they do something
+        about ``rs.shutdown``.
         """
+        shutdown = self.engine.policy.signal_of["core:shutdown"].index
+        loops = {a.clause.rule.name for a in known.values() if a.clause.rule.background}
+
+        def counts(activation: Activation) -> bool:
+            return activation.clause.rule.name not in loops or any(
+                spike is not None and spike.comes_from("core:shutdown") for spike in activation.spikes
+            )
 
         def done() -> bool:
-            return all(
-                number in known
-                or (
-                    activation.clause.rule.background
-                    and not any(s is not None and s.comes_from("core:shutdown") for s in activation.spikes)
-                )
-                for number, activation in self.alive().items()
-            )
+            if any(
+                holder.ripens != NEVER for s in self.engine.live.get(shutdown, ()) for holder in s.holders
+            ):
+                return False
+            return not any(n not in known and counts(a) for n, a in self.alive().items())
 
         with contextlib.suppress(TimeoutError):
             await asyncio.wait_for(self.until(done), seconds)
@@ -542,6 +557,7 @@ class Runner:
             ctx.ended = "the context has ended"
         self._contexts.clear()
         self.threads.clear()
+        self._orders.clear()
         if self._timer is not None:
             self._timer.cancel()
         if self._spare is not None:

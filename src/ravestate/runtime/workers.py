@@ -10,11 +10,12 @@ from __future__ import annotations
 
 import atexit
 import functools
+import os
 import threading
 from collections import deque
 from collections.abc import Callable
 
-__all__ = ["CREW", "LAST_GRACE", "SHARE", "THREADS", "Crew", "Workers"]
+__all__ = ["CREW", "LAST_GRACE", "SHARE", "THREADS", "Crew", "Order", "Workers"]
 
 Job = Callable[[], None]
 
@@ -35,6 +36,10 @@ class Crew:
     """The threads of the process: made when all others are busy, and kept for a while."""
 
     def __init__(self) -> None:
+        self.begin()
+
+    def begin(self) -> None:
+        """Be without threads."""
         lock = threading.Lock()
         self.change = threading.Condition(lock)
         self.rest = threading.Condition(lock)
@@ -92,12 +97,23 @@ class Crew:
 
 
 CREW = Crew()
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=CREW.begin)  # a forked process has none of the threads
 
 
 @atexit.register
 def _wait_for_work() -> None:
     with CREW.rest:
         CREW.rest.wait_for(lambda: not CREW.at_work, LAST_GRACE)
+
+
+class Order:
+    """A job that somebody waits for; told apart from others by what it is."""
+
+    __slots__ = ("job",)
+
+    def __init__(self, job: Job) -> None:
+        self.job = job
 
 
 class Workers:
@@ -109,24 +125,35 @@ class Workers:
 
     def __init__(self, crew: Crew = CREW) -> None:
         self._crew = crew
-        self._busy = 0
-        self._line: deque[Job] = deque()
+        self._at_work: set[Order] = set()
+        self._line: deque[Order] = deque()
         self._open = True
         with self._crew.change:
             self._crew.contexts += 1
 
-    def submit(self, job: Job) -> None:
+    def submit(self, job: Job) -> Order:
         """Have a job done soon. The job must not raise.
 
         Raises:
             RuntimeError: The system has no more threads.
         """
+        order = Order(job)
         with self._crew.change:
-            if self._busy >= SHARE:
-                self._line.append(job)
+            if len(self._at_work) < SHARE:
+                self._begin(order)
             else:
-                self._crew.take(functools.partial(self._work, job))
-                self._busy += 1
+                self._line.append(order)
+        return order
+
+    def let_go(self, order: Order) -> None:
+        """Nobody waits for a job any more: if it hangs, another has its place."""
+        with self._crew.change:
+            if order in self._line:
+                self._line.remove(order)
+            elif order in self._at_work:
+                self._at_work.remove(order)
+                if self._line:
+                    self._begin(self._line.popleft())
 
     def close(self) -> None:
         """Do nothing more; what is being done goes on. If no other context is there, idle threads end."""
@@ -138,12 +165,20 @@ class Workers:
                 if not self._crew.contexts:
                     self._crew.change.notify_all()
 
-    def _work(self, job: Job | None) -> None:
-        while job is not None:
+    def _begin(self, order: Order) -> None:
+        self._crew.take(functools.partial(self._work, order))
+        self._at_work.add(order)
+
+    def _work(self, order: Order) -> None:
+        following: Order | None = order
+        while following is not None:
+            order, following = following, None
             try:
-                job()
+                order.job()
             finally:
                 with self._crew.change:
-                    job = self._line.popleft() if self._line else None
-                    if job is None:
-                        self._busy -= 1
+                    if order in self._at_work:  # else another has its place already
+                        self._at_work.remove(order)
+                        if self._line:
+                            following = self._line.popleft()
+                            self._at_work.add(following)
