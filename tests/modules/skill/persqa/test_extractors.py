@@ -35,6 +35,20 @@ def test_statements(text: str, told: dict[str, tuple[str, ...]]) -> None:
     assert as_told(statements(plain(text))) == told
 
 
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("i'm ada and i'm a baker", {"name": ("Ada",), "occupation": ("baker",)}),
+        ("my name is ada and i am a baker from ulm", {"name": ("Ada",), "occupation": ("baker",)}),
+        ("i work at siemens as an engineer", {"employer": ("Siemens",), "occupation": ("engineer",)}),
+        ("my friends are tom and ada", {"friend": ("Tom", "Ada")}),
+        ("my friends are nice and funny", {}),
+    ],
+)
+def test_all_that_one_sentence_states(text: str, told: dict[str, tuple[str, ...]]) -> None:
+    assert as_told(statements(plain(text), persons=["Ada"])) == told
+
+
 @pytest.mark.parametrize("text", NOT_STATED)
 def test_no_statements(text: str) -> None:
     assert as_told(statements(plain(text))) == {}

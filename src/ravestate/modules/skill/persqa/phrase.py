@@ -37,7 +37,7 @@ _ENDS: Mapping[Kind, str] = {
     "my|we|you|it|not|is|was|has|have|until|before|after|together|in|near|at|right|these|on|last|recently|ago",
     "activity": "because|since|but|so|when|while|if|that|which|who|though|although|i'm|i am|my friends|in my|every|as a|"
     "more than|very much|a lot|quite often|most of all|as often|on (?:mon|tues|wednes|thurs|fri|satur|sun)days?|at (?:the )?weekends?|on weekends",
-    "work": "and|but|or|at|for|in|with|because|since|so|when|while|if|that|which|who|though|although|i|i'm|my|on|not|by|near",
+    "work": "and|but|or|at|for|from|in|with|because|since|so|when|while|if|that|which|who|though|although|i|i'm|my|on|not|by|near",
     "organisation": "because|since|but|so|when|while|if|that|which|who|though|although|as|in|on|with|for|near|"
     "and (?:i|i'm|my|live|work|have|am|also|it|love|like|we|come|study|play)|i|i'm|my|not|is",
     "subject": "at|in|because|since|but|so|when|while|if|that|which|who|though|although|with|for|i|i'm|my|on|not|"

@@ -13,7 +13,7 @@ from .words import NO_STUDENT, NOT_DONE, OCCUPATIONS, STATES, VERBS
 
 __all__ = ["gerund", "likings", "relative_in", "statements", "worker"]
 
-_I_AM = re.compile(rf"(?<![\w'])(?:{AM}|this is )(?P<wanted>.+)", re.IGNORECASE)
+_I_AM = re.compile(rf"(?<![\w'])(?:{AM}|this is )(?=(?P<wanted>.+))", re.IGNORECASE)
 _A = re.compile(r"(?:an? )(.+)", re.IGNORECASE)
 _NAMED = re.compile(r"\b(?:called|named|names?)\b", re.IGNORECASE)
 _STUDENT = re.compile(r"(?:an? )?((?!an? )(?:[\w-]+ ){1,3}?)student\b", re.IGNORECASE)
@@ -69,8 +69,8 @@ def _stated(text: str, persons: Collection[str], asked: str) -> Iterator[Fact]:
             if topic == "liking":
                 yield from likings(said)
                 break
-            if TOPICS[topic].kind == "people" and not _NAMED.search(match[0]):
-                said = tuple(value for value in said if asked == topic or _is_person(value, text, persons))
+            if TOPICS[topic].kind == "people" and topic != asked and not _NAMED.search(match[0]):
+                said = said if any(_is_person(value, text, persons) for value in said) else ()
             if topic == "occupation" and not form and rest.lower().startswith("student"):
                 said = ("student",)
             if said:
@@ -131,19 +131,15 @@ def _being(text: str, persons: Collection[str], asked: str) -> Iterator[Fact]:
         if student and subject and not NO_STUDENT & set(student[1].lower().split()):
             yield Fact("occupation", ("student",))
             yield Fact("subject", subject)
-            return
+            continue
         if a := _A.match(rest):
             said = values(a[1], TOPICS["occupation"])
             if said and (asked == "occupation" or _heads(said[0])):
                 yield from worker(a[1])
-                return
         elif asked == "occupation" or re.match(r"(?:retired|self-employed)\b", rest, re.IGNORECASE):
-            if facts := worker(rest):
-                yield from facts
-                return
+            yield from worker(rest)
         elif (said := values(rest, TOPICS[NAME])) and (asked == NAME or _is_person(said[0], text, persons)):
             yield Fact(NAME, said)
-            return
 
 
 def worker(text: str) -> list[Fact]:
