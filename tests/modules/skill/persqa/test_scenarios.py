@@ -419,14 +419,20 @@ def test_what_is_said_in_one_breath_is_all_learnt_and_kept(file: Path, look: Loo
 def test_what_takes_long_to_read_is_learnt_all_the_same(
     file: Path, look: Look, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    async def slowly(function: Any, *arguments: Any) -> Any:
-        await asyncio.sleep(30.0)  # of virtual time: a machine that is loading the pipeline
+    loading: list[asyncio.Future[None]] = []
+
+    async def when_loaded(function: Any, *arguments: Any) -> Any:
+        loading.append(asyncio.get_running_loop().create_future())
+        await loading[-1]
         return function(*arguments)
 
-    monkeypatch.setattr("ravestate.modules.meta.nlp.rules.asyncio.to_thread", slowly)
+    monkeypatch.setattr("ravestate.modules.meta.nlp.rules.asyncio.to_thread", when_loaded)
     with simulate(persqa, settings={"ontology": {"path": file}}) as sim:
         at_once(sim, "my name is ada", "i live in ulm")
-        sim.advance(31.0)
+        sim.advance(30.0)
+        for reading in loading:
+            reading.set_result(None)
+        sim.settle()
         assert meant(sim.said[0], "learned_name")
     assert look() == {"Ada": {"lives_in": ["Ulm"]}}
 
