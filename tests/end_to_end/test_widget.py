@@ -4,6 +4,7 @@ import asyncio
 import contextlib
 from collections.abc import AsyncGenerator
 
+import pytest
 from playwright.async_api import expect
 
 from end_to_end.host import host
@@ -86,10 +87,14 @@ async def test_on_a_phone_it_takes_the_whole_screen(stage: Stage) -> None:
 
 
 @on_stage
-async def test_a_site_that_is_not_named_may_not_embed_it(stage: Stage) -> None:
+async def test_a_site_that_is_not_named_may_not_embed_it_and_is_told_why(
+    stage: Stage, caplog: pytest.LogCaptureFixture
+) -> None:
     async with Museum().serve() as museum, stage.serve(host, title="Elske") as served:
         museum.chat = served.address
+        why = f"page of {museum.origin} wanted to show the chat: add it to the setting webio.origins"
         async with stage.open(museum.origin, complaints=True) as page:
-            async with page.expect_console_message(lambda said: "frame-ancestors" in said.text):
+            async with page.expect_console_message(lambda said: why in said.text):
                 await page.get_by_role("button", name="Ask us").click()
             assert served.sessions == []
+        assert [record.getMessage() for record in caplog.records] == [f"a {why}"]

@@ -25,6 +25,9 @@ const STYLE = `
   }
 `;
 
+/** Milliseconds after the frame has loaded within which the chat in it tells that it is there. */
+const PATIENCE = 1000;
+
 const RAVEN =
   "M5 45C4 27 11 9 27 8.500C33.500 8.300 37 11.500 38.800 15.500L47 21.800C43.500 24.600 38.500 25 34.600 24.700C33 28.500 33.800 31 35.500 33.500C32.500 33.200 31.500 32.800 30.300 32C30.300 35.500 31.500 38.500 34.500 41C31 41.300 28.800 40.700 26.800 39.500C26.300 42 26.800 43.500 28 45ZM30.800 14.300A2.100 2.100 0 1 0 30.800 18.500A2.100 2.100 0 1 0 30.800 14.300Z";
 
@@ -59,11 +62,14 @@ function embed(page: URL, options: DOMStringMap): void {
   document.body.append(host);
 
   let frame: HTMLIFrameElement | null = null;
+  let shown = false;
 
   function show(open: boolean): void {
     if (open && frame === null) {
       frame = document.createElement("iframe"); // only now, so that nobody is there who did not ask
       frame.title = options.title ?? "Talk with us";
+      frame.referrerPolicy = "origin"; // so that the server can name this site if it may not show the chat
+      frame.addEventListener("load", () => setTimeout(complain, PATIENCE));
       frame.src =
         page.href + (options.token === undefined ? "" : `#token=${encodeURIComponent(options.token)}`);
       root.append(frame);
@@ -74,9 +80,17 @@ function embed(page: URL, options: DOMStringMap): void {
     else button.focus();
   }
 
+  function complain(): void {
+    if (!shown)
+      console.error(
+        `A page of ${location.origin} wanted to show the chat: add it to the setting webio.origins. (Or there is no agent at ${page.href}.)`,
+      );
+  }
+
   button.addEventListener("click", () => show(frame === null || frame.hidden));
   window.addEventListener("message", (event) => {
-    if (frame !== null && event.source === frame.contentWindow && event.data === "ravestate:close")
-      show(false);
+    if (frame === null || event.source !== frame.contentWindow) return;
+    if (event.data === "ravestate:here") shown = true;
+    if (event.data === "ravestate:close") show(false);
   });
 }

@@ -48,6 +48,7 @@ def test_the_page_and_those_who_may_embed_it_come_in(host: str, origin: str | No
         ("127.0.0.1:8420", "https://evil.example"),
         ("127.0.0.1:8420", "http://127.0.0.1:9999"),
         ("127.0.0.1:8420", "null"),
+        ("127.0.0.1:8420", "http://["),
         ("127.0.0.1:8420", "https://museum.example.evil.example"),
         ("evil.example:8420", "http://evil.example:8420"),  # a name that was made to point here
         ("evil.example", None),
@@ -61,6 +62,31 @@ def test_others_do_not(host: str, origin: str | None) -> None:
     refusal = gate.refusal({"host": host} | ({"origin": origin} if origin else {}))
     assert refusal is not None
     assert "webio.origins" in refusal
+
+
+EMBEDDED = {"host": "127.0.0.1:8420", "sec-fetch-dest": "iframe"}
+
+
+@pytest.mark.parametrize(
+    "referer", ["http://museum.example/", "HTTP://museum.example/a?b", "http://museum.example"]
+)
+def test_a_page_that_may_not_show_the_chat_is_named(referer: str) -> None:
+    assert Gate(Settings()).stranger({**EMBEDDED, "referer": referer}) == "http://museum.example"
+
+
+@pytest.mark.parametrize(
+    "headers",
+    [
+        {**EMBEDDED, "referer": "https://museum.example/"},  # one that may
+        {**EMBEDDED, "referer": "http://127.0.0.1:8420/"},  # its own
+        {**EMBEDDED, "referer": "https://evil.example/", "sec-fetch-dest": "document"},  # a link
+        {**EMBEDDED, "referer": "about:client"},
+        EMBEDDED,
+        {},
+    ],
+)
+def test_who_may_or_does_not_tell_is_no_stranger(headers: dict[str, str]) -> None:
+    assert Gate(Settings(origins=("https://museum.example",))).stranger(headers) is None
 
 
 def test_with_a_token_it_answers_to_any_name_but_not_to_any_page() -> None:

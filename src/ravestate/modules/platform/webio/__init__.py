@@ -24,11 +24,12 @@ if TYPE_CHECKING:
 
 __all__ = ["Settings", "app", "module", "page", "rules", "serve"]
 
-_ORIGIN = re.compile(r"https?://[^\s/?#@'\";,*]+")
+ORIGIN = re.compile(r"https?://[^\s/?#@'\";,*]+")
+"""Which site a page is of."""
 
 
 def _origin(text: str) -> str:
-    if _ORIGIN.fullmatch(text) is None:
+    if ORIGIN.fullmatch(text) is None:
         raise ValueError("write an origin, e.g. https://museum.example")
     return text.lower()
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import logging
 from collections.abc import AsyncGenerator, Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -36,6 +37,11 @@ ENDING = "the agent has been switched off"
 
 CONSOLES = ("conio",)
 """Platforms for one user, of which there would be one in each visitor's context."""
+
+STRANGERS = 100
+"""Sites that the log names at most, each once: anybody could write into it."""
+
+log = logging.getLogger("ravestate.webio")
 
 
 def make_app(agent: Agent, routes: Iterable[BaseRoute] = (), inside: str | None = None) -> Starlette:
@@ -81,6 +87,8 @@ def _settings_of(agent: Agent) -> Settings:
 class Guard:
     """Refuses what the gate refuses, and sends headers with everything that keep scripts and frames in bounds.
 
+    Sites whose pages may not show the chat are named in the log, as it is an empty frame that one sees there.
+
     Args:
         app: What is guarded.
         gate: The checks.
@@ -89,6 +97,7 @@ class Guard:
     def __init__(self, app: ASGIApp, gate: Gate) -> None:
         self._app = app
         self._gate = gate
+        self._strangers: set[str] = set()
         self._headers = {
             "content-security-policy": "; ".join(
                 (
@@ -121,6 +130,8 @@ class Guard:
                 await self._app(scope, receive, send)
             return
 
+        self._name_stranger(self._gate.stranger(Headers(scope=scope)))
+
         async def with_headers(message: Message) -> None:
             if message["type"] == "http.response.start":
                 MutableHeaders(scope=message).update(self._headers)
@@ -128,3 +139,8 @@ class Guard:
 
         answer = self._app if refusal is None else PlainTextResponse(refusal, 403)
         await answer(scope, receive, with_headers)
+
+    def _name_stranger(self, origin: str | None) -> None:
+        if origin is not None and origin not in self._strangers and len(self._strangers) < STRANGERS:
+            self._strangers.add(origin)
+            log.warning("a page of %s wanted to show the chat: add it to the setting webio.origins", origin)

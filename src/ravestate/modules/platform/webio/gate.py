@@ -9,6 +9,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING
 from urllib.parse import urlsplit
 
+from . import ORIGIN
 from .protocol import ProtocolError
 
 if TYPE_CHECKING:
@@ -59,9 +60,27 @@ class Gate:
         if not ours and self._token is None:
             return f"this page is not known as {host!r}: add its origin to the setting webio.origins, or set a token"
         origin = headers.get("origin", "").lower()
-        if origin and urlsplit(origin).netloc != host and origin not in self.origins:
+        if origin and not self._may_show(origin, host):
             return f"{origin!r} may not connect: add it to the setting webio.origins"
         return None
+
+    def stranger(self, headers: Mapping[str, str]) -> str | None:
+        """The origin of a page that wants to show this one in a frame, which the browser will not let it; else None.
+
+        Browsers send what tells it over HTTPS and to this machine; widget.js lets them.
+
+        Args:
+            headers: Those of the request, names in small letters.
+        """
+        if headers.get("sec-fetch-dest") not in ("iframe", "frame"):
+            return None
+        found = ORIGIN.match(headers.get("referer", "").lower())
+        if found is None or self._may_show(found[0], headers.get("host", "").lower()):
+            return None
+        return found[0]
+
+    def _may_show(self, origin: str, host: str) -> bool:
+        return origin.partition("://")[2] == host or origin in self.origins
 
     def admits(self, token: str | None) -> bool:
         """Whether a token is right, or none is needed. It takes as long whichever character is wrong."""
