@@ -9,7 +9,6 @@ from properties.worlds import PREDICATES, Play
 from ravestate.engine.activation import NEVER, State
 from ravestate.engine.consent import ask
 from ravestate.engine.effects import Effect, Ended, Run
-from ravestate.engine.horizon import Horizon
 
 __all__ = ["Exclusion", "bounded", "consistent", "empty", "pressed_in_time", "still", "waits_for_a_reason"]
 
@@ -117,7 +116,7 @@ def waits_for_a_reason(play: Play) -> None:
             assert claimed is not None, f"{waiter} waits, and nobody runs on its spikes"
             moving.add(waiter)
             continue
-        refusal = asked[waiter] = ask(engine, waiter, Horizon(engine))
+        refusal = asked[waiter] = ask(engine, waiter)
         assert refusal, f"{waiter} waits, and no group would refuse consent"
         for group, rival, member in refusal.pressed:
             until = (group.pressed or {}).get(rival.index) if member is None else member.pressed

@@ -57,12 +57,12 @@ class Refusal:
         return bool(self.names)
 
 
-def ask(engine: Engine, activation: Activation, horizon: Horizon) -> Refusal:
+def ask(engine: Engine, activation: Activation) -> Refusal:
     """Ask every causal group of a ready activation; an empty refusal is consent."""
     refusal = Refusal()
     clause = activation.clause
     rule = clause.rule
-    judged = False
+    horizon: Horizon | None = None
     for group in activation.firm_groups():
         refusal.interests[group] = None
         taken = False
@@ -77,7 +77,8 @@ def ask(engine: Engine, activation: Activation, horizon: Horizon) -> Refusal:
             if member in engine.benches and member is not activation:
                 engine.unfold(member)
         for rival, member in _rivals(engine, activation, group):
-            judged = True
+            if horizon is None:
+                horizon = engine.horizon()
             strength, roots = horizon.judge(rival, member, group)
             if strength == NO:
                 continue
@@ -88,7 +89,7 @@ def ask(engine: Engine, activation: Activation, horizon: Horizon) -> Refusal:
                 refusal.pressed.append((group, rival, member))
             if clause.rule.cooldown or rival.rule.cooldown:
                 refusal.recheck = min(refusal.recheck, _crossing(engine, clause, rival))
-    if judged:
+    if horizon is not None:
         refusal.interests.update(horizon.visited)
         refusal.hopes = horizon.hopes
     return refusal

@@ -42,7 +42,6 @@ class Waves(Slots):
             tuple[int, float, int, int, Activation]
         ] = []  # who is asked in this instant, best first
         self._horizon: Horizon | None = None
-        """What may yet come, as long as nobody has started since it was looked at."""
         self.ran: dict[int, float] = {}
         """When rules with a cooldown ran last."""
         self._activity = policy.slot_of["core:activity"]
@@ -58,6 +57,12 @@ class Waves(Slots):
                 if other.state is READY and other.clause.rule.slotset == best.clause.rule.slotset:
                     self._asking.pop(other, None)
                     self._refuse(other, Refusal.by(best, other))
+
+    def horizon(self) -> Horizon:
+        """What may yet come: looked at once, as long as nobody starts."""
+        if self._horizon is None:
+            self._horizon = Horizon(self)
+        return self._horizon
 
     def effective(self, clause: Clause) -> float:
         """The effective utility of a clause now (L9): utility x weight x recovery, in nats."""
@@ -135,6 +140,7 @@ class Waves(Slots):
             for activation in again:
                 heapq.heappush(line, (*self._turn(activation), activation))
         written: set[int] = set()
+        later: list[tuple[int, float, int, int, Activation]] = []
         while line:
             entry = heapq.heappop(line)
             activation = entry[4]
@@ -145,17 +151,26 @@ class Waves(Slots):
                 heapq.heappush(line, (*turn, activation))  # it has run meanwhile, and recovers
                 continue
             if written and not rule.readable.isdisjoint(written):
-                if self._ask(activation, start=False):
-                    heapq.heappush(line, entry)
+                if self._is_taken(activation):
+                    later.append(entry)  # it will have to wait, or will have lost by then
+                elif self._ask(activation, start=False):
+                    later.append(entry)
                     break
             elif self._ask(activation):
                 written.update(rule.slots)
+        for entry in later:
+            heapq.heappush(line, entry)
         if self.waiting and not line and not self._acts and not self._free:
             best = stalemate(self, self._refused)
             if best is None:
                 self._refused.clear()
             else:
                 self._start(best)
+
+    def _is_taken(self, activation: Activation) -> bool:
+        """Whether one of its slots is taken in one of its groups."""
+        slots = activation.clause.rule.slots
+        return any(slot in group.taken for group in activation.firm_groups() if group.taken for slot in slots)
 
     def _turn(self, activation: Activation) -> tuple[int, float, int, int]:
         """When it is asked: what was caused earlier is answered earlier; of one cause the best goes first."""
@@ -170,9 +185,7 @@ class Waves(Slots):
             if free and start:
                 self._start(activation)
             return free
-        if self._horizon is None:
-            self._horizon = Horizon(self)
-        refusal = ask(self, activation, self._horizon)
+        refusal = ask(self, activation)
         if not refusal:
             if start:
                 self._start(activation)
