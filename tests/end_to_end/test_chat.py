@@ -7,6 +7,9 @@ from playwright.async_api import Page, expect
 
 from end_to_end.host import Cue, host, storyteller
 from end_to_end.stage import PHONE, Stage, on_stage
+from ravestate.modules import webio
+from ravestate.modules.platform.webio.server import Server
+from ravestate.runtime.agent import Agent
 
 TOKEN = "open sesame, please"
 
@@ -195,6 +198,17 @@ async def test_on_a_phone_everything_fits(stage: Stage) -> None:
             box = await button.bounding_box()
             assert box is not None
             assert min(box["width"], box["height"]) >= 36
+
+
+@on_stage
+async def test_on_a_phone_the_agents_name_is_not_cut(stage: Stage) -> None:
+    agent = Agent(host, webio, settings={"webio": {"port": 0}})
+    async with Server(agent, inside="board/") as served, stage.open(served.address, **PHONE) as page:
+        await expect(page.get_by_role("link", name="Look inside")).to_be_in_viewport(ratio=1)
+        await expect(page.get_by_role("button", name="Leave")).to_be_in_viewport(ratio=1)
+        await expect(page.get_by_text("here", exact=True)).to_be_attached()  # for those who hear the page
+        name = page.get_by_role("heading", name="Ravestate")
+        assert await name.evaluate("(name) => name.scrollWidth <= name.clientWidth")
 
 
 @on_stage
