@@ -61,13 +61,13 @@ async def remember(ctx: rs.RuleContext) -> rs.Resign | None:
     return None
 
 
-@module.rule(when=rawio.input.changed & nlp.question.changed, reads=(life, idle.asked), emits=asked)
+@module.rule(when=nlp.text.changed & nlp.question.changed, reads=(life, idle.asked), emits=asked)
 async def understand(ctx: rs.RuleContext) -> rs.Resign | None:
     """Notice that the user asks something about the agent, and what."""
     told = ctx[life]
     if told is None:
         return rs.Resign("nobody has said who I am")
-    heard, question = ctx.payload(rawio.input.changed), ctx.payload(nlp.question.changed) is not None
+    heard, question = ctx.payload(nlp.text.changed), ctx.payload(nlp.question.changed) is not None
     route = router_of(told).route
     found: Match | Miss = Miss("")
     if ctx[idle.asked] and returns(heard):

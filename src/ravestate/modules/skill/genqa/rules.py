@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import ravestate as rs
 from ravestate.errors import DeclarationError, DeclarationErrors, PlatformError
-from ravestate.modules import nlp, rawio, verbaliser
+from ravestate.modules import nlp, verbaliser
 from ravestate.modules._room import give_back
 
 from . import Settings, before, found, module
@@ -46,17 +46,17 @@ REMEMBERED = 120.0
 
 # Of every utterance, question or not: a rule that waited for the signal of a question would hold each statement for
 # seconds, and nobody would be bored meanwhile.
-@module.rule(when=rawio.input.changed & nlp.question.changed, reads=before, writes=before, emits=found)
+@module.rule(when=nlp.text.changed & nlp.question.changed, reads=before, writes=before, emits=found)
 def find(ctx: rs.RuleContext) -> rs.Resign | None:
     """Ask the documents."""
     settings: Settings = ctx.settings
     short = ctx.payload(nlp.question.changed) is None
-    if short and not asks_in_short(ctx.payload(rawio.input.changed)):
+    if short and not asks_in_short(ctx.payload(nlp.text.changed)):
         return rs.Resign("it is no question")
     last = ctx[before]
     if last is not None and ctx.now - last.at > REMEMBERED:
         last = None
-    heard = completed(ctx.payload(rawio.input.changed), last)
+    heard = completed(ctx.payload(nlp.text.changed), last)
     if heard is None:
         return rs.Resign("it refers to something that nobody has asked about")
     answer = best_answer(answerer_of(settings), heard, settings)
