@@ -4,6 +4,10 @@ import asyncio
 import json
 import signal
 import socket
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
 
 import httpx
 import pytest
@@ -14,9 +18,11 @@ from modules.platform.webio.served import Served, hello, talk
 from modules.platform.webio.visit import parrot
 from ravestate.modules import webio
 from ravestate.runtime.agent import Agent
+from repo.snippets import blocks_in
 from runtime.on_loop import on_loop
 
 TOKEN = "open sesame, please"
+PROTOCOL = Path(__file__).parents[4] / "docs" / "reference" / "web-protocol.md"
 
 
 @pytest.fixture(scope="module")
@@ -160,3 +166,32 @@ def test_others_may_add_routes_behind_the_same_checks() -> None:
     with TestClient(chat, base_url="http://127.0.0.1") as client:
         assert client.get("/look").text == "0 conversations"
         assert client.get("/look", headers={"host": "evil.example"}).status_code == 403
+
+
+@pytest.fixture
+def ask(tmp_path: Path) -> Callable[[str], subprocess.CompletedProcess[str]]:
+    """The client that the protocol's page shows, sent to a host."""
+
+    def run(host: str) -> subprocess.CompletedProcess[str]:
+        [client] = [block for block in blocks_in(PROTOCOL) if block.title == "ask.py"]
+        script = tmp_path / "ask.py"
+        script.write_text(client.code.replace("127.0.0.1:8420", host), encoding="utf-8")
+        return subprocess.run([sys.executable, script, "hi"], capture_output=True, text=True, timeout=20)
+
+    return run
+
+
+def test_the_documented_client_is_answered(
+    served: Served, ask: Callable[[str], subprocess.CompletedProcess[str]]
+) -> None:
+    assert ask(served.host).stdout in ("hi\n", "Hello!\n")  # the greeting may come in between
+
+
+def test_the_documented_client_says_when_nobody_is_there(
+    ask: Callable[[str], subprocess.CompletedProcess[str]],
+) -> None:
+    with socket.socket() as nobody:  # bound, but it does not listen
+        nobody.bind(("127.0.0.1", 0))
+        done = ask(f"127.0.0.1:{nobody.getsockname()[1]}")
+    assert done.returncode == 1
+    assert done.stderr == "Nobody is there: start an agent, e.g. ravestate run webio hibye\n"
