@@ -115,7 +115,7 @@ test("why not is asked of the newest input, and the answer shows rules that can 
   board.select("m:talk");
   render(WhyNot, { board });
   await Promise.resolve();
-  expect(server.sent.at(-1)).toEqual({ type: "why", rule: "m:talk", spike: 3 });
+  expect(server.sent).toContainEqual({ type: "why", rule: "m:talk", spike: 3 });
   server.tell({
     type: "why",
     rule: "m:talk",
@@ -245,4 +245,29 @@ test("what came of the newest cause is told, and leads to the rules", async () =
   expect(rows()).toEqual(["m:talk waits for m:answer", "m:answer ran, 250 ms"]);
   await fireEvent.click(screen.getByRole("button", { name: /^m:answer/ }));
   expect([board.rule, board.spike]).toEqual(["m:answer", 3]);
+});
+
+test("why not follows the newest cause until one is chosen by hand, and again when that is let go", async () => {
+  const [server, board] = Server.open();
+  const came = (...records: TraceRecord[]) =>
+    server.tell({ type: "records", records, missed: 0, behind: 0, now: 2, paused: false });
+  const asked = () => server.sent.filter(({ type }) => type === "why").map(({ spike }) => spike);
+  board.select("m:talk");
+  came(input(3, 1, "1"));
+  came(input(4, 2, "2"));
+  came();
+  expect(asked()).toEqual([3, 4]);
+  board.point(3);
+  came(input(5, 3, "3"));
+  expect(asked()).toEqual([3, 4, 3]);
+  render(WhyNot, { board });
+  await fireEvent.click(screen.getByRole("button", { name: "Newest" }));
+  expect(asked()).toEqual([3, 4, 3, 5]);
+});
+
+test("what is raised by hand is a cause, although rules raise it as well", () => {
+  const [server, board] = Server.open();
+  const born = { ...input(3, 1, '"Hugo"'), signal: "m:named" } as TraceRecord; // no input of the policy
+  server.tell({ type: "records", records: [born], missed: 0, behind: 0, now: 2, paused: false });
+  expect(board.causes.map((spike) => spike.signal)).toEqual(["m:named"]);
 });

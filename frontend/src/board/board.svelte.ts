@@ -48,7 +48,7 @@ export class Board {
   });
   #causes = $derived.by(() => {
     void this.version;
-    const inputs = this.trace.inputs(RECENT, this.inputs);
+    const inputs = this.trace.inputs(RECENT);
     const pointed = this.spike === null ? undefined : this.trace.spike(this.spike);
     return pointed === undefined || inputs.some((spike) => spike.id === pointed.id)
       ? inputs
@@ -57,9 +57,7 @@ export class Board {
   view = new View();
   follows = $state(true);
   trace = new Trace();
-  /** The signals that may come from outside. */
-  inputs: ReadonlySet<string> = new Set();
-
+  #asked: number | null = null; // the spike that "why not" was asked of last
   #address: Address;
   #link: Link;
   #now = 0;
@@ -123,9 +121,14 @@ export class Board {
     this.explain();
   }
 
-  /** Ask about the cause of a spike from now on. */
+  /** Ask about the cause of a spike from now on; without one, about whichever is the newest. */
   point(spike: number | null): void {
     this.spike = spike;
+    this.#ask();
+  }
+
+  /** Ask again, of what has happened since. */
+  again(): void {
     this.#ask();
   }
 
@@ -165,14 +168,20 @@ export class Board {
     return this.#causes;
   }
 
+  /** What is asked about: the spike that was pointed at, or else the newest cause. */
+  get cause(): Spike | undefined {
+    return this.#causes.find((spike) => spike.id === this.spike) ?? this.#causes[0];
+  }
+
   value(slot: string): Shown | undefined {
     return this.trace.slots.get(slot)?.shown;
   }
 
   #ask(): void {
     this.why = null;
-    if (this.rule === null || this.spike === null) return;
-    this.asking = this.#link.send({ type: "why", rule: this.rule, spike: this.spike });
+    this.#asked = this.cause?.id ?? null;
+    if (this.rule === null || this.#asked === null) return;
+    this.asking = this.#link.send({ type: "why", rule: this.rule, spike: this.#asked });
   }
 
   take(frame: ServerFrame): void {
@@ -219,7 +228,7 @@ export class Board {
         this.conversations = frame.conversations;
         break;
       case "why":
-        if (frame.rule === this.rule && frame.spike === this.spike) {
+        if (frame.rule === this.rule && frame.spike === this.#asked) {
           this.why = frame;
           this.asking = false;
         }
@@ -239,15 +248,11 @@ export class Board {
         break;
     }
     this.version++;
+    if (frame.type === "records" && this.behind === 0 && this.cause?.id !== this.#asked) this.#ask();
   }
 
   #know(policy: Policy): void {
     this.policy = policy;
-    this.inputs = new Set(
-      policy.signals
-        .filter((signal) => signal.input && signal.module !== "core")
-        .map((signal) => signal.name),
-    );
   }
 }
 

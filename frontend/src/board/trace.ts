@@ -147,11 +147,12 @@ export class Trace {
   }
 
   /** What came from outside, the newest first: what one may ask "why not" about. */
-  inputs(most: number, inputs: ReadonlySet<string>): Spike[] {
+  inputs(most: number): Spike[] {
     const found: Spike[] = [];
     for (let i = this.spikes.length - 1; i >= 0 && found.length < most; i--) {
       const spike = this.spikes[i] as Spike;
-      if (spike.parents.length === 0 && spike.rule === "" && inputs.has(spike.signal)) found.push(spike);
+      if (spike.parents.length === 0 && spike.rule === "" && !spike.signal.startsWith("core:"))
+        found.push(spike);
     }
     return found;
   }
