@@ -96,6 +96,8 @@ def test_a_recorded_trace_is_served_without_an_agent(tmp_path: Path) -> None:
     try:
         board = command.address("board")
         assert httpx.get(board).status_code == 200
+        there = httpx.get(board.removesuffix("board/"), follow_redirects=True)
+        assert str(there.url) == board  # there is nobody to talk with
         sent = httpx.post(f"{board}recordings", content=(tmp_path / "trace.json").read_bytes())
         assert sent.status_code == 201
         assert sent.json()["recording"]

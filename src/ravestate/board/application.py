@@ -84,7 +84,11 @@ def routes(
     async def redirect(request: Request) -> Response:
         return RedirectResponse(request.url.path + "/", 308)
 
+    async def look(request: Request) -> Response:
+        return RedirectResponse(INSIDE, 307)
+
     return [
+        *([] if recording is None else [Route("/", look)]),  # there is nobody to talk with
         Route("/board", redirect),
         Mount(
             "/board",
