@@ -1,7 +1,6 @@
 """Worker threads: as many as are busy at once, kept, never waited for at the end."""
 
 import functools
-import os
 import subprocess
 import sys
 import threading
@@ -132,7 +131,6 @@ def test_what_hangs_and_is_waited_for_no_more_leaves_its_place_to_others() -> No
     workers.close()
 
 
-@pytest.mark.skipif(not hasattr(os, "fork"), reason="the system has no fork")
 def test_a_forked_process_has_threads_of_its_own() -> None:
     program = """
 import os, threading

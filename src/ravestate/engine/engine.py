@@ -17,6 +17,7 @@ from ravestate.engine.activation import GATHERING, NEVER, RUNNING, WAITING, Acti
 from ravestate.engine.deadlines import EXPIRE, PATIENCE, RECHECK, RIPEN, STANDBY, TIMEOUT, WATCH, Entry
 from ravestate.engine.effects import Effect, Ended
 from ravestate.engine.events import Event
+from ravestate.engine.foreign import said
 from ravestate.engine.group import Group
 from ravestate.engine.horizon import FIRM, Horizon
 from ravestate.engine.slots import ABSENT, equal
@@ -235,7 +236,7 @@ class Engine(Waves):
             self._relinquish(run, spikes)
             self._substitute(run)
         if self.tracer is not None:
-            text = reason or (_said(exception) if exception is not None else "")
+            text = reason or (said(exception) if exception is not None else "")
             self.tracer(trace.Settled(self.now, run.id, rule.name, outcome, text, fired))
         if self.report_ends:
             self._out.append(Ended(run.id, rule.name, outcome, fired))
@@ -369,13 +370,6 @@ class Engine(Waves):
 def _roots(run: Activation) -> list[Group]:
     """The groups of a run as they are now."""
     return list(dict.fromkeys(group.root() for group in run.groups))
-
-
-def _said(exception: BaseException) -> str:
-    try:
-        return str(exception)
-    except Exception:  # foreign code, as a whole
-        return type(exception).__name__
 
 
 def _overdue(rule: RulePlan) -> str:

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, cast
 
 from ravestate.engine.explain import explain
+from ravestate.engine.foreign import shown
 
 if TYPE_CHECKING:
     from ravestate.engine.engine import Engine
@@ -78,18 +79,11 @@ def plain(value: Any) -> Any:
         return value
     if isinstance(value, Mapping):
         return {
-            key if isinstance(key, str) else _shown(key): plain(item)
+            key if isinstance(key, str) else shown(key): plain(item)
             for key, item in cast("Mapping[Any, Any]", value).items()
         }
     if isinstance(value, (set, frozenset)):
-        value = sorted(cast("set[Any]", value), key=_shown)
+        value = sorted(cast("set[Any]", value), key=shown)
     if isinstance(value, (list, tuple)):
         return [plain(item) for item in cast("list[Any]", value)]
-    return _shown(value)
-
-
-def _shown(value: Any) -> str:
-    try:
-        return repr(value)
-    except Exception:  # foreign code, as a whole
-        return f"<{type(value).__name__} without a repr>"
+    return shown(value)

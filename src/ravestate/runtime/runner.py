@@ -19,6 +19,7 @@ from ravestate.engine.activation import NEVER, Activation
 from ravestate.engine.effects import Cancel, Effect, Ended, Failed, Run, Spiked
 from ravestate.engine.engine import Engine
 from ravestate.engine.events import AddRule, Event, Finish
+from ravestate.engine.foreign import said, shown
 from ravestate.errors import EngineError, PlatformError, RavestateError, RuleError, RunEnded
 from ravestate.runtime.clock import Clock
 from ravestate.runtime.journal import Taken
@@ -307,7 +308,7 @@ class Runner:
             log.error(
                 "rule %s failed: %s",
                 effect.rule,
-                _said(effect.exception),
+                said(effect.exception),
                 exc_info=None if told else effect.exception,
             )
 
@@ -598,16 +599,6 @@ def _nonsense(rule: Rule[Any, Any], result: Any) -> RuleError:
     )
 
 
-def _said(exception: BaseException) -> str:
-    try:
-        return str(exception)
-    except Exception:  # foreign code, as a whole
-        return _short(exception)
-
-
 def _short(value: Any) -> str:
-    try:
-        text = repr(value)
-    except Exception:  # foreign code, as a whole
-        text = f"<{type(value).__name__} without a repr>"
+    text = shown(value)
     return text if len(text) <= 60 else text[:57] + "..."

@@ -24,7 +24,7 @@ _before: tuple[float, tuple[int, int, int]] = (0.0, (0, 0, 0))
 @contextlib.contextmanager
 def at_pace() -> Generator[None]:
     """Within, the interpreter is set for short answers to many. It is as before once the last has left."""
-    global _users, _before
+    global _users, _before  # the interpreter has one of each, whoever serves
     if not _users:
         _before = sys.getswitchinterval(), gc.get_threshold()
         sys.setswitchinterval(SWITCH)
