@@ -9,7 +9,7 @@ afterEach(cleanup);
 
 test("Enter says it, Shift-Enter begins a line, and while a character is composed it does neither", async () => {
   const onsay = vi.fn();
-  render(Composer, { agent: "Elske", closed: false, onsay });
+  render(Composer, { agent: "Elske", closed: false, onwrite: vi.fn(), onsay });
   const field = screen.getByLabelText("What you say to Elske");
   await fireEvent.input(field, { target: { value: " hello " } });
   await fireEvent.keyDown(field, { key: "Enter", shiftKey: true });
@@ -20,9 +20,23 @@ test("Enter says it, Shift-Enter begins a line, and while a character is compose
   expect(field).toHaveProperty("value", "");
 });
 
+test("it tells that something is being written, but not of an empty field", async () => {
+  const onwrite = vi.fn();
+  render(Composer, { agent: "Elske", closed: false, onwrite, onsay: vi.fn() });
+  const field = screen.getByLabelText("What you say to Elske");
+  await fireEvent.keyDown(field, { key: "ArrowLeft" });
+  await fireEvent.input(field, { target: { value: " " } });
+  expect(onwrite).not.toHaveBeenCalled();
+  await fireEvent.input(field, { target: { value: " h" } });
+  expect(onwrite).toHaveBeenCalledOnce();
+  await fireEvent.input(field, { target: { value: "" } });
+  await fireEvent.keyDown(field, { key: "Enter" });
+  expect(onwrite).toHaveBeenCalledOnce();
+});
+
 test("in Safari the Enter that ends a composition says nothing", async () => {
   const onsay = vi.fn();
-  render(Composer, { agent: "Elske", closed: false, onsay });
+  render(Composer, { agent: "Elske", closed: false, onwrite: vi.fn(), onsay });
   const field = screen.getByLabelText("What you say to Elske");
   await fireEvent.input(field, { target: { value: "東京" } });
   await fireEvent.keyDown(field, { key: "Enter", keyCode: 229 });
@@ -31,7 +45,7 @@ test("in Safari the Enter that ends a composition says nothing", async () => {
 
 test("what is too long is neither cut nor said, and one is told why", async () => {
   const onsay = vi.fn();
-  render(Composer, { agent: "Elske", closed: false, onsay });
+  render(Composer, { agent: "Elske", closed: false, onwrite: vi.fn(), onsay });
   const field = screen.getByLabelText("What you say to Elske");
   const text = "x".repeat(10_001);
   await fireEvent.input(field, { target: { value: text } });
@@ -48,7 +62,7 @@ test("what is too long is neither cut nor said, and one is told why", async () =
 
 test("nothing is not said", async () => {
   const onsay = vi.fn();
-  render(Composer, { agent: "Elske", closed: false, onsay });
+  render(Composer, { agent: "Elske", closed: false, onwrite: vi.fn(), onsay });
   await fireEvent.keyDown(screen.getByLabelText("What you say to Elske"), { key: "Enter" });
   expect(onsay).not.toHaveBeenCalled();
   expect(screen.getByRole("button", { name: "Send" })).toHaveProperty("disabled", true);

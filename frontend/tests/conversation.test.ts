@@ -202,3 +202,40 @@ test("what was said before a reload is told apart from what comes after it", () 
   TestSocket.newest.welcome("s", true, 3); // one was missed, and is news
   expect(conversation.recalling).toBe(false);
 });
+
+test("that something is being written is told now and then, and again after it was said", () => {
+  TestSocket.newest.welcome("s");
+  const kinds = () => TestSocket.newest.sent.slice(1).map((frame) => frame.type);
+  for (let key = 0; key < 41; key += 1) {
+    conversation.write(); // ten keys a second
+    vi.advanceTimersByTime(100);
+  }
+  expect(kinds()).toEqual(["writing", "writing", "writing"]);
+  conversation.say("hello");
+  conversation.write();
+  expect(kinds().slice(3)).toEqual(["say", "writing"]);
+});
+
+test("what is being written while nobody is reached is told once somebody is", () => {
+  TestSocket.newest.welcome("s");
+  TestSocket.newest.lose();
+  conversation.write();
+  vi.advanceTimersByTime(1000);
+  TestSocket.newest.welcome("s", true);
+  conversation.write();
+  expect(TestSocket.newest.sent.map((frame) => frame.type)).toEqual(["hello", "writing"]);
+});
+
+test("a server that does not know of writing is not told of it", () => {
+  TestSocket.newest.open();
+  TestSocket.newest.tell({ type: "welcome", v: 1, session: "s", resumed: false, first: 1, agent: "Elske" });
+  conversation.write();
+  expect(TestSocket.newest.sent.map((frame) => frame.type)).toEqual(["hello"]);
+});
+
+test("an agent that is called otherwise from now on is", () => {
+  TestSocket.newest.welcome("s");
+  expect(conversation.agent).toBe("Elske");
+  TestSocket.newest.tell({ type: "renamed", agent: "Robin" });
+  expect(conversation.agent).toBe("Robin");
+});

@@ -17,6 +17,7 @@ test.each([
   '{"type":"new in version 2"}',
   '{"type":"message","n":"1","from":"agent","text":"Hi","time":5}',
   '{"type":"typing"}',
+  '{"type":"renamed"}',
 ])("what is no frame is left aside: %s", (text) => {
   expect(parse(text)).toBeNull();
 });

@@ -45,7 +45,7 @@ export class TestSocket implements Socket {
 
   welcome(session: string, resumed = false, last = 0): void {
     this.open();
-    this.tell({ type: "welcome", v: 1, session, resumed, first: 1, agent: "Elske", last });
+    this.tell({ type: "welcome", v: 1, session, resumed, first: 1, agent: "Elske", last, writing: true });
   }
 
   lose(code = 1006): void {

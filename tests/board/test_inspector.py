@@ -333,7 +333,7 @@ async def test_the_end_of_a_conversation_is_told() -> None:
         await visit.hello()
         await look.begin(session=visit.session)
         visit.tell("bye")
-        assert (await look.answer("ended"))["text"] == "you left"
+        assert (await look.answer("ended"))["text"] == "the visitor left"
         await look.next()
         assert look.closed == 1000
 

@@ -23,6 +23,24 @@ async def repeat(ctx: rs.RuleContext) -> None:
     ctx[rawio.output] = f"You said: {ctx.payload(rawio.input.changed)}"
 
 
+watcher = rs.Module("watcher", requires=(rawio,))
+
+
+@watcher.rule(when=rawio.typing, writes=rawio.output)
+async def notice(ctx: rs.RuleContext) -> None:
+    ctx[rawio.output] = "You are writing."
+
+
+namesake = rs.Module("namesake", requires=(rawio, interloc))
+
+
+@namesake.rule(
+    when=rawio.input.changed.where(lambda text: text.startswith("I call you ")), writes=interloc.agent
+)
+async def be_called(ctx: rs.RuleContext) -> None:
+    ctx[interloc.agent] = ctx.payload(rawio.input.changed).removeprefix("I call you ")
+
+
 storyteller = rs.Module("storyteller", requires=(rawio,))
 
 

@@ -5,7 +5,7 @@ from typing import Any
 
 from playwright.async_api import Page, expect
 
-from end_to_end.host import Cue, host, storyteller
+from end_to_end.host import Cue, host, namesake, storyteller, watcher
 from end_to_end.stage import PHONE, Stage, on_stage
 from ravestate.modules import webio
 from ravestate.modules.platform.webio.server import Server
@@ -47,6 +47,30 @@ async def test_a_conversation(stage: Stage) -> None:
         await say(page, "It is quiet here. 🙂")
         await said(page, "Good evening.", "> It is quiet here. 🙂", "You said: It is quiet here. 🙂")
         await expect(page.get_by_label("What you say to Elske")).to_have_value("")
+
+
+@on_stage
+async def test_the_agent_knows_that_one_is_writing_but_not_from_each_key(stage: Stage) -> None:
+    async with stage.serve(host, watcher, title="Elske") as served, stage.open(served.address) as page:
+        await said(page, "Good evening.")
+        text = "It is quiet here, and yet I hear the raven."
+        await page.get_by_label("What you say to Elske").press_sequentially(text)
+        await page.keyboard.press("Enter")
+        await expect(log(page)).to_contain_text(f"You said: {text}")
+        told = await log(page).get_by_text("You are writing.").count()
+        assert 1 <= told < len(text) / 4  # once in two seconds
+
+
+@on_stage
+async def test_the_page_is_called_as_the_agent_is(stage: Stage) -> None:
+    async with stage.serve(host, namesake) as served, stage.open(served.address) as page:
+        await expect(page).to_have_title("Ravestate")
+        await say(page, "I call you Robin")
+        await expect(page).to_have_title("Robin")
+        await expect(page.get_by_role("heading", level=1)).to_have_text("Robin")
+        await expect(page.get_by_label("What you say to Robin")).to_be_focused()
+        await page.reload()
+        await expect(page).to_have_title("Robin")
 
 
 @on_stage

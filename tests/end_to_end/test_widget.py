@@ -7,7 +7,7 @@ from collections.abc import AsyncGenerator
 import pytest
 from playwright.async_api import expect
 
-from end_to_end.host import host
+from end_to_end.host import host, watcher
 from end_to_end.stage import PHONE, Stage, on_stage
 
 PAGE = """<!doctype html><html lang="en"><title>A museum</title><meta name="viewport" content="width=device-width">
@@ -69,6 +69,20 @@ async def test_it_opens_the_chat_on_another_site_and_closes_it(stage: Stage) -> 
             await expect(chat.get_by_text("You said: hello")).to_be_visible()
             await chat.get_by_role("button", name="Close").click()
             await expect(field).to_be_hidden()
+
+
+@on_stage
+async def test_on_another_site_too_the_agent_knows_that_one_is_writing(stage: Stage) -> None:
+    async with (
+        Museum().serve() as museum,
+        stage.serve(watcher, title="Elske", origins=(museum.origin,)) as served,
+    ):
+        museum.chat = served.address
+        async with stage.open(museum.origin) as page:
+            await page.get_by_role("button", name="Ask us").click()
+            chat = page.frame_locator("iframe[title='Ask us']")
+            await chat.get_by_label("What you say to Elske").press("H")
+            await expect(chat.get_by_text("You are writing.")).to_be_visible()
 
 
 @on_stage

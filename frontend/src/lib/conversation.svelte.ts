@@ -14,6 +14,9 @@ export interface Line {
   refused?: boolean;
 }
 
+/** Milliseconds in which the server is told at most once that something is being written. */
+const WRITING = 2000;
+
 /** A conversation as a window shows it: what was said, what is being said, and how the connection is. */
 export class Conversation {
   lines: Line[] = $state([]);
@@ -36,6 +39,8 @@ export class Conversation {
   #recalled = 0;
   #anew = false;
   #epoch = 0;
+  #listens = false; // the server wants to know when something is being written
+  #told = Number.NEGATIVE_INFINITY; // when it was told so
   #connection: Connection;
 
   constructor(options: Pick<Options, "open" | "backoff"> = {}) {
@@ -73,10 +78,18 @@ export class Conversation {
     this.#connection.nudge();
   }
 
+  /** Something is being written: tell the server so, now and then. */
+  write(): void {
+    const now = performance.now();
+    if (!this.#listens || now - this.#told < WRITING) return;
+    if (this.#connection.send({ type: "writing" })) this.#told = now;
+  }
+
   /** Say something; it arrives once, also if the connection is lost meanwhile. */
   say(text: string): void {
     const say: Say = { type: "say", id: crypto.getRandomValues(new Uint32Array(3)).join("-"), text };
     this.trouble = "";
+    this.#told = Number.NEGATIVE_INFINITY; // what is written next is news
     this.lines.push({ key: say.id, from: "user", text });
     this.#outbox.push(say);
     this.#keep({ outbox: this.#outbox });
@@ -105,6 +118,7 @@ export class Conversation {
   #take(frame: ServerFrame): void {
     if (frame.type === "welcome") {
       this.agent = frame.agent;
+      this.#listens = frame.writing === true;
       this.trouble = "";
       if (!frame.resumed) {
         this.#anew = this.lines.some((line) => line.time !== undefined);
@@ -117,7 +131,8 @@ export class Conversation {
       this.inside = frame.inside === undefined ? "" : this.#linkInside(frame.inside);
       this.partial = "";
       for (const say of this.#outbox) this.#connection.send(say); // what was heard already is not heard again
-    } else if (frame.type === "message") this.#hear(frame);
+    } else if (frame.type === "renamed") this.agent = frame.agent;
+    else if (frame.type === "message") this.#hear(frame);
     else if (frame.type === "piece") this.partial = this.partial.slice(0, frame.at) + frame.text;
     else if (frame.type === "typing") this.typing = frame.on;
     else if (frame.type === "error") {

@@ -5,6 +5,7 @@ export const VERSION = 1;
 export type ClientFrame =
   | { type: "hello"; v: number; session?: string; last?: number; token?: string }
   | Say
+  | { type: "writing" }
   | { type: "bye" }
   | { type: "ping" };
 
@@ -34,10 +35,13 @@ export interface Welcome {
   inside?: string;
   /** The number of the newest message. */
   last?: number;
+  /** Whether the server takes `writing`. */
+  writing?: boolean;
 }
 
 export type ServerFrame =
   | Welcome
+  | { type: "renamed"; agent: string }
   | Message
   | { type: "piece"; at: number; text: string }
   | { type: "typing"; on: boolean }
@@ -55,6 +59,7 @@ export const LONGEST = 10_000;
 
 const SHAPES: Record<ServerFrame["type"], Shape> = {
   welcome: { v: "number", session: "string", resumed: "boolean", first: "number", agent: "string" },
+  renamed: { agent: "string" },
   message: { n: "number", from: "string", text: "string", time: "number" },
   piece: { at: "number", text: "string" },
   typing: { on: "boolean" },

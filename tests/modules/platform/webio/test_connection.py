@@ -118,6 +118,29 @@ async def test_who_sends_too_much_has_to_wait_and_loses_nothing() -> None:
 
 
 @in_virtual_time
+async def test_what_was_written_need_not_wait_because_it_was_long_in_the_writing() -> None:
+    async with page() as app, Visit(app) as visit:
+        await visit.hello()
+        for number in range(connection.BURST):
+            visit.tell("writing")
+            visit.say(f"{number}", id=f"{number}")
+        await visit.messages(2 * connection.BURST + 1)
+        assert asyncio.get_running_loop().time() == 0.0
+
+
+@in_virtual_time
+async def test_who_tells_all_the_time_of_writing_has_to_wait_too() -> None:
+    async with page() as app, Visit(app) as visit:
+        await visit.hello()
+        await visit.messages(1)
+        for _ in range(100):
+            visit.tell("writing")
+        visit.tell("ping")
+        assert (await visit.next())["type"] == "pong"
+        assert asyncio.get_running_loop().time() == pytest.approx(80 / connection.RATE)
+
+
+@in_virtual_time
 async def test_who_asks_and_does_not_read_is_dropped() -> None:
     async with page() as app, Visit(app) as visit:
         await visit.hello()
@@ -215,6 +238,7 @@ def test_frames_on_the_wire_are_what_the_reference_shows() -> None:
                 "first": 1,
                 "agent": "Elske",
                 "last": 0,
+                "writing": True,
             }
             hello = await visit.next()
             visit.say("hi", id="a1")

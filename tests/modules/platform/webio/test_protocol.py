@@ -21,9 +21,11 @@ from ravestate.modules.platform.webio.protocol import (
     Ping,
     Pong,
     ProtocolError,
+    Renamed,
     Say,
     Typing,
     Welcome,
+    Writing,
     parse,
     serialise,
 )
@@ -36,11 +38,15 @@ names = st.text(st.characters(categories=("L", "N")), min_size=1, max_size=80)
 client_frames = st.one_of(
     st.builds(Hello, st.just(1), st.none() | keys, numbers, st.none() | texts, st.none() | names),
     st.builds(Say, keys, texts),
+    st.just(Writing()),
     st.just(Bye()),
     st.just(Ping()),
 )
 server_frames = st.one_of(
-    st.builds(Welcome, st.just(1), keys, st.booleans(), numbers, texts),
+    st.builds(
+        Welcome, st.just(1), keys, st.booleans(), numbers, texts, st.none() | texts, numbers, st.booleans()
+    ),
+    st.builds(Renamed, texts),
     st.builds(Message, numbers, st.sampled_from(("user", "agent")), texts, numbers, st.none() | keys),
     st.builds(Piece, numbers, texts),
     st.builds(Typing, st.booleans()),
@@ -107,9 +113,9 @@ def test_what_parsers_stumble_over(text: str) -> None:
         ("hello", 'not JSON: \'hello\'; a frame is an object: {"type": "hello", "v": 1}'),
         (b"{}", "a frame is a text message, not a binary one"),
         ("[1]", '\'[1]\' is no object: write {"type": "hello", "v": 1}'),
-        ("{}", "\"type\": 'None' is none of hello, say, bye, ping"),
-        ('{"type": "hallo"}', "'hallo' is none of hello, say, bye, ping; did you mean 'hello'?"),
-        ('{"type": ["say"]}', "is none of hello, say, bye, ping"),
+        ("{}", "\"type\": 'None' is none of hello, say, writing, bye, ping"),
+        ('{"type": "hallo"}', "'hallo' is none of hello, say, writing, bye, ping; did you mean 'hello'?"),
+        ('{"type": ["say"]}', "is none of hello, say, writing, bye, ping"),
         ('{"type": "hello"}', 'hello lacks "v": the version, 1'),
         ('{"type": "hello", "v": true}', "hello: \"v\": 'True' is not the version, 1"),
         ('{"type": "hello", "v": 1, "last": -1}', "hello: \"last\": '-1' is not a whole number from 0 on"),

@@ -6,7 +6,7 @@ import logging
 import pytest
 
 import ravestate as rs
-from modules.platform.webio.visit import Visit, in_virtual_time, page, parrot
+from modules.platform.webio.visit import Visit, in_virtual_time, page, parrot, past
 from ravestate.modules import interloc, rawio
 from ravestate.modules.platform.webio import sessions
 
@@ -258,11 +258,3 @@ async def test_when_all_is_over_nothing_is_left() -> None:
         await past(10.0)
         assert len(app.state.sessions) == 0
         assert not [task for task in asyncio.all_tasks() if task is not asyncio.current_task()]
-
-
-async def past(seconds: float) -> None:
-    """Let virtual time go by."""
-    loop = asyncio.get_running_loop()
-    over = loop.create_future()
-    loop.call_later(seconds, over.set_result, None)
-    await over

@@ -44,6 +44,14 @@ def in_virtual_time(test: Callable[..., Coroutine[Any, Any, None]]) -> Callable[
     return run
 
 
+async def past(seconds: float) -> None:
+    """Let virtual time go by."""
+    loop = asyncio.get_running_loop()
+    over = loop.create_future()
+    loop.call_later(seconds, over.set_result, None)
+    await over
+
+
 @contextlib.asynccontextmanager
 async def page(*modules: Any, **settings: Any) -> AsyncGenerator[Starlette]:
     """The page of an agent, which says again what it hears if no modules are given."""

@@ -45,8 +45,8 @@ class Settings(rs.Settings):
     """What a visitor must present, as a link with ``#token=...`` does; best given as ``RAVESTATE_WEBIO_TOKEN``."""
     origins: tuple[Annotated[str, pydantic.AfterValidator(_origin)], ...] = ()
     """Web sites that may embed the page, e.g. ``https://museum.example``; also the page's own, behind a proxy."""
-    title: str = "Ravestate"
-    """What the agent is called on the page."""
+    title: str | None = None
+    """What the agent is called on the page, by default ``interloc.agent``."""
     keep: float = pydantic.Field(600.0, ge=0, allow_inf_nan=False)
     """Seconds for which a conversation is kept when its visitor is gone."""
     sessions: int = pydantic.Field(1000, ge=1)

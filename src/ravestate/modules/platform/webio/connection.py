@@ -22,9 +22,11 @@ from .protocol import (
     Ping,
     Pong,
     ProtocolError,
+    Renamed,
     Say,
     Typing,
     Welcome,
+    Writing,
     parse,
     serialise,
 )
@@ -43,7 +45,11 @@ SILENT = 10.0
 """Seconds within which a client says hello."""
 
 BURST, RATE = 20, 5.0
-"""Frames that are taken at once, and each second after that. Who sends more has to wait; nothing is lost."""
+"""Frames that are taken at once, and each second after that; and as many `Writing` beside them. Who sends more has to
+wait; nothing is lost."""
+
+LEFT = "the visitor left"
+"""Why a conversation is over, for others than the visitor, who is told "you left"."""
 
 REPLIES = 32
 """Replies that may wait for a client. Who asks on and on, and does not read, is dropped."""
@@ -68,17 +74,22 @@ class Connection:
         socket: Not accepted yet.
         sessions: The conversations.
         gate: Knows the token.
-        agent: What the agent is called.
+        title: What the agent is called; None: what it calls itself.
         inside: Where the page may look inside of the agent, e.g. ``board/``; None: nowhere.
     """
 
     def __init__(
-        self, socket: WebSocket, sessions: Sessions, gate: Gate, agent: str, inside: str | None = None
+        self,
+        socket: WebSocket,
+        sessions: Sessions,
+        gate: Gate,
+        title: str | None = None,
+        inside: str | None = None,
     ) -> None:
         self._socket = socket
         self._sessions = sessions
         self._gate = gate
-        self._agent = agent
+        self._title = title
         self._inside = inside
         self._woken = asyncio.Event()
         self._replies: deque[Frame] = deque()
@@ -109,10 +120,13 @@ class Connection:
         try:
             last = hello.last if resumed and hello.last <= session.history.last else 0
             first, newest = session.history.first, session.history.last
-            await self._send(Welcome(VERSION, session.id, resumed, first, self._agent, self._inside, newest))
+            agent = self._name_of(session)
+            await self._send(
+                Welcome(VERSION, session.id, resumed, first, agent, self._inside, newest, writing=True)
+            )
             tasks = [
                 asyncio.create_task(self._read(session)),
-                asyncio.create_task(self._write(session, max(last, first - 1))),
+                asyncio.create_task(self._write(session, max(last, first - 1), agent)),
             ]
             try:
                 await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
@@ -153,26 +167,31 @@ class Connection:
 
     async def _read(self, session: Session) -> None:
         now = asyncio.get_running_loop().time
-        bucket = Bucket(burst=BURST, rate=RATE, now=now())
+        # Counted apart, so that what was written need not wait because it was long in the writing.
+        writing, others = (Bucket(burst=BURST, rate=RATE, now=now()) for _ in range(2))
         while True:
-            text = await self._receive()
-            wait = bucket.wait(now())
+            frame = _read_frame(await self._receive())
+            wait = (writing if isinstance(frame, Writing) else others).wait(now())
             if wait:
                 await asyncio.sleep(wait)
             try:
-                self._take(parse(text, CLIENT), session)
+                self._take(frame, session)
             except ProtocolError as error:
                 self._reply(Error(error.code, str(error), error.id))
 
-    def _take(self, frame: Frame, session: Session) -> None:
+    def _take(self, frame: Frame | ProtocolError, session: Session) -> None:
+        if isinstance(frame, ProtocolError):
+            raise frame
         if isinstance(frame, Say):
             if not frame.text.strip():
                 raise ProtocolError("empty", 'say: "text" has nothing in it', frame.id)
             session.hear(frame.id, frame.text)
+        elif isinstance(frame, Writing):
+            session.notice_writing()
         elif isinstance(frame, Ping):
             self._reply(Pong())
         elif isinstance(frame, Bye):
-            self._sessions.leave(session, "you left")
+            self._sessions.leave(session, LEFT)
         else:
             raise ProtocolError("malformed", "hello is said once, at the beginning")
 
@@ -184,13 +203,17 @@ class Connection:
 
     # ------------------------------------------------------------------------------------ to the client
 
-    async def _write(self, session: Session, last: int) -> None:
-        """Tell the client what it has not seen: messages after number `last`, and what is being said."""
+    async def _write(self, session: Session, last: int, agent: str) -> None:
+        """Tell the client what it has not seen: another name than `agent`, messages after number `last`, and what is
+        being said."""
         shown, typing = "", False
         while True:
             self._woken.clear()
             while self._replies:
                 await self._send(self._replies.popleft())
+            if self._name_of(session) != agent:
+                agent = self._name_of(session)
+                await self._send(Renamed(agent))
             for message in session.history.since(last):
                 if message.n != last + 1:
                     raise ProtocolError("behind", f"message {last + 1} is kept no more: connect again")
@@ -205,14 +228,26 @@ class Connection:
                 typing = session.typing
                 await self._send(Typing(typing))
             if session.ended is not None and last == session.history.last:
-                await self._send(Ended(session.ended))
+                await self._send(Ended("you left" if session.ended == LEFT else session.ended))
                 await self._socket.close(1000, "ended")
                 return
             if not self._woken.is_set():
                 await self._woken.wait()
 
+    def _name_of(self, session: Session) -> str:
+        """What the agent is called on the page."""
+        return session.agent if self._title is None else self._title
+
     async def _send(self, frame: Frame | Message) -> None:
         await self._socket.send_text(serialise(frame))
+
+
+def _read_frame(text: str | bytes) -> Frame | ProtocolError:
+    """The client's frame that a text stands for; or what is wrong with it, which is told in its turn."""
+    try:
+        return parse(text, CLIENT)
+    except ProtocolError as error:
+        return error
 
 
 def _common(one: str, other: str) -> int:

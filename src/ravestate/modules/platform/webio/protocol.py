@@ -35,9 +35,11 @@ __all__ = [
     "Ping",
     "Pong",
     "ProtocolError",
+    "Renamed",
     "Say",
     "Typing",
     "Welcome",
+    "Writing",
     "parse",
     "serialise",
 ]
@@ -97,6 +99,11 @@ class Say:
 
 
 @dataclass(frozen=True, slots=True)
+class Writing:
+    """The visitor is writing something; sent now and then while that goes on."""
+
+
+@dataclass(frozen=True, slots=True)
 class Bye:
     """The visitor leaves for good."""
 
@@ -121,6 +128,7 @@ class Welcome:
         agent: What the agent is called.
         inside: Where its user may look inside of it, relative to the page; None: nowhere.
         last: The number of the newest message; 0 if nothing was said yet.
+        writing: Whether the server takes `Writing`. The first ones did not.
     """
 
     v: int
@@ -130,6 +138,14 @@ class Welcome:
     agent: str
     inside: str | None = None
     last: int = 0
+    writing: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Renamed:
+    """What the agent is called from now on."""
+
+    agent: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -190,13 +206,22 @@ class Pong:
 
 # ------------------------------------------------------------------------------------ the wire
 
-Frame = Hello | Say | Bye | Ping | Welcome | Message | Piece | Typing | Ended | Error | Pong
+Frame = (
+    Hello | Say | Writing | Bye | Ping | Welcome | Renamed | Message | Piece | Typing | Ended | Error | Pong
+)
 
-CLIENT: Mapping[str, type[Any]] = {"hello": Hello, "say": Say, "bye": Bye, "ping": Ping}
+CLIENT: Mapping[str, type[Any]] = {
+    "hello": Hello,
+    "say": Say,
+    "writing": Writing,
+    "bye": Bye,
+    "ping": Ping,
+}
 """The frames that a client sends, by the name that they have on the wire."""
 
 SERVER: Mapping[str, type[Any]] = {
     "welcome": Welcome,
+    "renamed": Renamed,
     "message": Message,
     "piece": Piece,
     "typing": Typing,
@@ -343,4 +368,5 @@ _FIELDS: Mapping[str, tuple[Callable[[object], Any], str]] = {
     "time": _WHOLE_NUMBER,
     "token": _ANY_TEXT,
     "v": (_whole, f"the version, {VERSION}"),
+    "writing": _YES_OR_NO,
 }

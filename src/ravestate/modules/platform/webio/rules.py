@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ravestate as rs
-from ravestate.modules import rawio
+from ravestate.modules import interloc, rawio
 
 from . import module, page
 
@@ -33,6 +33,14 @@ async def end_piece(ctx: rs.RuleContext) -> None:
     session = ctx[page]
     if session is not None:
         session.fall_silent()
+
+
+@module.rule(when=interloc.agent.changed.max_age(None).detached(), reads=page, background=True)
+async def show_name(ctx: rs.RuleContext) -> None:
+    """Show what the agent is called."""
+    session = ctx[page]
+    if session is not None:
+        session.rename(ctx.payload(interloc.agent.changed))
 
 
 @module.rule(when=rs.pressure.true.min_age(SLOW).max_age(None).detached(), reads=page, background=True)

@@ -58,6 +58,10 @@ class Session:
         self.visitor = f"webio-{secrets.token_hex(4)}"
         """The key of the visitor in ``interloc.users``."""
         self.name = name
+        self.began = _now()
+        """When it began (milliseconds since 1970)."""
+        self.agent = interloc.agent.default
+        """What the agent calls itself."""
         self.context = context
         self.history = History()
         self.partial = ""
@@ -76,6 +80,9 @@ class Session:
         self._slow = False  # the agent is at work for longer than the grace
         self._following: asyncio.Task[None] | None = None
 
+    def __repr__(self) -> str:
+        return f"conversation {self.visitor}"
+
     # ------------------------------------------------------------------------------------ life
 
     async def live(self) -> None:
@@ -83,6 +90,7 @@ class Session:
         try:
             async with self.context as context:
                 context.put(page, self)
+                self.rename(context.read(interloc.agent))  # it may have been told at startup already
                 context.put(interloc.users, {**context.read(interloc.users), self.visitor: self.name})
                 await self._until_left()
                 self._free_from_users()
@@ -105,7 +113,7 @@ class Session:
         """End the conversation for good.
 
         Args:
-            reason: Why, for the visitor.
+            reason: Why, for whoever looks on.
         """
         if not self._left.is_set():
             self._reason = reason
@@ -143,7 +151,17 @@ class Session:
         self._expect(GRACE)
         self._tell()
 
+    def notice_writing(self) -> None:
+        """The visitor is writing something."""
+        if not self._left.is_set():
+            self.context.emit(rawio.typing)
+
     # ------------------------------------------------------------------------------------ the agent
+
+    def rename(self, name: str) -> None:
+        """The agent calls itself by a name from now on."""
+        self.agent = printable(name)
+        self._tell()
 
     def say(self, text: str) -> None:
         """The agent has said something."""

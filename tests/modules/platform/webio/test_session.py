@@ -1,0 +1,154 @@
+"""What passes between a visitor and the agent beside words: that one is writing, what the other is called, who left."""
+
+import asyncio
+
+import ravestate as rs
+from modules.platform.webio.visit import Visit, in_virtual_time, page, parrot, past
+from ravestate.modules import idle, interloc, rawio
+
+watcher = rs.Module("watcher", requires=(rawio,))
+
+
+@watcher.rule(when=rawio.typing, writes=rawio.output)
+async def notice(ctx: rs.RuleContext) -> None:
+    ctx[rawio.output] = "You write."
+
+
+bored = rs.Module("bored", requires=(rawio, idle))
+
+
+@bored.rule(when=idle.bored, writes=rawio.output)
+async def remark(ctx: rs.RuleContext) -> None:
+    ctx[rawio.output] = "It is quiet here."
+
+
+named = rs.Module("named", requires=(rawio, interloc))
+
+
+@named.rule(when=rs.startup.detached(), writes=interloc.agent, detached=True)
+async def be_born(ctx: rs.RuleContext) -> None:
+    ctx[interloc.agent] = "Robin"
+
+
+@named.rule(when=rawio.input.changed, writes=(interloc.agent, rawio.output))
+async def be_renamed(ctx: rs.RuleContext) -> None:
+    ctx[interloc.agent] = ctx.payload(rawio.input.changed)
+    ctx[rawio.output] = "So be it."
+
+
+late = rs.Module("late", requires=(interloc,))
+
+
+@late.rule(when=rs.startup.detached(), writes=interloc.agent, detached=True)
+async def find_out(ctx: rs.RuleContext) -> None:
+    await ctx.sleep(3.0)
+    ctx[interloc.agent] = "Ro\x1b[2Jbin"
+
+
+def now() -> float:
+    return asyncio.get_running_loop().time()
+
+
+@in_virtual_time
+async def test_the_agent_notices_that_its_visitor_is_writing_and_no_other() -> None:
+    async with page(watcher) as app, Visit(app) as ada, Visit(app) as bob:
+        await ada.hello()
+        await bob.hello()
+        ada.tell("writing")
+        assert await ada.messages(1) == ["agent: You write."]
+        assert bob.nothing_more()
+
+
+@in_virtual_time
+async def test_who_is_silent_is_talked_to() -> None:
+    async with page(bored) as app, Visit(app) as visit:
+        await visit.hello()
+        assert await visit.messages(1) == ["agent: It is quiet here."]
+        assert now() == idle.Settings().bored_after
+
+
+@in_virtual_time
+async def test_while_the_visitor_is_writing_nobody_is_bored() -> None:
+    async with page(parrot, bored) as app, Visit(app) as visit:
+        await visit.hello()
+        await visit.messages(1)
+        for _ in range(15):
+            await past(2.0)
+            visit.tell("writing")
+        await past(1.0)
+        assert visit.nothing_more()
+        visit.say("Half a minute.")
+        assert await visit.messages(3) == [
+            "user: Half a minute.",
+            "agent: Half a minute.",
+            "agent: It is quiet here.",
+        ]
+        assert now() == 31.0 + idle.Settings().bored_after
+
+
+@in_virtual_time
+async def test_who_never_ends_a_line_is_talked_to_all_the_same() -> None:
+    async with page(bored) as app, Visit(app) as visit:
+        await visit.hello()
+        await past(1.0)
+        visit.tell("writing")
+        assert await visit.messages(1) == ["agent: It is quiet here."]
+        assert now() == 1.0 + idle.Settings().writing_time
+
+
+@in_virtual_time
+async def test_who_writes_after_the_farewell_is_not_heard_any_more() -> None:
+    async with page(watcher) as app, Visit(app) as visit:
+        await visit.hello()
+        visit.tell("bye")
+        visit.tell("writing")
+        assert [frame["type"] for frame in await visit.frames("ended")] == ["ended"]
+
+
+@in_virtual_time
+async def test_the_page_is_called_as_the_agent_calls_itself_and_by_its_new_name_later() -> None:
+    async with page(named) as app, Visit(app) as visit:
+        assert (await visit.hello())["agent"] == "Ravestate"  # it is just being born
+        assert await visit.next() == {"type": "renamed", "agent": "Robin"}
+        visit.say("Elske", id="a")
+        frames = [await visit.next() for _ in range(3)]
+        assert {"type": "renamed", "agent": "Elske"} in frames
+        assert [frame["text"] for frame in frames if frame["type"] == "message"] == ["Elske", "So be it."]
+        async with Visit(app) as again:
+            assert (await again.hello(session=visit.session, last=2))["agent"] == "Elske"
+            visit.tell("bye")
+            assert (await again.next())["type"] == "ended"  # it is not told what it knows
+        async with Visit(app) as other:
+            await other.hello()
+            assert await other.next() == {"type": "renamed", "agent": "Robin"}  # a conversation of its own
+
+
+@in_virtual_time
+async def test_a_name_that_is_found_out_later_is_shown_then_as_plain_text() -> None:
+    async with page(late) as app, Visit(app) as visit:
+        assert (await visit.hello())["agent"] == "Ravestate"
+        assert await visit.next() == {"type": "renamed", "agent": "Robin"}
+        assert now() == 3.0
+
+
+@in_virtual_time
+async def test_a_title_that_is_set_stands_whatever_the_agent_calls_itself() -> None:
+    async with page(named, title="Ravestate") as app, Visit(app) as visit:
+        assert (await visit.hello())["agent"] == "Ravestate"
+        visit.say("Elske", id="a")
+        frames = [await visit.next() for _ in range(2)]
+        assert [frame["type"] for frame in frames] == ["message", "message"]
+        visit.tell("bye")
+        assert (await visit.next())["type"] == "ended"
+
+
+@in_virtual_time
+async def test_who_left_is_told_to_others_as_to_others() -> None:
+    async with page(parrot) as app, Visit(app) as visit, Visit(app) as window:
+        await visit.hello()
+        await window.hello(session=visit.session)
+        (session,) = app.state.sessions
+        visit.tell("bye")
+        for own in (visit, window):
+            assert (await own.frames("ended"))[-1]["text"] == "you left"
+        assert session.ended == "the visitor left"
