@@ -90,7 +90,6 @@ class Session:
         try:
             async with self.context as context:
                 context.put(page, self)
-                self.rename(context.read(interloc.agent))  # it may have been told at startup already
                 context.put(interloc.users, {**context.read(interloc.users), self.visitor: self.name})
                 await self._until_left()
                 self._free_from_users()
