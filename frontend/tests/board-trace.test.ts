@@ -68,6 +68,20 @@ test("one that gives up its last spike has ended, and says who answered", () => 
   ]);
 });
 
+test("who answered is told with the rule that raised what it heard", () => {
+  spikes = 0;
+  const trace = new Trace();
+  trace.add([
+    born(0, "m:input"),
+    { kind: "started", time: 0, run: 5, rule: "m:skill", clause: 0, spikes: [1] },
+    born(1, "m:said", { parents: [1], source: 5 } as Partial<TraceRecord>),
+    { kind: "started", time: 1, run: 6, rule: "m:verbalise", clause: 0, spikes: [2] },
+    held(1, 7, "m:r", 1),
+    gaveup(2, 7, 1, "consumed", "m:verbalise"),
+  ]);
+  expect(trace.bar(7)?.reason).toBe("m:skill → m:verbalise answered");
+});
+
 test("one that loses a spike after it had all gathers again", () => {
   const trace = new Trace();
   trace.add([held(1, 7, "m:r", 1, ["m:t"]), held(2, 7, "m:r", 2), gaveup(3, 7, 2, "withdrawn")]);
@@ -92,7 +106,7 @@ test("a spike knows the rule that raised it, and its kin in both directions", ()
     { kind: "started", time: 0, run: 5, rule: "m:classify", clause: 0, spikes: [1] },
     born(1, "m:question", { parents: [1], source: 5 } as Partial<TraceRecord>),
     born(2, "m:answer", { parents: [2] } as Partial<TraceRecord>),
-    born(3, "m:elsewhere"),
+    born(3, "m:elsewhere", { group: 2 } as Partial<TraceRecord>),
   ]);
   expect(trace.spike(2)?.rule).toBe("m:classify");
   expect([...trace.kin(2)].sort()).toEqual([1, 2, 3]);

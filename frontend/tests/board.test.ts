@@ -1,10 +1,15 @@
 import { cleanup, fireEvent, render, screen } from "@testing-library/svelte";
+import { flushSync } from "svelte";
 import { afterEach, expect, test } from "vitest";
+import Bar from "../src/board/Bar.svelte";
 import { Board } from "../src/board/board.svelte";
 import Cause from "../src/board/Cause.svelte";
 import type { Policy, ServerFrame, TraceRecord } from "../src/board/protocol";
+import Say from "../src/board/Say.svelte";
 import Slots from "../src/board/Slots.svelte";
+import Tools from "../src/board/Tools.svelte";
 import WhyNot from "../src/board/WhyNot.svelte";
+import { cause } from "../src/board/words";
 
 afterEach(cleanup);
 
@@ -41,9 +46,20 @@ const POLICY: Policy = {
       hearers: [],
       raisers: [],
     },
+    ...["m:lit:true", "m:people:added", "rawio:input:changed"].map((name) => ({
+      name,
+      module: "m",
+      slot: name.slice(0, name.lastIndexOf(":")),
+      payload: "",
+      input: true,
+      hearers: [],
+      raisers: [],
+    })),
   ],
   slots: [
     { name: "m:input", module: "m", kind: "value", type: "str", signals: [], readers: [], writers: [] },
+    { name: "m:lit", module: "m", kind: "flag", type: "bool", signals: [], readers: [], writers: [] },
+    { name: "m:people", module: "m", kind: "collection", type: "", signals: [], readers: [], writers: [] },
     { name: "m:secret", module: "m", kind: "value", type: "", signals: [], readers: [], writers: [] },
   ],
   diagram: null,
@@ -100,6 +116,12 @@ test("it says what it looks at, and asks for the diagram", () => {
   expect(server.sent[0]).toEqual({ type: "hello", v: 1, session: "secret" });
   expect(server.sent[1]).toEqual({ type: "diagram", unfolded: ["m"] });
   expect([board.status, board.title, board.live]).toEqual(["open", "Elske", true]);
+});
+
+test("it is called as the agent calls itself", () => {
+  const [server, board] = Server.open();
+  server.tell({ type: "renamed", title: "Robin" });
+  expect(board.title).toBe("Robin");
 });
 
 test("why not is asked of the newest input, and the answer shows rules that can be followed", async () => {
@@ -270,4 +292,166 @@ test("what is raised by hand is a cause, although rules raise it as well", () =>
   const born = { ...input(3, 1, '"Hugo"'), signal: "m:named" } as TraceRecord; // no input of the policy
   server.tell({ type: "records", records: [born], missed: 0, behind: 0, now: 2, paused: false });
   expect(board.causes.map((spike) => spike.signal)).toEqual(["m:named"]);
+});
+
+test("a cause is called by what was said, which slot was written, or which signal was raised", () => {
+  const [server, board] = Server.open();
+  const came = (spike: number, signal: string, text: string, json = true): TraceRecord =>
+    ({ ...input(spike, spike, text), signal, payload: json ? { text } : { text, json } }) as TraceRecord;
+  const records = [
+    came(1, "rawio:input:changed", '"hi"'),
+    came(2, "m:lit:true", "true"),
+    came(3, "m:people:added", '"Ada"', false),
+    came(4, "m:named", '"Hugo"'),
+    came(5, "m:rung", "null"),
+  ];
+  server.tell({ type: "records", records, missed: 0, behind: 0, now: 9, paused: false });
+  expect(board.causes.map((spike) => cause(spike, POLICY)).reverse()).toEqual([
+    '"hi"',
+    "m:lit = true",
+    'm:people: "Ada" added',
+    'm:named: "Hugo"',
+    "m:rung",
+  ]);
+});
+
+test("the signals of one write are one cause, and that which was pointed at stands for it", () => {
+  const [server, board] = Server.open();
+  const records = [
+    { ...input(3, 1, "true"), signal: "m:lit:changed" },
+    { ...input(4, 1, "true"), signal: "m:lit:true", group: 3 },
+    input(5, 2, "1"),
+  ] as TraceRecord[];
+  server.tell({ type: "records", records, missed: 0, behind: 0, now: 9, paused: false });
+  expect(board.causes.map(({ id }) => id)).toEqual([5, 4]);
+  board.point(3);
+  expect(board.causes.map(({ id }) => id)).toEqual([5, 3]);
+  expect(board.cause?.id).toBe(3);
+});
+
+test("to choose a cause is to see what came of it; the newest one is followed again", () => {
+  const [server, board] = Server.open();
+  const records: TraceRecord[] = [
+    input(3, 1, '"hi"'),
+    { kind: "started", time: 1, run: 2, rule: "m:answer", clause: 0, spikes: [3] },
+    { kind: "settled", time: 1.25, run: 2, rule: "m:answer", outcome: "done", reason: "", fired: true },
+    input(4, 60, '"and?"'),
+  ];
+  server.tell({ type: "records", records, missed: 0, behind: 0, now: 90, paused: false });
+  board.visit(board.trace.spike(3) as never);
+  expect([board.cause?.id, board.follows]).toEqual([3, false]);
+  expect([board.view.left < 1, board.view.right > 1.25, board.view.span < 0.4]).toEqual([true, true, true]);
+  board.visitNewest();
+  expect([board.cause?.id, board.follows]).toEqual([4, true]);
+});
+
+test("what came of it lists a rule that ran many times once", () => {
+  const [server, board] = Server.open();
+  const records: TraceRecord[] = [input(3, 1, '"hi"')];
+  for (let run = 1; run <= 14; run++) {
+    const of = { time: 1 + run / 100, run, rule: "m:talk" };
+    records.push({ kind: "started", ...of, clause: 0, spikes: [3] });
+    records.push({ kind: "settled", ...of, outcome: "done", reason: "", fired: true });
+  }
+  server.tell({ type: "records", records, missed: 0, behind: 0, now: 2, paused: true });
+  const { container } = render(Cause, { board });
+  const rows = [...container.querySelectorAll("li")].map((row) => row.textContent.trim());
+  expect(rows).toHaveLength(1);
+  expect(rows[0]).toContain("ran × 14");
+});
+
+test("in a conversation that has ended nothing can be said, written or raised, and it says so", () => {
+  const [server, board] = Server.open();
+  const slots = { "m:input": { text: "1" } };
+  server.tell({ type: "state", slots, activations: [], now: 1, paused: false });
+  render(Say, { board });
+  render(Slots, { board });
+  expect(screen.getByRole("button", { name: "Say" })).toHaveProperty("disabled", false);
+  expect(screen.queryByRole("button", { name: "Edit m:input" })).not.toBeNull();
+  server.tell({ type: "ended", text: "the visitor left" });
+  server.socket.onclose?.({ code: 1000 });
+  flushSync();
+  expect(screen.getByRole("button", { name: "Say" })).toHaveProperty("disabled", true);
+  const field = screen.getByLabelText("Say something to the agent");
+  expect(field).toHaveProperty("placeholder", "This conversation has ended");
+  expect(screen.queryByRole("button", { name: "Edit m:input" })).toBeNull();
+});
+
+test("what was typed stays when there is no connection", async () => {
+  const [server, board] = Server.open();
+  render(Say, { board });
+  const field = screen.getByLabelText("Say something to the agent");
+  await fireEvent.input(field, { target: { value: "Hello" } });
+  server.socket.onclose?.({ code: 1006 });
+  await fireEvent.submit(field.closest("form") as HTMLFormElement);
+  expect(field).toHaveProperty("value", "Hello");
+  expect(board.trouble).toContain("no connection");
+  board.stop();
+});
+
+test("Enter writes a slot, Shift and Enter begins a line", async () => {
+  const [server, board] = Server.open();
+  render(Slots, { board });
+  await fireEvent.click(screen.getByRole("button", { name: "Edit m:secret" }));
+  const field = screen.getByLabelText("New value of m:secret, as JSON or as text");
+  await fireEvent.input(field, { target: { value: "7" } });
+  await fireEvent.keyDown(field, { key: "Enter", shiftKey: true });
+  expect(server.sent.some(({ type }) => type === "put")).toBe(false);
+  await fireEvent.keyDown(field, { key: "Enter" });
+  expect(server.sent.at(-1)).toEqual({ type: "put", slot: "m:secret", value: 7 });
+});
+
+test("Enter in the search chooses the first rule that is left, Escape ends the search", async () => {
+  const [, board] = Server.open();
+  render(Tools, { board, main: "timeline", idle: true, modules: false, onzoom() {}, onfit() {} });
+  const field = screen.getByLabelText("Filter rules");
+  await fireEvent.keyDown(field, { key: "Enter" });
+  expect(board.rule).toBeNull(); // nothing is searched for
+  await fireEvent.input(field, { target: { value: "ans" } });
+  await fireEvent.keyDown(field, { key: "Enter" });
+  expect(board.rule).toBe("m:answer");
+  await fireEvent.keyDown(field, { key: "Escape" });
+  expect(board.search).toBe("");
+});
+
+test("a recording has the name of its file, and leads back to what was there before", async () => {
+  const [server, board] = Server.open();
+  const handlers = { ondownload() {}, onopen() {}, onturn() {} };
+  render(Bar, { board, main: "timeline", ...handlers });
+  board.play("one", "monday.json");
+  server.socket.onopen?.();
+  board.play("two", "tuesday.json"); // a second one does not hide the way back
+  server.socket.onopen?.();
+  flushSync();
+  expect(server.sent.at(-1)).toEqual({ type: "hello", v: 1, recording: "two" });
+  expect(screen.getByText("tuesday.json")).toBeTruthy();
+  await fireEvent.click(screen.getByRole("button", { name: "Close this recording" }));
+  server.socket.onopen?.();
+  expect(server.sent.at(-1)).toEqual({ type: "hello", v: 1, session: "secret" });
+  expect([board.recording, board.follows]).toEqual([null, true]);
+});
+
+test("conversations are known by when they began, with whom, and their last words", () => {
+  const [server, board] = Server.open();
+  const began = new Date(2026, 4, 1, 11, 32).getTime();
+  server.tell({
+    type: "conversations",
+    conversations: [
+      { visitor: "v", name: null, began, said: "my name is Ada" },
+      { visitor: "w", name: "Hugo", began, said: null },
+    ],
+  });
+  server.socket.onclose?.({ code: 1000 });
+  const { container } = render(Bar, {
+    board,
+    main: "timeline",
+    ondownload() {},
+    onopen() {},
+    onturn() {},
+  });
+  const time = new Date(began).toLocaleTimeString([], { hour: "2-digit", minute: "2-digit" });
+  expect([...container.querySelectorAll("option")].map((option) => option.textContent)).toEqual([
+    `${time}, “my name is Ada”, ended`,
+    `${time}, Hugo, nothing said yet`,
+  ]);
 });

@@ -82,11 +82,15 @@ def in_virtual_time(test: Callable[..., Coroutine[Any, Any, None]]) -> Callable[
 
 @contextlib.asynccontextmanager
 async def board(
-    *modules: Any, recording: Recording | None = None, recorded: bool = True, **settings: Any
+    *modules: Any,
+    recording: Recording | None = None,
+    recorded: bool = True,
+    title: str | None = "Elske",
+    **settings: Any,
 ) -> AsyncGenerator[Starlette]:
     """The page of an agent, and the board beside it."""
     agent = RecordedAgent(*(modules or (gossip, parrot)), webio, settings={"webio": settings})
-    beside = routes(agent.recorders if recorded else None, recording, "Elske")
+    beside = routes(agent.recorders if recorded else None, recording, title)
     app = webio.app(agent, beside, INSIDE)
     async with app.router.lifespan_context(app):
         yield app

@@ -59,6 +59,20 @@ async def test_without_a_name_it_sees_the_newest_conversation_or_begins_one() ->
 
 
 @in_virtual_time
+async def test_conversations_are_listed_with_their_beginning_and_last_words_and_again_as_they_go_on() -> None:
+    async with board() as app, Visit(app) as visit, Look(app) as look:
+        await visit.hello()
+        await look.begin(session=visit.session)
+        (before,) = (await look.answer("conversations"))["conversations"]
+        visit.say("My name is Ada, and I live " + "x" * 100)
+        await passing(2)
+        (after,) = (await look.answer("conversations"))["conversations"]
+        (session,) = app.state.sessions
+    assert before == {"visitor": session.visitor, "name": None, "began": session.began, "said": None}
+    assert after == {**before, "said": "My name is Ada, and I live xxxxxxxxxxxxxxxxxxxxx"}
+
+
+@in_virtual_time
 async def test_it_sees_only_the_conversation_that_it_looks_at() -> None:
     async with board() as app, Visit(app) as one, Visit(app) as other:
         await one.hello()
@@ -160,6 +174,9 @@ async def test_slots_are_written_and_signals_raised_by_hand() -> None:
     [
         ({"type": "put", "slot": "gossip:sercet", "value": 1}, "no slot 'gossip:sercet'; did you mean"),
         ({"type": "put", "slot": "rawio:input", "value": 7}, "which takes str, not int"),
+        ({"type": "put", "slot": "rawio:speaking", "value": "banana"}, "write true or false, not 'banana'"),
+        ({"type": "emit", "signal": "gossip:cheered"}, "carries a payload of type dict: give one"),
+        ({"type": "emit", "signal": "gossip:cheered", "payload": 1}, "a payload of type dict, not int"),
         ({"type": "emit", "signal": "gossip:nothing"}, "this agent has no signal 'gossip:nothing'"),
         ({"type": "explain", "rule": "gossip:nobody"}, "the policy has no rule 'gossip:nobody'"),
         ({"type": "why", "rule": "gossip:talk", "spike": 10**9}, "spike 1000000000 is not in the history"),
@@ -325,6 +342,21 @@ async def test_the_diagram_comes_laid_out_folded_or_not() -> None:
     assert {node["kind"] for node in folded["nodes"]} == {"module"}
     assert "rule gossip:answer" in [node["id"] for node in partly["nodes"]]
     assert "module rawio" in [node["id"] for node in partly["nodes"]]
+
+
+@in_virtual_time
+async def test_it_is_told_how_the_agent_calls_itself_and_that_a_title_that_was_set_stays() -> None:
+    async with board(title=None) as app, Look(app) as look:
+        assert (await look.begin())["title"] == "Ravestate"
+        look.tell("put", slot="interloc:agent", value="Robin")
+        assert (await look.answer("renamed"))["title"] == "Robin"
+        async with Look(app) as other:
+            assert (await other.begin())["title"] == "Robin"
+    async with board() as app, Look(app) as look:
+        assert (await look.begin())["title"] == "Elske"
+        look.tell("put", slot="interloc:agent", value="Robin")
+        look.tell("ping")
+        assert (await look.next())["type"] != "renamed"
 
 
 @in_virtual_time

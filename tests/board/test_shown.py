@@ -7,6 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from ravestate.board.shown import Shown, show
+from ravestate.declare.slot import Entry
 
 JSON = st.recursive(
     st.none() | st.booleans() | st.integers() | st.floats(allow_nan=False, allow_infinity=False) | st.text(),
@@ -23,6 +24,12 @@ def test_text_is_bounded_and_whole_json_can_be_read_back(value: object, most: in
     if shown.json:
         assert not shown.cut
         json.loads(shown.text)
+
+
+def test_an_entry_of_a_collection_is_shown_by_its_key() -> None:
+    assert show(Entry("ada", None)) == Shown('"ada"', False)
+    assert show(Entry("ada", {"age": 36})).text == '"ada": {"age": 36}'
+    assert len(show(Entry("k" * 900, "v" * 900), 50).text) == 50
 
 
 class Loud:

@@ -75,7 +75,7 @@ def test_it_did_fire(stage: Stage) -> None:
     assert found.verdict == "fired"
     assert found.words == "it did fire, at 0.000 s; it wrote demo:output"
     assert [moment.words for moment in found.moments] == [
-        "took demo:question: it has all it needs", "runs", "is done",
+        "took demo:question: it has all it needs", "ran", "was done",
     ]  # fmt: skip
 
 
@@ -89,7 +89,7 @@ def test_it_was_ready_and_the_better_one_answered(stage: Stage) -> None:
     assert found.verdict == "outrun"
     nats = math.log(3)
     assert found.words == (
-        f"it was ready, and waited for demo:qa ({nats:.3f} nats ahead); demo:qa answered at 2.000 s"
+        f"it was ready, and waited for demo:qa ({nats:.3f} nats ahead); demo:classify → demo:qa answered at 2.000 s"
     )
     assert found.at == 2.0
     assert ("demo:qa",) in [moment.rules for moment in found.moments]
@@ -271,9 +271,33 @@ def test_its_spike_was_too_young(stage: Stage) -> None:
     with stage.run() as sim:
         sim.put(stage.input, "x")
         found = ask(sim, "slow")
-    assert found.verdict in ("young", "fired")
-    if found.verdict == "young":
-        assert "3 s old" in found.words
+    assert found.verdict == "young"
+    assert "demo:input:changed has to be 3 s old, which it would have been at 3.000 s" in found.words
+
+
+def test_who_answered_is_told_with_the_rule_that_raised_what_it_heard(stage: Stage) -> None:
+    conversation(stage, is_question=True, slow=2.0)
+    with stage.run() as sim:
+        sim.put(stage.input, "?")
+        sim.advance(2)
+        found = ask(sim, "talk")
+    assert found.moments[-1].words == "gave demo:input:changed up: demo:classify → demo:qa answered it"
+    assert found.moments[-1].rules == ("demo:qa",)
+
+
+def test_what_it_waits_for_is_told_once_however_often_it_was_asked(stage: Stage) -> None:
+    @stage.module.rule(when=stage.input.changed, emits=stage.touch)
+    async def notice(ctx: rs.RuleContext) -> None:
+        await ctx.sleep(1)
+        ctx.emit(stage.touch)
+
+    conversation(stage, is_question=True, slow=2.0)
+    with stage.run() as sim:
+        sim.put(stage.input, "?")
+        sim.advance(3)
+        words = [moment.words for moment in ask(sim, "talk").moments]
+    assert any("waited for" in told for told in words)
+    assert len(words) == len(set(words))
 
 
 def test_it_had_retired(stage: Stage) -> None:

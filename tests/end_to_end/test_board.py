@@ -5,6 +5,7 @@ import contextlib
 import gzip
 import json
 import os
+import re
 import struct
 from collections.abc import AsyncGenerator
 from pathlib import Path
@@ -177,7 +178,7 @@ async def test_why_not_is_answered_with_the_right_reason(stage: Stage) -> None:
         await name(page, "keeper:small_talk").click()
         answered = page.locator(".answer")
         await expect(answered).to_have_attribute("data-verdict", "outrun")
-        await expect(answered).to_contain_text("keeper:answer (2.079 nats ahead)")
+        await expect(answered).to_contain_text(re.compile(r"keeper:answer \(\d\.\d{3} nats ahead\)"))
         await answered.get_by_role("button", name="keeper:answer").first.click()
         await expect(answered).to_have_attribute("data-verdict", "fired")
         await say(page, "but why?")
@@ -314,9 +315,15 @@ async def test_a_trace_is_exported_and_opened_again_without_an_agent(stage: Stag
         await expect(page.locator(".status")).to_have_text("recording")
         await name(page, "keeper:small_talk").click()
         await expect(page.locator(".answer")).to_have_attribute("data-verdict", "outrun")
+        await expect(page.get_by_text("trace.json")).to_be_visible()
         (tmp_path / "bad.json").write_text("{}", "utf-8")
         await page.get_by_label("Open a recorded trace").set_input_files(tmp_path / "bad.json")
         await expect(page.get_by_role("alert")).to_contain_text("bad.json: this is no trace")
+        await page.get_by_role("button", name="Close this recording").click()
+        await expect(page.locator(".status")).to_have_text("live")
+        await expect(page.get_by_text("trace.json")).to_have_count(0)
+        await say(page, "Hello again.")
+        await until_lane(page, "keeper:small_talk", "done")
 
 
 @on_stage
@@ -383,14 +390,14 @@ async def test_a_policy_of_more_than_a_hundred_rules_can_be_read(stage: Stage) -
         await until_lane(page, "skill_7:answer", "done")
         assert 4 <= await lanes.count() < 50  # of those that did something, if only to wait for a topic
         await page.get_by_role("button", name="more did nothing").click()
-        await expect(lanes).to_have_count(124)
+        await expect(lanes).to_have_count(125)
         await page.get_by_label("Filter rules").fill("skill_12 output")
         await expect(lanes).to_have_count(1)
         await page.get_by_role("button", name="Diagram").click()
-        await expect(page.locator(".node.module")).to_have_count(33)
+        await expect(page.locator(".node.module")).to_have_count(34)
         await expect(page.locator(".node:not(.faint)")).to_have_count(1)
         await page.get_by_role("button", name="Unfold all").click()
-        await expect(page.locator(".node.rule")).to_have_count(124)
+        await expect(page.locator(".node.rule")).to_have_count(125)
         await expect(page.locator(".node.rule:not(.faint)")).to_have_count(1)
         await page.get_by_label("Filter rules").fill("")
         await expect(page.locator(".node.faint")).to_have_count(0)
@@ -417,11 +424,60 @@ async def test_what_came_of_the_newest_input_leads_to_the_rules_and_back(stage: 
         await say(page, "Since when?")
         await until_lane(page, "keeper:answer", "done")
         await page.get_by_role("tab", name="Rule").click()
-        lost = page.get_by_role("button", name="keeper:small_talk keeper:answer answered")
+        lost = page.get_by_role(
+            "button", name="keeper:small_talk gave up: keeper:classify → keeper:answer answered"
+        )
         await lost.click()
         await expect(page.locator(".answer")).to_have_attribute("data-verdict", "outrun")
         await page.get_by_role("button", name="Choose no rule").click()
         await expect(lost).to_be_visible()
+
+
+@on_stage
+async def test_choosing_a_cause_shows_the_time_in_which_it_was_answered(stage: Stage) -> None:
+    async with served() as host, stage.open(f"{host.address}board/") as page:
+        await say(page, "Since when?")
+        await until_lane(page, "keeper:answer", "done")
+        await page.get_by_role("tab", name="Rule").click()
+        causes = page.get_by_label("Which cause")
+        value = await causes.locator("option", has_text='"Since when?"').get_attribute("value")
+        await causes.select_option(value)
+        await expect(page.get_by_role("button", name="Follow", exact=True)).to_be_visible()
+        assert await page.evaluate("window.raveboard.view.span") < 1
+        await page.get_by_role("button", name="Newest").click()
+        await expect(page.get_by_role("button", name="Following")).to_be_visible()
+
+
+@on_stage
+async def test_a_conversation_that_has_ended_takes_nothing_more_and_says_why(stage: Stage) -> None:
+    async with served() as host, stage.open(f"{host.address}board/") as page:
+        await page.get_by_role("tab", name="Slots").click()
+        await expect(page.get_by_role("button", name="Edit keeper:notebook")).to_be_visible()
+        (session,) = host.sessions
+        host.app.state.sessions.leave(session, "the visitor left")
+        await expect(page.get_by_text("This conversation has ended: the visitor left.")).to_be_visible()
+        await expect(page.get_by_role("button", name="Say", exact=True)).to_be_disabled()
+        await expect(page.get_by_role("button", name="Edit keeper:notebook")).to_have_count(0)
+        await page.get_by_role("button", name="Look at another one").click()
+        await expect(page.locator(".status")).to_have_text("live")
+        await expect(page.get_by_role("button", name="Say", exact=True)).to_be_enabled()
+
+
+@on_stage
+async def test_nothing_runs_off_the_edge_of_a_phone(stage: Stage) -> None:
+    off = """() => [...document.querySelectorAll("header *, .tools *, aside *")].filter(element => {
+        const box = element.getBoundingClientRect();
+        return box.width > 1 && box.right > innerWidth + 1;
+    }).map(element => element.outerHTML.slice(0, 80))"""
+    async with served() as host, stage.open(f"{host.address}board/", **PHONE) as page:
+        await say(page, "Since when?")
+        await until_lane(page, "keeper:answer", "done")
+        assert await page.evaluate(off) == []
+        await page.get_by_role("button", name="Diagram").click()
+        await expect(node(page, "rule keeper:answer")).to_be_visible()
+        assert await page.evaluate(off) == []
+        await page.get_by_role("tab", name="Rule").click()
+        assert await page.evaluate(off) == []
 
 
 @on_stage
@@ -430,7 +486,11 @@ async def test_the_keyboard_reaches_the_timeline(stage: Stage) -> None:
         await page.keyboard.press("/")
         await page.keyboard.type("small")
         await expect(page.locator("button.lane")).to_have_count(1)
-        await page.get_by_label("Filter rules").fill("")
+        await page.keyboard.press("Enter")
+        await expect(page.get_by_role("heading", name="keeper:small_talk")).to_be_visible()
+        await page.keyboard.press("Escape")
+        await expect(page.get_by_label("Filter rules")).to_have_value("")
+        await page.get_by_role("button", name="Choose no rule").click()
         timeline = page.get_by_role("application", name="Timeline")
         await timeline.focus()
         await page.keyboard.press("ArrowDown")
@@ -452,7 +512,7 @@ async def test_the_keyboard_reaches_every_rule_of_the_diagram(stage: Stage) -> N
     ):
         await page.get_by_role("button", name="Diagram").click()
         await page.get_by_role("button", name="Unfold all").click()
-        await expect(page.locator(".node.rule")).to_have_count(52)
+        await expect(page.locator(".node.rule")).to_have_count(53)
         drawing = page.get_by_role("application", name="Signal-Rule-Slot diagram")
         await drawing.focus()
         place = page.locator("svg[role=application] > g")

@@ -1,11 +1,15 @@
 import { type Address, Link, type Status } from "./link";
 import type { Command, Diagram, Explained, Policy, ServerFrame, Shown, TraceRecord, Why } from "./protocol";
-import { type Spike, Trace } from "./trace";
+import { cameFromOutside, type Spike, Trace } from "./trace";
 import { View } from "./view";
 
 export interface Conversation {
   visitor: string;
   name: string | null;
+  /** Milliseconds since 1970. */
+  began: number;
+  /** The visitor's last words. */
+  said: string | null;
 }
 
 const RECENT = 60; // causes that may be chosen from
@@ -19,6 +23,8 @@ export class Board {
   live = $state(true);
   visitor: string | null = $state(null);
   conversations: Conversation[] = $state.raw([]);
+  /** The file of the recording that is looked at. */
+  recording: string | null = $state(null);
   policy: Policy = $state.raw(EMPTY);
   paused = $state(false);
   /** Records and spikes that were not seen. */
@@ -50,14 +56,15 @@ export class Board {
     void this.version;
     const inputs = this.trace.inputs(RECENT);
     const pointed = this.spike === null ? undefined : this.trace.spike(this.spike);
-    return pointed === undefined || inputs.some((spike) => spike.id === pointed.id)
-      ? inputs
-      : [pointed, ...inputs];
+    if (pointed === undefined || inputs.includes(pointed)) return inputs;
+    const same = inputs.findIndex(({ group }) => group === pointed.group);
+    return same >= 0 && cameFromOutside(pointed) ? inputs.with(same, pointed) : [pointed, ...inputs];
   });
   view = new View();
   follows = $state(true);
   trace = new Trace();
   #asked: number | null = null; // the spike that "why not" was asked of last
+  #before: Address = {}; // what was looked at before a recording
   #address: Address;
   #link: Link;
   #now = 0;
@@ -87,10 +94,23 @@ export class Board {
   turnTo(address: Address): void {
     const { token } = this.#address;
     this.#address = { ...(token === undefined ? {} : { token }), ...address };
-    this.rule = this.spike = null;
+    this.rule = this.spike = this.recording = null;
     this.ending = this.trouble = "";
     this.view = new View();
+    this.follows = true;
     this.start();
+  }
+
+  /** Look at a recording, from a file of some name. */
+  play(recording: string, file: string): void {
+    if (this.recording === null) this.#before = this.#address;
+    this.turnTo({ recording });
+    this.recording = file;
+  }
+
+  /** Look at what was looked at before the recording. */
+  back(): void {
+    this.turnTo(this.#before);
   }
 
   present(token: string): void {
@@ -102,9 +122,16 @@ export class Board {
     return this.#address.token;
   }
 
-  send(command: Command): void {
-    this.trouble = "";
-    if (!this.#link.send(command)) this.trouble = "There is no connection to the agent.";
+  /** Send a command; whether it went out. */
+  send(command: Command): boolean {
+    const sent = this.#link.send(command);
+    this.trouble = sent ? "" : "There is no connection to the agent.";
+    return sent;
+  }
+
+  /** Whether there is an agent that could do something. */
+  get acts(): boolean {
+    return this.live && this.status === "open";
   }
 
   /** The context's time now (seconds). */
@@ -125,6 +152,22 @@ export class Board {
   point(spike: number | null): void {
     this.spike = spike;
     this.#ask();
+  }
+
+  /** Ask about a cause from now on, and see what came of it: of its runs, or else of whatever took it. */
+  visit(spike: Spike): void {
+    this.point(spike.id);
+    const bars = this.trace.made(spike, 400);
+    const ran = bars.filter((bar) => bar.phases.some((phase) => phase.state === "running"));
+    const ends = (ran.length > 0 ? ran : bars).map((bar) => bar.to ?? bar.from);
+    this.view.fit(spike.time, Math.max(spike.time + 0.01, ...ends));
+    this.follow(false);
+  }
+
+  /** Whatever is the newest cause is asked about from now on. */
+  visitNewest(): void {
+    this.point(null);
+    this.follow(this.live);
   }
 
   /** Ask again, of what has happened since. */
@@ -203,6 +246,9 @@ export class Board {
         this.diagram = null;
         this.unfold(frame.policy.rules.length <= 40 ? frame.policy.modules : []);
         if (this.rule !== null) this.select(this.rule);
+        break;
+      case "renamed":
+        this.title = frame.title;
         break;
       case "policy":
         this.#know(frame.policy);

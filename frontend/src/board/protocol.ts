@@ -191,8 +191,12 @@ export type ServerFrame =
       activations: (Activation & { rule: string })[];
     } & Clock)
   | ({ type: "records"; records: TraceRecord[]; missed: number; behind: number } & Clock)
+  | { type: "renamed"; title: string }
   | { type: "policy"; policy: Policy }
-  | { type: "conversations"; conversations: { visitor: string; name: string | null }[] }
+  | {
+      type: "conversations";
+      conversations: { visitor: string; name: string | null; began: number; said: string | null }[];
+    }
   | ({ type: "why" } & Why)
   | ({ type: "explained" } & Explained)
   | ({ type: "diagram" } & Diagram)

@@ -23,6 +23,8 @@ export interface Bar {
   /** Once it has ended: `done`, `resigned`, `failed`, ... or why it gave its spikes up: `age`, `consumed`, ... */
   outcome: string;
   reason: string;
+  /** The rule that answered instead, if that is why it gave up. */
+  by: string;
   holds: Set<number>;
   spikes: number[];
   lacks: string[];
@@ -146,13 +148,15 @@ export class Trace {
     return found;
   }
 
-  /** What came from outside, the newest first: what one may ask "why not" about. */
+  /**
+   * What came from outside, the newest first: what one may ask "why not" about. Writing a slot raises several signals
+   * of one causal group: the last one stands for them.
+   */
   inputs(most: number): Spike[] {
     const found: Spike[] = [];
     for (let i = this.spikes.length - 1; i >= 0 && found.length < most; i--) {
       const spike = this.spikes[i] as Spike;
-      if (spike.parents.length === 0 && spike.rule === "" && !spike.signal.startsWith("core:"))
-        found.push(spike);
+      if (cameFromOutside(spike) && found.at(-1)?.group !== spike.group) found.push(spike);
     }
     return found;
   }
@@ -224,9 +228,13 @@ export class Trace {
         if (bar === undefined || bar.to !== null) break;
         bar.holds.delete(record.spike);
         bar.lacks = [...bar.lacks, record.signal];
-        const reason = record.by !== "" ? `${record.by} answered` : "";
-        if (bar.holds.size === 0) this.#end(bar, record.time, record.reason, reason);
-        else this.#phase(bar, "gathering", record.time);
+        if (bar.holds.size > 0) {
+          this.#phase(bar, "gathering", record.time);
+          break;
+        }
+        bar.by = record.by;
+        const reason = record.by === "" ? "" : `${this.#path(record.by, record.spike, record.time)} answered`;
+        this.#end(bar, record.time, record.reason, reason);
         break;
       }
       case "waits": {
@@ -269,6 +277,7 @@ export class Trace {
       phases: [],
       outcome: "",
       reason: "",
+      by: "",
       holds: new Set(),
       spikes: [],
       lacks: [],
@@ -278,6 +287,22 @@ export class Trace {
     lane.bars.push(bar);
     lane.open.add(bar);
     return bar;
+  }
+
+  /** A rule that ran for the cause of a spike; before it the one that raised what it heard, where there is one. */
+  #path(rule: string, spike: number, time: number): string {
+    const group = this.group(this.#spikes.get(spike)?.group ?? 0);
+    const ran = this.lane(rule).bars.findLast(
+      (bar) =>
+        bar.from <= time &&
+        bar.phases.some((phase) => phase.state === "running") &&
+        bar.spikes.some((id) => this.group(this.#spikes.get(id)?.group ?? -1) === group),
+    );
+    for (const id of ran?.spikes ?? []) {
+      const before = this.#spikes.get(id)?.rule ?? "";
+      if (before !== "" && before !== rule) return `${before} → ${rule}`;
+    }
+    return rule;
   }
 
   #phase(bar: Bar, state: State, from: number, waits?: string[], until?: number | null): void {
@@ -317,6 +342,11 @@ export class Trace {
     const groups = new Set(this.spikes.map((spike) => spike.group));
     for (const group of this.#into.keys()) if (!groups.has(group)) this.#into.delete(group);
   }
+}
+
+/** Whether a spike is a cause of its own: of no rule, and not of the context itself, such as its pressure. */
+export function cameFromOutside(spike: Spike): boolean {
+  return spike.parents.length === 0 && spike.rule === "" && !spike.signal.startsWith("core:");
 }
 
 /** The index of the first item at or after a time. */

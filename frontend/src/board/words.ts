@@ -1,4 +1,5 @@
-import type { Shown } from "./protocol";
+import type { Policy, Shown } from "./protocol";
+import type { Bar, Spike } from "./trace";
 
 /** A value in one line of at most so many characters. */
 export function value(shown: Shown | undefined, most = 200): string {
@@ -6,6 +7,19 @@ export function value(shown: Shown | undefined, most = 200): string {
   const text = shown.text.length > most ? `${shown.text.slice(0, most)}…` : shown.text;
   return shown.cut === true && shown.text.length <= most ? `${text}…` : text;
 }
+
+/** What a spike stands for: what was said, which slot was written, or which signal was raised. */
+export function cause(spike: Spike, policy: Policy): string {
+  const text = value(spike.payload, 48);
+  const slot = policy.signals.find(({ name }) => name === spike.signal)?.slot;
+  if (slot === undefined || slot === null) return text === "null" ? spike.signal : `${spike.signal}: ${text}`;
+  if (slot === SAID) return text;
+  if (policy.slots.find(({ name }) => name === slot)?.kind !== "collection") return `${slot} = ${text}`;
+  return `${slot}: ${text} ${spike.signal.slice(slot.length + 1)}`;
+}
+
+/** The slot of what is said to the agent. */
+export const SAID = "rawio:input";
 
 /** A value that somebody typed: JSON, or else the text itself. */
 export function typed(text: string): unknown {
@@ -15,6 +29,20 @@ export function typed(text: string): unknown {
     return text;
   }
 }
+
+/** Why an activation gave its spikes up. */
+export function gaveUp(bar: Bar): string {
+  return bar.reason === "" ? (REASONS[bar.outcome] ?? bar.outcome) : bar.reason;
+}
+
+const REASONS: Record<string, string> = {
+  age: "a spike was too old",
+  consumed: "another rule answered",
+  resigned: "the rule resigned for this cause",
+  eliminated: "its patience ran out while others waited",
+  withdrawn: "a spike was withdrawn",
+  retired: "the rule retired",
+};
 
 export function nats(value: number): string {
   return value.toFixed(3);

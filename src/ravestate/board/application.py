@@ -47,7 +47,7 @@ class RecordedAgent(Agent):
 
 
 def routes(
-    recorders: Recorders | None = None, recording: Recording | None = None, title: str = "Ravestate"
+    recorders: Recorders | None = None, recording: Recording | None = None, title: str | None = None
 ) -> list[BaseRoute]:
     """The routes below ``/board``, for ``webio.app(agent, routes(), inside=INSIDE)``.
 
@@ -56,7 +56,7 @@ def routes(
     Args:
         recorders: Those of a `RecordedAgent`; without them, recording begins when somebody looks.
         recording: What is shown to who asks for no conversation.
-        title: What the agent is called.
+        title: What the agent is called; None: what it calls itself.
     """
     known = Recorders() if recorders is None else recorders
     shelf = Shelf(recording)

@@ -143,6 +143,15 @@ class History:
         """The spikes of a signal in the group."""
         return [self.born[id] for id in self.group if self.born[id].signal == signal]
 
+    def before(self, rule: str, time: float) -> str | None:
+        """The rule that raised what another one ran for, in this group, up to a time (seconds); None: no other rule."""
+        ran = [a.started for a in self.of(rule) if a.started is not None and a.started.time <= time]
+        for spike in ran[-1].spikes if ran else ():
+            source = self._runs.get(self.born[spike].source) if spike in self.born else None
+            if source is not None and source.rule != rule:
+                return source.rule
+        return None
+
     def value(self, slot: str, time: float) -> Set | None:
         """The last write of a slot up to a time (seconds), if the trace has one."""
         found = None

@@ -53,6 +53,12 @@ SILENT = 10.0
 BURST, SPEED = 60, 30.0
 """Commands that are taken at once, and each second after that. Who sends more has to wait."""
 
+LISTED = 1.0
+"""Seconds between two looks at which conversations there are."""
+
+WORDS = 48
+"""Characters of a visitor's last words, by which a conversation is known."""
+
 REPLIES = 64
 """Answers that may wait for a client. Who asks on and on, and does not read, is dropped."""
 
@@ -77,7 +83,7 @@ class Inspector:
         sessions: The conversations.
         recorders: Those of their contexts.
         shelf: The recordings.
-        title: What the agent is called.
+        title: What the agent is called; None: what it calls itself.
     """
 
     def __init__(
@@ -87,7 +93,7 @@ class Inspector:
         sessions: Sessions,
         recorders: Recorders,
         shelf: Shelf,
-        title: str,
+        title: str | None,
     ) -> None:
         self._socket = socket
         self._gate = gate
@@ -124,7 +130,7 @@ class Inspector:
             session = await self._session(hello)
             self._sessions.enter(session, self)
             subject = Live(session, self._recorders.of(session.context))
-            title = self._title
+            title = self._title_of(session)
         try:
             if session is not None:
                 await asyncio.sleep(0)  # a conversation that is new has begun by now
@@ -142,17 +148,17 @@ class Inspector:
                 }
             )
             await self._send({"type": "state", **subject.look(), **subject.clock()})
-            await self._until_over(subject, session, seen)
+            await self._until_over(subject, session, seen, title)
         finally:
             if session is not None:
                 self._sessions.exit(session, self)
                 if isinstance(subject, Live) and not any(isinstance(o, Inspector) for o in session.onlookers):
                     subject.leave()
 
-    async def _until_over(self, subject: Subject, session: Session | None, seen: int) -> None:
+    async def _until_over(self, subject: Subject, session: Session | None, seen: int, title: str) -> None:
         tasks = [
             asyncio.create_task(self._read(subject)),
-            asyncio.create_task(self._write(subject, session, seen)),
+            asyncio.create_task(self._write(subject, session, seen, title)),
         ]
         try:
             await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
@@ -265,11 +271,12 @@ class Inspector:
 
     # ------------------------------------------------------------------------------------ to the browser
 
-    async def _write(self, subject: Subject, session: Session | None, seen: int) -> None:
+    async def _write(self, subject: Subject, session: Session | None, seen: int, title: str) -> None:
         """Tell what happens, some twenty times a second at most, and answer."""
         leisure = Leisure()
         clock: dict[str, Any] = {}
         listed: list[dict[str, Any]] = []
+        now, looked = asyncio.get_running_loop().time, -LISTED
         while True:
             began = perf_counter()
             self._news.clear()
@@ -277,9 +284,14 @@ class Inspector:
                 await self._send(self._replies.popleft())
             if isinstance(subject, Live) and subject.renewed():
                 await self._send({"type": "policy", "policy": whole_data(subject.description)})
-            if session is not None and (conversations := self._conversations()) != listed:
-                listed = conversations
-                await self._send({"type": "conversations", "conversations": listed})
+            if session is not None and self._title_of(session) != title:
+                title = self._title_of(session)
+                await self._send({"type": "renamed", "title": title})
+            if session is not None and now() - looked >= LISTED:
+                looked = now()
+                if (conversations := self._conversations()) != listed:
+                    listed = conversations
+                    await self._send({"type": "conversations", "conversations": listed})
             missed = max(0, subject.first - 1 - seen)
             if subject.live and subject.last - seen > LAG:
                 missed = subject.last - seen - MOST
@@ -324,8 +336,18 @@ class Inspector:
         except TimeoutError:
             pass
 
+    def _title_of(self, session: Session) -> str:
+        return session.agent if self._title is None else self._title
+
     def _conversations(self) -> list[dict[str, Any]]:
-        return [{"visitor": session.visitor, "name": session.name} for session in self._sessions][-100:]
+        listed: list[dict[str, Any]] = []
+        for session in list(self._sessions)[-100:]:
+            newest = session.history.newest("user")
+            said = None if newest is None else newest.text[:WORDS]
+            listed.append(
+                {"visitor": session.visitor, "name": session.name, "began": session.began, "said": said}
+            )
+        return listed
 
     async def _send(self, frame: dict[str, Any]) -> None:
         await self._socket.send_text(_json(frame))

@@ -11,6 +11,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, cast
 
+from ravestate.declare.slot import Entry
+
 __all__ = ["Shown", "show"]
 
 DEEPEST = 6
@@ -57,6 +59,10 @@ def show(value: object, most: int = 2000) -> Shown:
             if len(whole) <= most:
                 return Shown(whole)
         return Shown(json.dumps(_well_formed(text[:most]), ensure_ascii=False)[:most], False, True)
+    if kind is Entry:  # of a collection: its key says most
+        key, item = cast("Entry", value)
+        name = show(str(key), most).text
+        return Shown((name if item is None else f"{name}: {show(item, most).text}")[:most], False)
     pieces: list[str] = []
     size = 0
     try:

@@ -13,10 +13,12 @@ from ravestate.board.shown import Shown, show
 from ravestate.board.trace_file import Recording
 from ravestate.board.why_not import Opens
 from ravestate.board.wire import VALUE, shown_data, whole_data
+from ravestate.declare.slot import Flag, checkable
 from ravestate.engine.trace import Record, Set
 from ravestate.errors import RavestateError, UndeclaredError, nearest
 
 if TYPE_CHECKING:
+    from ravestate.declare.signal import Signal
     from ravestate.modules.platform.webio.session import Session
 
 __all__ = ["Live", "Recorded", "Subject"]
@@ -170,11 +172,17 @@ class Live:
             case Resume():
                 context.resume()
             case Put():
-                context.put(self._named(context.policy.slots, "slot", command.slot), command.value)
+                slot = self._named(context.policy.slots, "slot", command.slot)
+                if isinstance(slot, Flag) and not isinstance(command.value, bool):
+                    raise RavestateError(f"{slot.name} is a flag: write true or false, not {command.value!r}")
+                context.put(slot, command.value)
             case Emit():
                 signal = self._named(context.policy.signals, "signal", command.signal)
+                _check_payload(signal, command)
                 context.emit(signal, command.payload)
             case Say():
+                if self._session.ended is not None:
+                    raise RavestateError("this conversation has ended: nothing can be said in it")
                 self._session.hear(f"board-{self._recorder.last}-{context.now:.6f}", command.text)
             case _:
                 raise RavestateError(f"{command.type} is not for an agent")
@@ -188,6 +196,25 @@ class Live:
         if name not in things:
             raise UndeclaredError(f"this agent has no {what} {name!r}{nearest(name, things)}")
         return things[name]
+
+
+def _check_payload(signal: Signal[Any], command: Emit) -> None:
+    """Refuse by hand what a type checker would refuse in a rule.
+
+    Raises:
+        RavestateError: The payload is missing, or not of the signal's type.
+    """
+    kind = signal.payload
+    if kind is None or kind is type(None):  # nothing is said of it
+        return
+    name = getattr(kind, "__name__", str(kind))
+    if "payload" not in command.model_fields_set:
+        raise RavestateError(f"{signal.name} carries a payload of type {name}: give one")
+    takes = checkable(kind)
+    if takes is not None and not isinstance(command.payload, takes):
+        raise RavestateError(
+            f"{signal.name} carries a payload of type {name}, not {type(command.payload).__name__}"
+        )
 
 
 class Recorded:

@@ -12,6 +12,7 @@ from typing import Any, Literal
 
 from ravestate.board.description import ClauseView, Description, RuleView
 from ravestate.board.history import Attempt, History
+from ravestate.engine.explain import how_ended
 from ravestate.engine.trace import Record, Settled
 
 __all__ = ["Missing", "Moment", "Raiser", "Verdict", "WhyNot", "why_not"]
@@ -212,7 +213,7 @@ class _Inquiry:
             first = passed[0]
             reasons = {
                 "payload": f"it did not take {first.signal}: its payload did not fit the predicate",
-                "consumed": f"it did not take {first.signal}: {self._answered(rule, first.time)} had answered this cause already",
+                "consumed": f"it did not take {first.signal}: {self._path(self._answered(rule, first.time), first.time)} had answered this cause already",
                 "caused": f"it did not take {first.signal}: the rule itself was among its causes, and no rule is its own cause",
             }
             return "passed", reasons.get(first.reason, f"it did not take {first.signal}"), first.time, None
@@ -248,7 +249,8 @@ class _Inquiry:
             wait = attempt.waits[-1]
             return (
                 "outrun",
-                f"it was ready, and {self._waiting(rule, attempt, wait.time)}; {by} answered at {_s(end)}",
+                f"it was ready, and waited for {self._rivals(rule, attempt, wait.time)}; "
+                f"{self._path(by, end)} answered at {_s(end)}",
                 end,
             )
         if attempt.lacks:
@@ -270,7 +272,11 @@ class _Inquiry:
             return "gated", f"{self._gated(clause, end)}{self._lost(attempt, clause, by)}", end
         if last.reason == "consumed":
             ahead = self._ahead(by, rule, attempt, end)
-            return "outrun", f"it was ready, but {by}{ahead} was asked first, and answered at {_s(end)}", end
+            return (
+                "outrun",
+                f"it was ready, but {self._path(by, end)}{ahead} was asked first, and answered at {_s(end)}",
+                end,
+            )
         return "lacked", f"it took {_names(self._held(attempt))}{self._lost(attempt, clause, by)}", end
 
     def _ran(
@@ -317,7 +323,7 @@ class _Inquiry:
             until = "" if wait.until is None else f", until {_s(wait.until)} at the latest"
             return (
                 "waiting",
-                f"it is ready since {_s(wait.time)}, and {self._waiting(rule, attempt, wait.time)}{until}",
+                f"it is ready since {_s(wait.time)}, and waits for {self._rivals(rule, attempt, wait.time)}{until}",
                 None,
             )
         if ripe is not None and ripe > self.history.last:
@@ -359,7 +365,7 @@ class _Inquiry:
 
     # ------------------------------------------------------------------------------------ the others
 
-    def _waiting(self, rule: RuleView, attempt: Attempt, time: float) -> str:
+    def _rivals(self, rule: RuleView, attempt: Attempt, time: float) -> str:
         """For whom an attempt waited from a time on, and why."""
         wait = next(w for w in reversed(attempt.waits) if w.time <= time)
         parts: list[str] = []
@@ -380,7 +386,7 @@ class _Inquiry:
                 parts.append("another run of its own on the same spike")
             else:
                 parts.append(f"{name}{self._ahead(name, rule, attempt, wait.time)}")
-        return f"waited for {_and(parts)}"
+        return _and(parts)
 
     def _ahead(self, name: str, rule: RuleView, attempt: Attempt, time: float) -> str:
         """By how much another rule is ahead, in words."""
@@ -397,6 +403,11 @@ class _Inquiry:
         """The share of its utility that a rule has recovered since it ran last (L9)."""
         ran = [fired for fired in self.history.fired.get(rule.name, ()) if fired <= time]
         return min(1.0, (time - ran[-1]) / rule.cooldown) if rule.cooldown and ran else 1.0
+
+    def _path(self, by: str, time: float) -> str:
+        """Who answered, and on what account: behind the rule that raised what it heard, where there is one."""
+        before = self.history.before(by, time)
+        return by if before is None else f"{before} → {by}"
 
     def _answered(self, rule: RuleView, time: float) -> str:
         """Who had taken one of the rule's slots in this group by a time, if the trace tells."""
@@ -426,7 +437,7 @@ class _Inquiry:
             most = f" of {ages[0]:g} s" if ages else ""
             return f"; {last.signal} reached its greatest age{most} at {_s(last.time)}"
         if last.reason == "consumed":
-            return f"; {by} answered this cause at {_s(last.time)}"
+            return f"; {self._path(by, last.time)} answered this cause at {_s(last.time)}"
         if last.reason == "resigned":
             return f"; the rule resigned for it at {_s(last.time)}"
         return f"; {REASONS.get(last.reason, last.reason)} at {_s(last.time)}"
@@ -486,7 +497,7 @@ class _Inquiry:
                 born.source == last.id and born.signal == signal for born in self.history.born.values()
             )
             ended = last.settled
-            what = "raised it" if raised else f"was {ended.outcome} without raising it"
+            what = "raised it" if raised else f"{how_ended(last.settled)} without raising it"
             why = f": {ended.reason}" if ended.reason else ""
             return Raiser(name, ended.outcome, ended.time, f"{name} {what}, at {_s(ended.time)}{why}")
         if rule is None or name in self.asked or len(self.asked) > DEEPEST:
@@ -513,25 +524,27 @@ class _Inquiry:
             for held in attempt.held:
                 lacking = f", still lacking {_names(held.lacks)}" if held.lacks else ": it has all it needs"
                 yield Moment(held.time, f"took {held.signal}{lacking}")
+            last = ""
             for wait in attempt.waits:
                 until = "" if wait.until is None else f", until {_s(wait.until)} at the latest"
-                yield Moment(
-                    wait.time, f"is ready, and {self._waiting(rule, attempt, wait.time)}{until}", wait.for_
-                )
+                words = f"was ready, and waited for {self._rivals(rule, attempt, wait.time)}{until}"
+                if words != last:  # it may be asked again, and still wait for the same
+                    yield Moment(wait.time, words, wait.for_)
+                last = words
             if attempt.started is not None:
-                yield Moment(attempt.started.time, "runs")
+                yield Moment(attempt.started.time, "ran")
             if attempt.told is not None:
-                yield Moment(attempt.told.time, f"is told to end: {attempt.told.reason}")
+                yield Moment(attempt.told.time, f"was told to end: {attempt.told.reason}")
             if attempt.settled is not None:
                 reason = f": {attempt.settled.reason}" if attempt.settled.reason else ""
-                yield Moment(attempt.settled.time, f"is {attempt.settled.outcome}{reason}")
+                yield Moment(attempt.settled.time, f"{how_ended(attempt.settled)}{reason}")
             for lost in attempt.gave_up:
                 why = (
-                    f"{lost.by} answered it"
+                    f"{self._path(lost.by, lost.time)} answered it"
                     if lost.reason == "consumed" and lost.by
                     else REASONS.get(lost.reason, lost.reason)
                 )
-                yield Moment(lost.time, f"gives {lost.signal} up: {why}", (lost.by,) if lost.by else ())
+                yield Moment(lost.time, f"gave {lost.signal} up: {why}", (lost.by,) if lost.by else ())
         for pressed in self.history.pressed.get(rule.name, ()):
             if any(a.id for a in self.history.of(pressed.by)):
                 lacks = _names(pressed.lacks)

@@ -59,7 +59,7 @@ def run(options: argparse.Namespace) -> int:
     talks = recording is None
     chosen = agents.load_agent(options, ["webio", *(whole.complete(options) if talks and not named else ())])
     made = RecordedAgent(*chosen.modules, **chosen.options())
-    title = getattr(made.settings[webio.module.name], "title", None) or "Ravestate"
+    title = getattr(made.settings[webio.module.name], "title", None)
     beside = routes(made.recorders, recording, title)
     asyncio.run(_serve(made, beside, INSIDE, talks, options.browser))
     return 0

@@ -11,7 +11,7 @@ from ravestate.declare.signal import Keep, Signal
 from ravestate.declare.wording import place_of_call
 from ravestate.errors import DeclarationError, RuleError, nearest
 
-__all__ = ["Collection", "Entry", "Flag", "Slot"]
+__all__ = ["Collection", "Entry", "Flag", "Slot", "checkable"]
 
 T = TypeVar("T")
 V = TypeVar("V")
@@ -55,7 +55,7 @@ class Slot(Generic[T]):
     ) -> None:
         self.name = name
         self.default = default
-        self.type = _checkable(type)
+        self.type = checkable(type)
         self.always = always
         self.origin = origin
         self.changed: Signal[Any] = self._signal("changed", input, keep, limit)
@@ -108,8 +108,8 @@ class Slot(Generic[T]):
         return self.name
 
 
-def _checkable(kind: Any) -> Any:
-    """The type as `isinstance` takes it, an int being fine for a float; None if it does not."""
+def checkable(kind: Any) -> Any:
+    """A type as `isinstance` takes it, an int being fine for a float; None if it does not."""
     if kind is float:
         kind = int | float
     try:

@@ -13,7 +13,7 @@ from ravestate.policy.plan import Clause, RulePlan
 if TYPE_CHECKING:
     from ravestate.engine.engine import Engine
 
-__all__ = ["ActivationState", "ClauseState", "Explanation", "explain"]
+__all__ = ["ActivationState", "ClauseState", "Explanation", "explain", "how_ended"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -159,6 +159,12 @@ def _activation(engine: Engine, activation: Activation) -> ActivationState:
     )
 
 
+def how_ended(settled: Settled) -> str:
+    """How a run ended, as a verb of the past: ``was done``, ``resigned``, ``failed``, ``was interrupted``, ..."""
+    past = settled.outcome in ("resigned", "failed", "retired")
+    return settled.outcome if past else f"was {settled.outcome}"
+
+
 def _missing(engine: Engine, rule: RulePlan, records: Sequence[Record]) -> Iterator[str]:
     """What has not occurred of the signals of a rule, and why not."""
     if not records:
@@ -171,7 +177,7 @@ def _missing(engine: Engine, rule: RulePlan, records: Sequence[Record]) -> Itera
         raisers = [
             f"{cause.name} may raise it, and "
             + (
-                f"was {end.outcome} at {end.time:.3f} s without"
+                f"{how_ended(end)} at {end.time:.3f} s without"
                 if (end := ends.get(cause.name))
                 else "has not run"
             )
@@ -209,7 +215,7 @@ def _history(rule: str, records: Iterable[Record]) -> Iterator[str]:
             case Started(rule=name) if name == rule:
                 yield f"{record.time:.3f} s: ran"
             case Settled(rule=name) if name == rule:
-                yield f"{record.time:.3f} s: {record.outcome}" + (
+                yield f"{record.time:.3f} s: {how_ended(record)}" + (
                     f": {record.reason}" if record.reason else ""
                 )
             case _:

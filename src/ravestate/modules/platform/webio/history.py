@@ -10,6 +10,8 @@ from .protocol import Message
 
 __all__ = ["History"]
 
+Speaker = Literal["user", "agent"]
+
 MESSAGES = 500
 """Messages that are kept."""
 
@@ -41,7 +43,11 @@ class History:
         """The number of the oldest message that is kept; the next one's where there is none."""
         return self.last - len(self._messages) + 1
 
-    def add(self, speaker: Literal["user", "agent"], text: str, time: int, id: str | None = None) -> Message:
+    def newest(self, speaker: Speaker) -> Message | None:
+        """The newest message of one of the two that is kept, if there is one."""
+        return next((message for message in reversed(self._messages) if message.speaker == speaker), None)
+
+    def add(self, speaker: Speaker, text: str, time: int, id: str | None = None) -> Message:
         """Number and keep a message; of one that is larger than everything may be, the beginning."""
         text = text[: self._characters]
         self.last += 1
