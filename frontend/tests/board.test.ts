@@ -315,6 +315,23 @@ test("a cause is called by what was said, which slot was written, or which signa
   ]);
 });
 
+test("what only background rules hear does not take the place of what was said", () => {
+  const [server, board] = Server.open();
+  const talk = { ...rule("m:talk"), background: false };
+  const watch = { ...rule("m:watch"), background: true };
+  const heard = (name: string, hearers: string[]) => ({ ...POLICY.signals[0], name, slot: null, hearers });
+  const signals = [heard("m:typing", ["m:watch"]), heard("m:said", ["m:talk", "m:watch"])];
+  server.tell({ type: "policy", policy: { ...POLICY, rules: [talk, watch], signals } as Policy });
+  const came = (spike: number, signal: string) => ({ ...input(spike, spike, "null"), signal }) as TraceRecord;
+  const clock = { missed: 0, behind: 0, now: 9, paused: false };
+  server.tell({ type: "records", records: [came(3, "m:typing")], ...clock });
+  expect(board.cause?.id).toBe(3); // nothing was said yet
+  server.tell({ type: "records", records: [came(4, "m:said"), came(5, "m:typing")], ...clock });
+  expect(board.cause?.id).toBe(4);
+  board.point(5);
+  expect(board.cause?.id).toBe(5);
+});
+
 test("the signals of one write are one cause, and that which was pointed at stands for it", () => {
   const [server, board] = Server.open();
   const records = [

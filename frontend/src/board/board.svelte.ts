@@ -60,6 +60,14 @@ export class Board {
     const same = inputs.findIndex(({ group }) => group === pointed.group);
     return same >= 0 && cameFromOutside(pointed) ? inputs.with(same, pointed) : [pointed, ...inputs];
   });
+  /** The signals that background rules hear, and nobody else. */
+  #aside = $derived.by(() => {
+    const background = new Set(this.policy.rules.filter((rule) => rule.background).map(({ name }) => name));
+    const heard = this.policy.signals.filter(({ hearers }) => hearers.length > 0);
+    return new Set(
+      heard.filter(({ hearers }) => hearers.every((name) => background.has(name))).map(({ name }) => name),
+    );
+  });
   view = new View();
   follows = $state(true);
   trace = new Trace();
@@ -211,9 +219,17 @@ export class Board {
     return this.#causes;
   }
 
-  /** What is asked about: the spike that was pointed at, or else the newest cause. */
+  /**
+   * What is asked about: the spike that was pointed at, or else the newest cause. One that only background rules hear,
+   * such as that somebody is writing, does not take the place of what was said before.
+   */
   get cause(): Spike | undefined {
-    return this.#causes.find((spike) => spike.id === this.spike) ?? this.#causes[0];
+    const causes = this.#causes;
+    return (
+      causes.find((spike) => spike.id === this.spike) ??
+      causes.find((spike) => !this.#aside.has(spike.signal)) ??
+      causes[0]
+    );
   }
 
   value(slot: string): Shown | undefined {
