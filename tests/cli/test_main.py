@@ -39,6 +39,13 @@ def test_options_are_not_guessed_from_their_beginnings(capsys: Capture) -> None:
     assert code == 2 and "--see" in errors
 
 
+def test_modules_may_stand_before_and_behind_options(folder: Path, capsys: Capture) -> None:
+    write(folder / "hello.py", HELLO)
+    code, out, errors = call(capsys, "check", "idle", "--set", "idle.bored_after=9", "./hello.py", "fillers")
+    assert (code, errors) == (0, "")
+    assert out == call(capsys, "check", "idle", "./hello.py", "fillers")[1]
+
+
 @pytest.mark.parametrize(
     ("arguments", "usage", "complaint"),
     [
