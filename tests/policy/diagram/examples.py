@@ -90,6 +90,22 @@ def many_rules(count: int) -> Module:
     return module
 
 
+def star(points: int, pairs: bool) -> Diagram:
+    """A slot on which everything hangs: rules that write one other slot, or rules with a signal each."""
+    nodes = [Node("in", "slot", "input", "rawio"), Node("out", "slot", "intent", "verbaliser")]
+    edges: list[Edge] = []
+    for i in range(points):
+        rule = f"rule_{i}"
+        nodes.append(Node(rule, "rule", rule, "module"))
+        edges.append(Edge("in", rule, "reads"))
+        if pairs:
+            nodes.append(Node(f"signal_{i}", "signal", f"signal_{i}", "module"))
+            edges.append(Edge(rule, f"signal_{i}", "emits"))
+        if not pairs or i == 0:
+            edges.append(Edge(rule, "out", "writes"))
+    return Diagram(tuple(nodes), tuple(edges))
+
+
 ODD_NAMES = (
     'a"b',
     "<b>&amp;</b>",

@@ -18,9 +18,18 @@ _WORK = 400_000  # segments x sweeps
 _PATIENCE = 4  # sweeps without improvement
 
 
-def arrange(graph: Layered) -> None:
-    """Reorder the layers of `graph` in place."""
+def arrange(graph: Layered, *, centred: bool = False) -> None:
+    """Reorder the layers of `graph` in place.
+
+    Args:
+        graph: Any layered graph.
+        centred: Begin with bends amid the neighbours that they share a port with, instead of in the order of making.
+            A trunk that serves layer after layer then runs straight through them, with its branches to both sides.
+    """
     before, after = graph.neighbours()
+    if centred:
+        before = [_bends_amid(graph, vertices) for vertices in before]
+        after = [_bends_amid(graph, vertices) for vertices in after]
     sweeps = max(4, min(24, _WORK // (1 + len(graph.segments))))
     best = graph.order
     least = crossings(best, after) + 1  # so that a start is preferred to the order of making
@@ -78,6 +87,13 @@ def _start(
             stack.extend(reversed(second[v]))
             stack.extend(reversed(first[v]))
     return order
+
+
+def _bends_amid(graph: Layered, vertices: Sequence[int]) -> list[int]:
+    """The same vertices, with those that are bends in the middle."""
+    others = [v for v in vertices if graph.kind[v] != "bend"]
+    half = len(others) // 2
+    return [*others[:half], *(v for v in vertices if graph.kind[v] == "bend"), *others[half:]]
 
 
 def _sweep(

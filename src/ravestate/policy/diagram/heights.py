@@ -18,9 +18,16 @@ _AIR = (1.0, 1.15)
 _LEVEL = 0.01
 
 
-def heights(graph: Layered) -> list[float]:
-    """The vertical middle of each vertex of a graph in order, in pixels."""
-    candidates = [middles(graph), *(relaxed(graph, air) for air in _AIR)]
+def heights(graph: Layered, room: float | None = None) -> list[float]:
+    """The vertical middle of each vertex of a graph in order, in pixels.
+
+    Args:
+        graph: Its layers are in order, and its ports are placed.
+        room: How high the picture may be, in pixels, if its most crowded layer fits in there; ``None`` if that is open.
+    """
+    candidates = [relaxed(graph, air, room) for air in _AIR]
+    if room is None:
+        candidates.insert(0, middles(graph))
     for candidate in candidates:
         straighten(graph, candidate)
     costs = [round(_cost(graph, candidate), 3) for candidate in candidates]

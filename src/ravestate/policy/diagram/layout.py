@@ -1,7 +1,8 @@
 """Where everything goes: the layered method of Sugiyama, Tagawa and Toda, from left to right.
 
 1. Cycles are cut by turning some edges round (`acyclic`); detached ones and reads before others.
-2. Nodes get layers, so that edges are short (`simplex`).
+2. Nodes get layers, so that edges are short (`simplex`), and more of them where the picture were too tall for a
+   screen (`bounded`).
 3. Long edges are cut at every layer (`layered`), and the layers are ordered for few crossings (`crossings`).
 4. Vertices get their places in them (`ports`, `heights`), layers their distances, and lines their turns
    (`tracks`, `routing`).
@@ -14,12 +15,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 from ravestate.policy.diagram.acyclic import STRONG, backward
+from ravestate.policy.diagram.bounded import shaped
+from ravestate.policy.diagram.coordinates import separation
 from ravestate.policy.diagram.crossings import arrange
 from ravestate.policy.diagram.graph import Diagram, Edge, EdgeKind, NodeKind
 from ravestate.policy.diagram.heights import heights
-from ravestate.policy.diagram.layered import Link, layered
+from ravestate.policy.diagram.layered import Layered, Link, layered
 from ravestate.policy.diagram.ports import place_ports
 from ravestate.policy.diagram.routing import Point, route
 from ravestate.policy.diagram.simplex import layers
@@ -29,6 +33,8 @@ __all__ = ["Box", "Layout", "Size", "lay_out"]
 Size = tuple[float, float]
 """Width and height in pixels."""
 
+_GAP = 32.0  # pixels between layers with straight lines
+_TURN = 2.0  # pixels more for each port whose lines may turn there, on the average
 _BETWEEN = 36.0  # pixels between parts
 _ASPECT = 1.6  # wished width : height of packed parts
 
@@ -159,10 +165,14 @@ def _lay_out_part(
         (link.low, link.high, _tightness(edge, kinds), 1 if link.label is None else 2)
         for link, edge in zip(links, edges, strict=True)
     ]
-    graph = layered(layers(len(ids), arcs), [nodes[name] for name in ids], links)
-    arrange(graph)
+    sizes = [nodes[name] for name in ids]
+    shortest = layers(len(ids), arcs)
+    ranks = shaped(shortest, arcs, lambda ranks: _extent(layered(ranks, sizes, links)))
+    graph = layered(ranks, sizes, links)
+    folded = ranks != shortest
+    arrange(graph, centred=folded)
     place_ports(graph)
-    routed = route(graph, heights(graph))
+    routed = route(graph, heights(graph, _extent(graph)[0] / _ASPECT if folded else None))
     boxes = [
         Box(x - width / 2, y - height / 2, width, height)
         for (x, y), width, height in zip(routed.middles, graph.width, graph.height, strict=True)
@@ -178,6 +188,14 @@ def _lay_out_part(
         max(box.x + box.width for box in boxes),
         max(box.y + box.height for box in boxes),
     )
+
+
+def _extent(graph: Layered) -> Size:
+    """About how large a graph will be, before anything is known of its places."""
+    width = sum(max(graph.width[v] for v in layer) + _GAP for layer in graph.order)
+    width += _TURN * len({low for low, _ in graph.segments})
+    height = max(sum(separation(graph, u, v) for u, v in pairwise(layer)) for layer in graph.order)
+    return width, height
 
 
 def _tightness(edge: Edge, kinds: Mapping[str, NodeKind]) -> int:

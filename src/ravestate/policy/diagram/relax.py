@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import pairwise
+from math import inf
 
 from ravestate.policy.diagram.coordinates import separation
 from ravestate.policy.diagram.layered import Layered
@@ -19,8 +20,11 @@ _SWEEPS = 24
 _BEHIND = 0.15  # weight of what lies ahead of a sweep, against what lies behind it
 
 
-def relaxed(graph: Layered, airy: float) -> list[float]:
-    """The vertical middle of each vertex in pixels, `airy` times as far apart as they must be."""
+def relaxed(graph: Layered, airy: float, room: float | None = None) -> list[float]:
+    """The vertical middle of each vertex in pixels, `airy` times as far apart as they must be.
+
+    With `room`, all middles are within so many pixels, or within what the most crowded layer takes up.
+    """
     gaps: list[list[float]] = []
     middle = [0.0] * len(graph.layer)
     for layer in graph.order:
@@ -38,6 +42,7 @@ def relaxed(graph: Layered, airy: float) -> list[float]:
         weight = (1.0, 2.0, 8.0)[(graph.kind[p.vertex] == "bend") + (graph.kind[q.vertex] == "bend")]
         after[p.vertex].append((q.vertex, q.offset - p.offset, weight))
         before[q.vertex].append((p.vertex, p.offset - q.offset, weight))
+    half = inf if room is None else max(room, *(sum(apart) for apart in gaps)) / 2
     for sweep in range(_SWEEPS):
         forward = sweep % 2 == 0
         ahead = 1.0 if sweep >= _SWEEPS // 2 else _BEHIND
@@ -55,13 +60,15 @@ def relaxed(graph: Layered, airy: float) -> list[float]:
                     else middle[v]
                 )
                 weights.append(total if pulls else 0.01)
-            for v, y in zip(layer, _isotonic(wishes, weights, gaps[at]), strict=True):
+            for v, y in zip(layer, _isotonic(wishes, weights, gaps[at], half), strict=True):
                 middle[v] = y
     return middle
 
 
-def _isotonic(wishes: Sequence[float], weights: Sequence[float], gaps: Sequence[float]) -> list[float]:
-    """The places nearest to the wishes (weighted squares) that keep at least the gaps."""
+def _isotonic(
+    wishes: Sequence[float], weights: Sequence[float], gaps: Sequence[float], half: float
+) -> list[float]:
+    """The places nearest to the wishes (weighted squares) from -half to half that keep at least the gaps."""
     pools: list[tuple[float, float, int]] = []  # mean, weight, how many
     offsets: list[float] = []
     offset = 0.0
@@ -75,5 +82,6 @@ def _isotonic(wishes: Sequence[float], weights: Sequence[float], gaps: Sequence[
             many += more
         pools.append((mean, heavy, many))
         offset += gaps[i] if i < len(gaps) else 0.0
-    means = [mean for mean, _, many in pools for _ in range(many)]
+    highest = half - sum(gaps)
+    means = [max(-half, min(highest, mean)) for mean, _, many in pools for _ in range(many)]
     return [mean + offset for mean, offset in zip(means, offsets, strict=True)]
