@@ -10,11 +10,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from policy.diagram.examples import games, many_rules, prompting, question_answering, star
+from policy.diagram.examples import EDGE_KINDS, games, many_rules, prompting, question_answering, star
 from policy.diagram.test_layout import check, laid_out
 from ravestate.declare.module import Module
 from ravestate.policy.diagram.bounded import bounded, shaped
 from ravestate.policy.diagram.build import build
+from ravestate.policy.diagram.graph import Diagram, Edge
 from ravestate.policy.diagram.simplex import Arc, layers
 
 
@@ -73,6 +74,26 @@ def test_what_hangs_on_one_hub_fills_a_landscape_screen(points: int, pairs: bool
 def test_the_examples_are_no_higher_than_wide(module: Module) -> None:
     layout = laid_out(build(module.rules))
     assert layout.width >= layout.height
+
+
+@st.composite
+def tangled_stars(draw: st.DrawFn) -> Diagram:
+    """What hangs on one hub, and a few edges to and fro, some of them with labels."""
+    diagram = star(draw(st.integers(8, 20)), draw(st.booleans()))
+    ids = st.sampled_from([node.id for node in diagram.nodes])
+    edges = [
+        Edge(source, target, draw(st.sampled_from(EDGE_KINDS)), draw(st.sampled_from(["", "any age"])))
+        for source, target in draw(st.lists(st.tuples(ids, ids), max_size=12))
+        if source != target
+    ]
+    return Diagram(diagram.nodes, (*diagram.edges, *edges))
+
+
+@given(tangled_stars())
+def test_in_a_folded_picture_nothing_overlaps_and_every_line_joins_its_nodes(diagram: Diagram) -> None:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("ravestate.policy.diagram.bounded._SCREEN", 200.0)
+        check(diagram)
 
 
 def test_in_a_folded_picture_lines_run_from_left_to_right() -> None:
