@@ -41,6 +41,8 @@ async def test_who_says_nothing_is_told_what_was_expected_and_closed() -> None:
         ('{"type": "hello", "v": 2}', "this side speaks version 1 only"),
         (b"\x00\x01", "not a binary one"),
         ("", "not JSON"),
+        (f'{{"type": "say", "id": "a", "text": "{"x" * 10_001}"}}', "at most 10,000 characters"),
+        ('{"type": "say", "id": "a", "text": " "}', "has nothing in it"),
     ],
 )
 def test_who_begins_otherwise_is_told_and_closed(first: str | bytes, said: str) -> None:

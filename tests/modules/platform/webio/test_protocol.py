@@ -26,6 +26,7 @@ from ravestate.modules.platform.webio.protocol import (
     Typing,
     Welcome,
     Writing,
+    heard_text,
     parse,
     serialise,
 )
@@ -37,7 +38,7 @@ names = st.text(st.characters(categories=("L", "N")), min_size=1, max_size=80)
 
 client_frames = st.one_of(
     st.builds(Hello, st.just(1), st.none() | keys, numbers, st.none() | texts, st.none() | names),
-    st.builds(Say, keys, texts),
+    st.builds(Say, keys, texts.filter(str.strip)),
     st.just(Writing()),
     st.just(Bye()),
     st.just(Ping()),
@@ -146,3 +147,29 @@ def test_fields_that_are_not_known_are_left_aside() -> None:
 def test_control_characters_are_taken_out() -> None:
     text = json.dumps({"type": "say", "id": "a", "text": "a\x1b[31mb\x00\ud800"})
     assert parse(text, CLIENT).text == "ab\ufffd"
+
+
+@pytest.mark.parametrize(
+    ("text", "heard"),
+    [
+        ("Hello", "Hello"),
+        ("a\r\nb\tc", "a\nb\tc"),
+        ("\x1b[2Ja\x00b\ud800", "ab\ufffd"),
+        ("\x00" + "x" * 10_000, "x" * 10_000),
+    ],
+)
+def test_what_is_heard_of_a_text(text: str, heard: str) -> None:
+    assert heard_text(text) == heard
+
+
+@pytest.mark.parametrize(
+    ("text", "code"),
+    [("x" * 10_001, "too-long"), ("", "empty"), (" \n\t", "empty"), ("\x85\x1b[0m", "empty")],
+)
+def test_what_is_not_heard_whoever_says_it(text: str, code: str) -> None:
+    with pytest.raises(ProtocolError) as refused:
+        heard_text(text)
+    assert (refused.value.code, refused.value.id) == (code, None)
+    with pytest.raises(ProtocolError) as refused:
+        parse(json.dumps({"type": "say", "id": "a", "text": text}), CLIENT)
+    assert (refused.value.code, refused.value.id) == (code, "a")

@@ -98,6 +98,23 @@ async def test_what_is_sent_twice_is_heard_once() -> None:
 
 
 @in_virtual_time
+async def test_who_says_something_is_told_whether_it_was_taken() -> None:
+    async with page() as app, Visit(app) as visit:
+        await visit.hello()
+        await visit.messages(1)
+        (session,) = app.state.sessions
+        assert session.hear("a", "one")
+        assert session.hear("a", "one")  # it was
+        assert not session.leaving
+        visit.tell("bye")
+        await visit.frames("ended")
+        assert session.leaving
+        assert not session.hear("b", "two")
+        assert not session.hear("a", "one")
+        assert [message.text for message in session.history.since(0)] == ["Hello!", "one", "one", "Bye!"]
+
+
+@in_virtual_time
 async def test_all_windows_of_a_visitor_show_the_same() -> None:
     async with page() as app, Visit(app) as one, Visit(app) as other:
         await one.hello()

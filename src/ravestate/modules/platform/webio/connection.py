@@ -102,7 +102,7 @@ class Connection:
                 await self._serve()
             except ProtocolError as error:
                 await self._send(Error(error.code, str(error)))
-                await self._socket.close(CODES[error.code], error.code)
+                await self._socket.close(CODES.get(error.code, 4400), error.code)
         except WebSocketDisconnect:
             pass
 
@@ -183,8 +183,6 @@ class Connection:
         if isinstance(frame, ProtocolError):
             raise frame
         if isinstance(frame, Say):
-            if not frame.text.strip():
-                raise ProtocolError("empty", 'say: "text" has nothing in it', frame.id)
             session.hear(frame.id, frame.text)
         elif isinstance(frame, Writing):
             session.notice_writing()

@@ -40,6 +40,7 @@ __all__ = [
     "Typing",
     "Welcome",
     "Writing",
+    "heard_text",
     "parse",
     "serialise",
 ]
@@ -254,8 +255,8 @@ def parse(text: str | bytes, frames: Mapping[str, type[Any]]) -> Any:
         frames: Which frames may come: `CLIENT` or `SERVER`.
 
     Raises:
-        ProtocolError: It is none of them; the code is ``version`` for another version, ``too-long`` for too much said at
-            once, else ``malformed``.
+        ProtocolError: It is none of them; the code is ``version`` for another version, that of `heard_text` for what is
+            not heard, else ``malformed``.
     """
     if not isinstance(text, str):
         raise _malformed("a frame is a text message, not a binary one")
@@ -286,13 +287,33 @@ def parse(text: str | bytes, frames: Mapping[str, type[Any]]) -> Any:
             raise _malformed(f'{name}: "{wire}": {_short(value)} is not {wanted}') from None
     if values.get("v", VERSION) != VERSION:
         raise ProtocolError("version", f'"v": {values["v"]}: this side speaks version {VERSION} only')
-    if len(values.get("text", "")) > LONGEST_TEXT and kind is Say:
-        raise ProtocolError(
-            "too-long",
-            f'say: "text" has at most {LONGEST_TEXT:,} characters, not {len(values["text"]):,}',
-            values["id"],
-        )
+    if kind is Say:
+        try:
+            values["text"] = heard_text(values["text"])
+        except ProtocolError as error:
+            error.id = values["id"]
+            raise
     return kind(**values)
+
+
+def heard_text(text: str) -> str:
+    """What is heard of a text that a visitor says: all but control characters.
+
+    Raises:
+        ProtocolError: It is not heard; the code is ``too-long`` for too much said at once, ``empty`` for a blank text.
+
+    Example:
+        >>> heard_text("\\x1b[31mred\\x1b[0m\\x00")
+        'red'
+    """
+    text = printable(text)
+    if len(text) > LONGEST_TEXT:
+        raise ProtocolError(
+            "too-long", f'say: "text" has at most {LONGEST_TEXT:,} characters, not {len(text):,}'
+        )
+    if not text.strip():
+        raise ProtocolError("empty", 'say: "text" has nothing in it')
+    return text
 
 
 def _malformed(message: str) -> ProtocolError:

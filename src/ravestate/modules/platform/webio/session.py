@@ -114,7 +114,7 @@ class Session:
         Args:
             reason: Why, for whoever looks on.
         """
-        if not self._left.is_set():
+        if not self.leaving:
             self._reason = reason
             self._left.set()
 
@@ -137,10 +137,25 @@ class Session:
 
     # ------------------------------------------------------------------------------------ the visitor
 
-    def hear(self, id: str, text: str) -> None:
-        """The visitor says something. What came before under the same `id` is left aside."""
-        if id in self._heard or self._left.is_set():
-            return
+    @property
+    def leaving(self) -> bool:
+        """Whether the visitor or the agent has left, so that nothing more is heard; a farewell may still be said."""
+        return self._left.is_set()
+
+    def hear(self, id: str, text: str) -> bool:
+        """The visitor says something. What came before under the same `id` is left aside.
+
+        Args:
+            id: What the message is called: 1 to 64 letters, digits, ``-`` or ``_``.
+            text: As `heard_text` gives it.
+
+        Returns:
+            Whether it was taken, now or before; not once somebody is `leaving`.
+        """
+        if self.leaving:
+            return False
+        if id in self._heard:
+            return True
         self._heard[id] = None
         if len(self._heard) > REMEMBERED:
             self._heard.popitem(last=False)
@@ -149,10 +164,11 @@ class Session:
         self.context.put(rawio.input, text)
         self._expect(GRACE)
         self._tell()
+        return True
 
     def notice_writing(self) -> None:
         """The visitor is writing something."""
-        if not self._left.is_set():
+        if not self.leaving:
             self.context.emit(rawio.typing)
 
     # ------------------------------------------------------------------------------------ the agent
