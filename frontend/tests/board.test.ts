@@ -4,6 +4,7 @@ import { afterEach, expect, test } from "vitest";
 import Bar from "../src/board/Bar.svelte";
 import { Board } from "../src/board/board.svelte";
 import Cause from "../src/board/Cause.svelte";
+import type { Address } from "../src/board/link";
 import type { Policy, ServerFrame, TraceRecord } from "../src/board/protocol";
 import Say from "../src/board/Say.svelte";
 import Slots from "../src/board/Slots.svelte";
@@ -68,6 +69,7 @@ const POLICY: Policy = {
 /** A server that only remembers what it was told. */
 class Server {
   sent: Record<string, unknown>[] = [];
+  kept: Address[] = [];
   socket = {
     onopen: null as (() => void) | null,
     onmessage: null as ((event: { data: string }) => void) | null,
@@ -80,9 +82,13 @@ class Server {
     this.socket.onmessage?.({ data: JSON.stringify(frame) });
   }
 
-  static open(): [Server, Board] {
+  static open(address: Address = { session: "secret" }): [Server, Board] {
     const server = new Server();
-    const board = new Board({ session: "secret" }, () => server.socket as unknown as WebSocket);
+    const board = new Board(
+      address,
+      (kept) => server.kept.push(kept),
+      () => server.socket as unknown as WebSocket,
+    );
     board.start();
     server.socket.onopen?.();
     const clock = { now: 1, paused: false };
@@ -332,6 +338,30 @@ test("what only background rules hear does not take the place of what was said",
   expect(board.cause?.id).toBe(5);
 });
 
+test("a write counts as heard if any of its signals is", () => {
+  const [server, board] = Server.open();
+  const signals = [
+    { ...POLICY.signals[0], name: "m:lit:changed", hearers: ["m:talk"] },
+    { ...POLICY.signals[0], name: "m:lit:true", hearers: ["m:watch"] },
+  ];
+  const rules = [rule("m:talk"), { ...rule("m:watch"), background: true }];
+  server.tell({ type: "policy", policy: { ...POLICY, rules, signals } as Policy });
+  const records = [
+    { ...input(3, 1, "true"), signal: "m:lit:changed" },
+    { ...input(4, 2, "true"), signal: "m:lit:changed" },
+    { ...input(5, 2, "true"), signal: "m:lit:true", group: 4 },
+  ] as TraceRecord[];
+  server.tell({ type: "records", records, missed: 0, behind: 0, now: 9, paused: false });
+  expect(board.cause?.id).toBe(5);
+});
+
+test("what a rule raised is no cause, though it went unseen that the rule ran", () => {
+  const [server, board] = Server.open();
+  const born = { ...input(3, 1, "1"), source: 77 } as TraceRecord;
+  server.tell({ type: "records", records: [born], missed: 5, behind: 0, now: 2, paused: false });
+  expect(board.causes).toEqual([]);
+});
+
 test("the signals of one write are one cause, and that which was pointed at stands for it", () => {
   const [server, board] = Server.open();
   const records = [
@@ -360,6 +390,46 @@ test("to choose a cause is to see what came of it; the newest one is followed ag
   expect([board.view.left < 1, board.view.right > 1.25, board.view.span < 0.4]).toEqual([true, true, true]);
   board.visitNewest();
   expect([board.cause?.id, board.follows]).toEqual([4, true]);
+});
+
+test("of a cause that is still worked at, all until now is seen; of a recording, the newest cause is", () => {
+  const [server, board] = Server.open();
+  const records: TraceRecord[] = [
+    input(3, 10, '"hi"'),
+    { kind: "started", time: 10, run: 2, rule: "m:answer", clause: 0, spikes: [3] },
+  ];
+  server.tell({ type: "records", records, missed: 0, behind: 0, now: 14, paused: true });
+  board.visit(board.trace.spike(3) as never);
+  expect(board.view.right).toBeGreaterThan(14);
+  board.play("one", "monday.json");
+  server.socket.onopen?.();
+  server.tell({ type: "welcome", v: 1, live: false, visitor: null, whole: true, policy: POLICY, now: 60 });
+  const kept = [input(3, 1, "1"), input(4, 50, "2")];
+  server.tell({ type: "records", records: kept, missed: 0, behind: 0, now: 60, paused: true });
+  board.visit(board.trace.spike(3) as never);
+  board.visitNewest();
+  expect([board.cause?.id, board.spike, board.follows]).toEqual([4, null, false]);
+  expect([board.view.left < 50, board.view.right > 50]).toEqual([true, true]);
+});
+
+test("what came of it has everybody, however many pieces an answer had", () => {
+  const [server, board] = Server.open();
+  const records: TraceRecord[] = [input(3, 1, '"hi"')];
+  for (let run = 1; run <= 700; run++) {
+    const of = { time: 1 + run / 100, run, rule: "m:talk" };
+    records.push({ kind: "started", ...of, clause: 0, spikes: [3] });
+    records.push({ kind: "settled", ...of, outcome: "done", reason: "", fired: true });
+  }
+  const of = { time: 9, run: 701, rule: "m:answer" };
+  records.push({ kind: "started", ...of, clause: 0, spikes: [3] });
+  records.push({ kind: "settled", ...of, outcome: "done", reason: "", fired: true });
+  server.tell({ type: "records", records, missed: 0, behind: 0, now: 20, paused: true });
+  const { container } = render(Cause, { board });
+  const rows = [...container.querySelectorAll("li")].map((row) => row.textContent);
+  expect(rows).toHaveLength(2);
+  expect([rows[0]?.includes("× 700"), rows[1]?.includes("m:answer")]).toEqual([true, true]);
+  board.visit(board.trace.spike(3) as never);
+  expect(board.view.right).toBeGreaterThan(9);
 });
 
 test("what came of it lists a rule that ran many times once", () => {
@@ -392,6 +462,46 @@ test("in a conversation that has ended nothing can be said, written or raised, a
   const field = screen.getByLabelText("Say something to the agent");
   expect(field).toHaveProperty("placeholder", "This conversation has ended");
   expect(screen.queryByRole("button", { name: "Edit m:input" })).toBeNull();
+});
+
+test("what is refused can be mended: the field is there again, and has what was typed", async () => {
+  const [server, board] = Server.open();
+  render(Slots, { board });
+  await fireEvent.click(screen.getByRole("button", { name: "Edit m:secret" }));
+  const label = "New value of m:secret, as JSON or as text";
+  await fireEvent.input(screen.getByLabelText(label), { target: { value: "banana" } });
+  await fireEvent.click(screen.getByRole("button", { name: "Write" }));
+  expect(screen.queryByLabelText(label)).toBeNull();
+  server.tell({ type: "error", code: "refused", text: "true or false" });
+  flushSync();
+  expect(screen.getByLabelText(label)).toHaveProperty("value", "banana");
+  expect(board.trouble).toBe("true or false");
+  await fireEvent.click(screen.getByRole("button", { name: "Cancel" }));
+  expect(screen.queryByLabelText(label)).toBeNull();
+});
+
+test("a field gives the focus back to the button that opened it", async () => {
+  const [, board] = Server.open();
+  render(Slots, { board });
+  const button = screen.getByRole("button", { name: "Edit m:secret" });
+  button.focus();
+  await fireEvent.click(button);
+  const field = screen.getByLabelText("New value of m:secret, as JSON or as text");
+  expect(document.activeElement).toBe(field);
+  await fireEvent.keyDown(field, { key: "Escape" });
+  flushSync();
+  expect(document.activeElement).toBe(button);
+});
+
+test("the clock of a conversation that has ended cannot be turned", () => {
+  const [server, board] = Server.open();
+  server.tell({ type: "records", records: [], missed: 0, behind: 0, now: 2, paused: true });
+  server.tell({ type: "ended", text: "the visitor left" });
+  server.socket.onclose?.({ code: 1000 });
+  render(Bar, { board, main: "timeline", ondownload() {}, onopen() {}, onturn() {} });
+  for (const name of ["Continue", "Step"]) {
+    expect(screen.getByRole("button", { name })).toHaveProperty("disabled", true);
+  }
 });
 
 test("what was typed stays when there is no connection", async () => {
@@ -446,6 +556,19 @@ test("a recording has the name of its file, and leads back to what was there bef
   server.socket.onopen?.();
   expect(server.sent.at(-1)).toEqual({ type: "hello", v: 1, session: "secret" });
   expect([board.recording, board.follows]).toEqual([null, true]);
+});
+
+test("whoever named no conversation stays with the one that was found: after a recording, and a lost connection", () => {
+  const [server, board] = Server.open({ token: "key" });
+  const asked = () => server.sent.filter(({ type }) => type === "hello").at(-1);
+  expect(asked()).toEqual({ type: "hello", v: 1, token: "key" });
+  expect(server.kept).toEqual([{ visitor: "v", token: "key" }]); // for a reload
+  board.play("one", "monday.json");
+  server.socket.onopen?.();
+  expect(asked()).toEqual({ type: "hello", v: 1, recording: "one", token: "key" });
+  board.back();
+  server.socket.onopen?.();
+  expect(asked()).toEqual({ type: "hello", v: 1, visitor: "v", token: "key" });
 });
 
 test("conversations are known by when they began, with whom, and their last words", () => {

@@ -1,6 +1,6 @@
 import { type Address, Link, type Status } from "./link";
 import type { Command, Diagram, Explained, Policy, ServerFrame, Shown, TraceRecord, Why } from "./protocol";
-import { cameFromOutside, type Spike, Trace } from "./trace";
+import { type Spike, Trace } from "./trace";
 import { View } from "./view";
 
 export interface Conversation {
@@ -33,6 +33,8 @@ export class Board {
   behind = $state(0);
   whole = $state(true);
   trouble = $state("");
+  /** What was to be done and was refused. */
+  refused: Command | null = $state.raw(null);
   ending = $state("");
   /** Counts the batches of records: whoever shows something of the trace looks at it. */
   version = $state(0);
@@ -58,7 +60,7 @@ export class Board {
     const pointed = this.spike === null ? undefined : this.trace.spike(this.spike);
     if (pointed === undefined || inputs.includes(pointed)) return inputs;
     const same = inputs.findIndex(({ group }) => group === pointed.group);
-    return same >= 0 && cameFromOutside(pointed) ? inputs.with(same, pointed) : [pointed, ...inputs];
+    return same >= 0 && pointed.outside ? inputs.with(same, pointed) : [pointed, ...inputs];
   });
   /** The signals that background rules hear, and nobody else. */
   #aside = $derived.by(() => {
@@ -72,13 +74,23 @@ export class Board {
   follows = $state(true);
   trace = new Trace();
   #asked: number | null = null; // the spike that "why not" was asked of last
+  #sent: Command | null = null; // what was to be done last
   #before: Address = {}; // what was looked at before a recording
   #address: Address;
   #link: Link;
   #now = 0;
   #at = 0;
 
-  constructor(address: Address, open?: () => WebSocket) {
+  /**
+   * @param address what is looked at first
+   * @param keep is told what is looked at, so that it can be found again after a reload
+   * @param open makes the connection
+   */
+  constructor(
+    address: Address,
+    private readonly keep: (address: Address) => void = () => {},
+    open?: () => WebSocket,
+  ) {
     this.#address = address;
     this.#link = new Link({
       address: () => this.#address,
@@ -133,6 +145,8 @@ export class Board {
   /** Send a command; whether it went out. */
   send(command: Command): boolean {
     const sent = this.#link.send(command);
+    this.refused = null;
+    this.#sent = sent ? command : null;
     this.trouble = sent ? "" : "There is no connection to the agent.";
     return sent;
   }
@@ -165,17 +179,22 @@ export class Board {
   /** Ask about a cause from now on, and see what came of it: of its runs, or else of whatever took it. */
   visit(spike: Spike): void {
     this.point(spike.id);
-    const bars = this.trace.made(spike, 400);
+    const bars = this.trace.made(spike);
     const ran = bars.filter((bar) => bar.phases.some((phase) => phase.state === "running"));
-    const ends = (ran.length > 0 ? ran : bars).map((bar) => bar.to ?? bar.from);
-    this.view.fit(spike.time, Math.max(spike.time + 0.01, ...ends));
+    let end = spike.time + 0.01;
+    for (const bar of ran.length > 0 ? ran : bars) end = Math.max(end, bar.to ?? this.now());
+    this.view.fit(spike.time, end);
     this.follow(false);
   }
 
   /** Whatever is the newest cause is asked about from now on. */
   visitNewest(): void {
     this.point(null);
-    this.follow(this.live);
+    if (this.live) this.follow(true);
+    else if (this.cause !== undefined) {
+      this.visit(this.cause);
+      this.point(null);
+    }
   }
 
   /** Ask again, of what has happened since. */
@@ -227,7 +246,7 @@ export class Board {
     const causes = this.#causes;
     return (
       causes.find((spike) => spike.id === this.spike) ??
-      causes.find((spike) => !this.#aside.has(spike.signal)) ??
+      causes.find((spike) => this.trace.siblings(spike).some(({ signal }) => !this.#aside.has(signal))) ??
       causes[0]
     );
   }
@@ -256,6 +275,7 @@ export class Board {
         this.title = frame.title;
         this.live = frame.live;
         this.visitor = frame.visitor;
+        this.#settle(frame.visitor);
         this.whole = frame.whole;
         if (!frame.live) this.follow(false);
         this.#know(frame.policy);
@@ -306,11 +326,21 @@ export class Board {
         break;
       case "error":
         this.trouble = frame.text;
+        this.refused = this.#sent;
         this.asking = false;
         break;
     }
     this.version++;
     if (frame.type === "records" && this.behind === 0 && this.cause?.id !== this.#asked) this.#ask();
+  }
+
+  /** Whose conversation it is, is known now: after a lost connection, or a recording, it is that one again. */
+  #settle(visitor: string | null): void {
+    if (visitor === null) return;
+    const { session, token } = this.#address;
+    this.#address = { ...(session === undefined ? { visitor } : { session }) };
+    if (token !== undefined) this.#address.token = token;
+    this.keep(this.#address);
   }
 
   #know(policy: Policy): void {

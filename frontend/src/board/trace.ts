@@ -50,8 +50,10 @@ export interface Spike {
   group: number;
   parents: number[];
   children: number[];
-  /** The rule that raised it; empty from outside. */
+  /** The rule that raised it, if it is known. */
   rule: string;
+  /** Whether it is a cause of its own: of no rule, and not of the context itself, such as its pressure. */
+  outside: boolean;
   payload: Shown;
   dropped: string;
 }
@@ -156,13 +158,24 @@ export class Trace {
     const found: Spike[] = [];
     for (let i = this.spikes.length - 1; i >= 0 && found.length < most; i--) {
       const spike = this.spikes[i] as Spike;
-      if (cameFromOutside(spike) && found.at(-1)?.group !== spike.group) found.push(spike);
+      if (spike.outside && found.at(-1)?.group !== spike.group) found.push(spike);
     }
     return found;
   }
 
-  /** What the rules made of the causal group of a spike, in the order of their beginning; at most so many bars. */
-  made(spike: Spike, most: number): Bar[] {
+  /** What came from outside together with a spike, itself included: the signals of one write. */
+  siblings(spike: Spike): Spike[] {
+    const found: Spike[] = [];
+    for (let i = from(this.spikes, spike.time, ({ time }) => time); i < this.spikes.length; i++) {
+      const other = this.spikes[i] as Spike;
+      if (other.time > spike.time) break;
+      if (other.outside && other.group === spike.group) found.push(other);
+    }
+    return found;
+  }
+
+  /** What the rules made of the causal group of a spike, in the order of their beginning. */
+  made(spike: Spike): Bar[] {
     const group = this.group(spike.group);
     const ofGroup = (id: number) => {
       const other = this.#spikes.get(id);
@@ -175,10 +188,9 @@ export class Trace {
       for (let i = from(lane.bars, since, (bar) => bar.from); i < lane.bars.length; i++) {
         const bar = lane.bars[i] as Bar;
         if (bar.spikes.some(ofGroup)) found.push(bar);
-        if (found.length > 4 * most) break;
       }
     }
-    return found.sort((a, b) => a.from - b.from || a.id - b.id).slice(0, most);
+    return found.sort((a, b) => a.from - b.from || a.id - b.id);
   }
 
   #add(record: TraceRecord): void {
@@ -195,6 +207,7 @@ export class Trace {
           parents: record.parents,
           children: [],
           rule: this.#bars.get(record.source)?.rule ?? "",
+          outside: record.source === 0 && record.parents.length === 0 && !record.signal.startsWith("core:"),
           payload: record.payload,
           dropped: "",
         };
@@ -342,11 +355,6 @@ export class Trace {
     const groups = new Set(this.spikes.map((spike) => spike.group));
     for (const group of this.#into.keys()) if (!groups.has(group)) this.#into.delete(group);
   }
-}
-
-/** Whether a spike is a cause of its own: of no rule, and not of the context itself, such as its pressure. */
-export function cameFromOutside(spike: Spike): boolean {
-  return spike.parents.length === 0 && spike.rule === "" && !spike.signal.startsWith("core:");
 }
 
 /** The index of the first item at or after a time. */
