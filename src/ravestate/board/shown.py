@@ -13,7 +13,7 @@ from typing import Any, cast
 
 from ravestate.declare.slot import Entry
 
-__all__ = ["Shown", "show"]
+__all__ = ["Shown", "is_foreign", "show"]
 
 DEEPEST = 6
 """Containers within containers that are looked into."""
@@ -76,6 +76,26 @@ def show(value: object, most: int = 2000) -> Shown:
         return _repr(value, most)
     except Exception as error:  # a container of foreign make, that fails when it is looked through
         return Shown(f"<{kind.__name__} that cannot be shown: {type(error).__name__}>", False)
+
+
+def is_foreign(value: object, most: int = 2000) -> bool:
+    """Whether JSON has no word for a value, as far as the first `most` characters of it tell.
+
+    Example:
+        >>> is_foreign({"name": "Ada"}), is_foreign([1, object()])
+        (False, True)
+    """
+    if isinstance(value, (int, float)):
+        return False
+    size = 0
+    try:
+        for piece in _json(value, 0):
+            size += len(piece)
+            if size > most:
+                break
+    except Exception:  # foreign, or of foreign make
+        return True
+    return False
 
 
 def _json(value: object, depth: int) -> Iterator[str]:

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import asyncio
+import secrets
 from typing import TYPE_CHECKING, Any, Protocol
 
+from ravestate.board.by_hand import check_payload, check_value
 from ravestate.board.commands import Command, Emit, Pause, Put, Resume, Say, Step
 from ravestate.board.description import Description, describe
 from ravestate.board.gates import gates_of
@@ -13,12 +15,11 @@ from ravestate.board.shown import Shown, show
 from ravestate.board.trace_file import Recording
 from ravestate.board.why_not import Opens
 from ravestate.board.wire import VALUE, shown_data, whole_data
-from ravestate.declare.slot import Flag, checkable
 from ravestate.engine.trace import Record, Set
 from ravestate.errors import RavestateError, UndeclaredError, nearest
+from ravestate.modules.platform.webio.protocol import ProtocolError, heard_text
 
 if TYPE_CHECKING:
-    from ravestate.declare.signal import Signal
     from ravestate.modules.platform.webio.session import Session
 
 __all__ = ["Live", "Recorded", "Subject"]
@@ -164,6 +165,11 @@ class Live:
             RavestateError: It cannot be done.
         """
         context = self._context
+        if isinstance(command, Say | Put | Emit) and (
+            self._session.leaving or self._session.ended is not None
+        ):
+            about = "is ending" if self._session.ended is None else "has ended"
+            raise RavestateError(f"this conversation {about}: nothing more is said, written or raised in it")
         match command:
             case Pause():
                 context.pause()
@@ -173,17 +179,16 @@ class Live:
                 context.resume()
             case Put():
                 slot = self._named(context.policy.slots, "slot", command.slot)
-                if isinstance(slot, Flag) and not isinstance(command.value, bool):
-                    raise RavestateError(f"{slot.name} is a flag: write true or false, not {command.value!r}")
+                check_value(slot, command.value, context.read(slot))
                 context.put(slot, command.value)
             case Emit():
                 signal = self._named(context.policy.signals, "signal", command.signal)
-                _check_payload(signal, command)
+                number = context.policy.signal_of[signal.name].slot
+                slot = None if number is None else context.policy.slot_plans[number].slot
+                check_payload(signal, command, slot, None if slot is None else context.read(slot))
                 context.emit(signal, command.payload)
             case Say():
-                if self._session.ended is not None:
-                    raise RavestateError("this conversation has ended: nothing can be said in it")
-                self._session.hear(f"board-{self._recorder.last}-{context.now:.6f}", command.text)
+                self._say(command.text)
             case _:
                 raise RavestateError(f"{command.type} is not for an agent")
 
@@ -192,29 +197,19 @@ class Live:
         if self._session.ended is None and self._context.paused:
             self._context.resume()
 
+    def _say(self, text: str) -> None:
+        try:
+            heard = heard_text(text)
+        except (
+            ProtocolError
+        ) as error:  # of the visitor's protocol; here it is what was asked for that cannot be done
+            raise RavestateError(str(error)) from None
+        self._session.hear(f"board-{secrets.token_hex(8)}", heard)
+
     def _named(self, things: Any, what: str, name: str) -> Any:
         if name not in things:
             raise UndeclaredError(f"this agent has no {what} {name!r}{nearest(name, things)}")
         return things[name]
-
-
-def _check_payload(signal: Signal[Any], command: Emit) -> None:
-    """Refuse by hand what a type checker would refuse in a rule.
-
-    Raises:
-        RavestateError: The payload is missing, or not of the signal's type.
-    """
-    kind = signal.payload
-    if kind is None or kind is type(None):  # nothing is said of it
-        return
-    name = getattr(kind, "__name__", str(kind))
-    if "payload" not in command.model_fields_set:
-        raise RavestateError(f"{signal.name} carries a payload of type {name}: give one")
-    takes = checkable(kind)
-    if takes is not None and not isinstance(command.payload, takes):
-        raise RavestateError(
-            f"{signal.name} carries a payload of type {name}, not {type(command.payload).__name__}"
-        )
 
 
 class Recorded:

@@ -23,7 +23,7 @@ class Signal(Condition, Generic[T]):
 
     Attributes:
         name: The qualified name, ``module:name``.
-        payload: The payload's type, ``type(None)`` if there is none.
+        payload: The payload's type; None if it carries none, and for a slot's own, which carries what the slot takes.
         input: Whether it may come from outside although a rule raises it too (L8).
         keep: ``"all"`` or ``"latest"``.
         limit: The greatest number of live spikes.
