@@ -2,9 +2,12 @@
 
 import asyncio
 
+import pytest
+
 import ravestate as rs
 from modules.platform.webio.visit import Visit, in_virtual_time, page, parrot, past
 from ravestate.modules import idle, interloc, rawio
+from ravestate.modules.platform.webio.session import Ending
 
 watcher = rs.Module("watcher", requires=(rawio,))
 
@@ -106,6 +109,23 @@ async def test_who_writes_after_the_farewell_is_not_heard_any_more() -> None:
 
 
 @in_virtual_time
+async def test_who_says_something_after_the_farewell_is_told_that_it_is_not_heard() -> None:
+    async with page(parrot) as app, Visit(app) as visit:
+        await visit.hello()
+        await visit.messages(1)
+        visit.tell("bye")
+        visit.say("wait!", id="a")
+        frames = await visit.frames("ended")
+        assert {
+            "type": "error",
+            "code": "over",
+            "text": "the conversation is ending: nothing more is heard",
+            "id": "a",
+        } in frames
+        assert [frame["text"] for frame in frames if frame["type"] == "message"] == ["Bye!"]
+
+
+@in_virtual_time
 async def test_the_page_is_called_as_the_agent_calls_itself_and_by_its_new_name_later() -> None:
     async with page(named) as app, Visit(app) as visit:
         assert (await visit.hello())["agent"] == "Ravestate"  # it is just being born
@@ -151,4 +171,12 @@ async def test_who_left_is_told_to_others_as_to_others() -> None:
         visit.tell("bye")
         for own in (visit, window):
             assert (await own.frames("ended"))[-1]["text"] == "you left"
-        assert session.ended == "the visitor left"
+        assert session.ended is Ending.BYE
+        assert str(session.ended) == "the visitor left"
+
+
+@pytest.mark.parametrize("ending", [ending for ending in Ending if ending is not Ending.BYE])
+def test_why_it_has_ended_is_told_to_the_visitor_as_to_others_if_it_was_not_the_visitor(
+    ending: Ending,
+) -> None:
+    assert ending.for_visitor == str(ending)

@@ -181,7 +181,7 @@ async def test_when_the_page_is_closed_all_are_told() -> None:
     async with page() as app, Visit(app) as one, Visit(app) as other:
         await one.hello()
         await other.hello()
-        await app.state.sessions.close("the agent has been switched off")
+        await app.state.sessions.close()
         for visit in (one, other):
             assert (await visit.frames("ended"))[-1]["text"] == "the agent has been switched off"
         async with Visit(app) as late:

@@ -33,8 +33,6 @@ __all__ = ["PAGE", "make_app"]
 PAGE = Path(__file__).parent / "page"
 """What ``npm run build`` in ``frontend/`` makes."""
 
-ENDING = "the agent has been switched off"
-
 CONSOLES = ("conio",)
 """Platforms for one user, of which there would be one in each visitor's context."""
 
@@ -62,7 +60,7 @@ def make_app(agent: Agent, routes: Iterable[BaseRoute] = (), inside: str | None 
         try:
             yield
         finally:
-            await sessions.close(ENDING)
+            await sessions.close()
 
     app = Starlette(
         routes=[*routes, WebSocketRoute("/ws", connect), Mount("/", Pages(PAGE))],

@@ -30,10 +30,10 @@ from .protocol import (
     parse,
     serialise,
 )
+from .session import Ending, Session
 
 if TYPE_CHECKING:
     from .gate import Gate
-    from .session import Session
     from .sessions import Sessions
 
 __all__ = ["LONGEST", "Connection"]
@@ -47,9 +47,6 @@ SILENT = 10.0
 BURST, RATE = 20, 5.0
 """Frames that are taken at once, and each second after that; and as many `Writing` beside them. Who sends more has to
 wait; nothing is lost."""
-
-LEFT = "the visitor left"
-"""Why a conversation is over, for others than the visitor, who is told "you left"."""
 
 REPLIES = 32
 """Replies that may wait for a client. Who asks on and on, and does not read, is dropped."""
@@ -183,13 +180,14 @@ class Connection:
         if isinstance(frame, ProtocolError):
             raise frame
         if isinstance(frame, Say):
-            session.hear(frame.id, frame.text)
+            if not session.hear(frame.id, frame.text):
+                raise ProtocolError("over", "the conversation is ending: nothing more is heard", frame.id)
         elif isinstance(frame, Writing):
             session.notice_writing()
         elif isinstance(frame, Ping):
             self._reply(Pong())
         elif isinstance(frame, Bye):
-            self._sessions.leave(session, LEFT)
+            self._sessions.leave(session, Ending.BYE)
         else:
             raise ProtocolError("malformed", "hello is said once, at the beginning")
 
@@ -226,7 +224,7 @@ class Connection:
                 typing = session.typing
                 await self._send(Typing(typing))
             if session.ended is not None and last == session.history.last:
-                await self._send(Ended("you left" if session.ended == LEFT else session.ended))
+                await self._send(Ended(session.ended.for_visitor))
                 await self._socket.close(1000, "ended")
                 return
             if not self._woken.is_set():

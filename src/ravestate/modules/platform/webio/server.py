@@ -17,7 +17,7 @@ import uvicorn
 
 from ravestate.errors import PlatformError
 
-from .application import ENDING, make_app
+from .application import make_app
 from .connection import LONGEST
 from .door import Door, Line
 from .gate import is_local
@@ -111,7 +111,7 @@ class Server:
         """Tell the visitors, end their conversations in order, and close."""
         assert self._uvicorn is not None and self._task is not None  # it was entered
         with self._pace:
-            await self._app.state.sessions.close(ENDING)
+            await self._app.state.sessions.close()
             self._uvicorn.told.set()
             await self._task
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import enum
 import logging
 import secrets
 import time
@@ -20,7 +21,7 @@ from .history import History
 if TYPE_CHECKING:
     from ravestate.runtime.context import Context
 
-__all__ = ["Onlooker", "Session"]
+__all__ = ["Ending", "Onlooker", "Session"]
 
 REMEMBERED = 512
 """Ids of the client's messages that are known, so that what is sent twice is heard once."""
@@ -32,6 +33,23 @@ FAREWELL = 5.0
 """Seconds that the agent has for a farewell."""
 
 log = logging.getLogger("ravestate.webio")
+
+
+class Ending(enum.StrEnum):
+    """Why a conversation is over, for whoever looks on."""
+
+    BYE = "the visitor left"
+    ABANDONED = "nobody was there"
+    CROWDED = "others were waiting"
+    OFF = "the agent has been switched off"
+    LEFT = "the agent has left"
+    FAILED = "the agent has failed"
+    CANCELLED = "the conversation has been cut off"
+
+    @property
+    def for_visitor(self) -> str:
+        """The same, for the visitor."""
+        return "you left" if self is Ending.BYE else self.value
 
 
 class Onlooker(Protocol):
@@ -70,11 +88,11 @@ class Session:
         """Whether the agent is about to say something."""
         self.spoken = False
         """Whether the visitor has ever said anything."""
-        self.ended: str | None = None
+        self.ended: Ending | None = None
         """Why the conversation is over, once it is."""
         self.onlookers: set[Onlooker] = set()
         self._left: asyncio.Event = asyncio.Event()
-        self._reason = "the conversation has ended"
+        self._reason = Ending.CANCELLED
         self._heard: OrderedDict[str, None] = OrderedDict()
         self._awaited = False  # an answer, by the visitor
         self._slow = False  # the agent is at work for longer than the grace
@@ -98,7 +116,7 @@ class Session:
         except TimeoutError:
             pass  # the farewell took too long
         except RavestateError as failure:  # of one conversation; the others go on
-            self._reason = "the agent has failed"
+            self._reason = Ending.FAILED
             log.error("a conversation ended: %s", failure)
         finally:
             if self._following is not None:
@@ -108,12 +126,8 @@ class Session:
             self.ended = self._reason
             self._tell()
 
-    def leave(self, reason: str) -> None:
-        """End the conversation for good.
-
-        Args:
-            reason: Why, for whoever looks on.
-        """
+    def leave(self, reason: Ending) -> None:
+        """End the conversation for good."""
         if not self.leaving:
             self._reason = reason
             self._left.set()
@@ -125,7 +139,7 @@ class Session:
             await asyncio.wait((left, stopped), return_when=asyncio.FIRST_COMPLETED)
             self._left.set()  # from now on nothing is heard
             if stopped.done():
-                self._reason = "the agent has left"
+                self._reason = Ending.LEFT
                 stopped.result()
         finally:
             left.cancel()

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from .protocol import ProtocolError
-from .session import Onlooker, Session
+from .session import Ending, Onlooker, Session
 
 if TYPE_CHECKING:
     from ravestate.runtime.agent import Agent
@@ -36,7 +36,7 @@ class Sessions:
         self._timers: dict[
             Session, asyncio.TimerHandle
         ] = {}  # of those that nobody looks on, the longest first
-        self._closed = ""
+        self._closed = False
 
     def __len__(self) -> int:
         return len(self._tasks)
@@ -61,7 +61,7 @@ class Sessions:
         if len(self._tasks) >= self._limit:
             await self._make_room()
         if self._closed:
-            raise ProtocolError("closing", self._closed)
+            raise ProtocolError("closing", Ending.OFF)
         if len(self._tasks) >= self._limit:
             raise ProtocolError("full", f"{self._limit} visitors are here already: try again later")
         session = Session(self._agent.context(), name)
@@ -91,7 +91,7 @@ class Sessions:
         if not session.onlookers and session in self._tasks:
             self._abandon(session)
 
-    def leave(self, session: Session, reason: str) -> None:
+    def leave(self, session: Session, reason: Ending) -> None:
         """End a conversation for good."""
         self._sessions.pop(session.id, None)
         timer = self._timers.pop(session, None)
@@ -99,21 +99,17 @@ class Sessions:
             timer.cancel()
         session.leave(reason)
 
-    async def close(self, reason: str) -> None:
-        """End all of them, and begin no more.
-
-        Args:
-            reason: Why, for the visitors.
-        """
-        self._closed = reason
+    async def close(self) -> None:
+        """End all of them, as the agent is switched off, and begin no more."""
+        self._closed = True
         for session in list(self._tasks):
-            self.leave(session, reason)
+            self.leave(session, Ending.OFF)
         if self._tasks:
             await asyncio.wait(list(self._tasks.values()))
 
     def _abandon(self, session: Session) -> None:
         self._timers[session] = asyncio.get_running_loop().call_later(
-            self._keep, self.leave, session, "nobody was there"
+            self._keep, self.leave, session, Ending.ABANDONED
         )
 
     async def _make_room(self) -> None:
@@ -121,12 +117,12 @@ class Sessions:
         abandoned = min(self._timers, key=lambda session: session.spoken, default=None)
         if abandoned is not None:
             task = self._tasks[abandoned]
-            self.leave(abandoned, "others were waiting")
+            self.leave(abandoned, Ending.CROWDED)
             await asyncio.wait((task,))
 
     async def _live(self, session: Session) -> None:
         try:
             await session.live()
         finally:
-            self.leave(session, "it has ended")
+            self.leave(session, Ending.CANCELLED)  # unless it has left already
             self._tasks.pop(session, None)
