@@ -6,7 +6,7 @@ import json
 import pytest
 
 import ravestate as rs
-from modules.platform.webio.visit import Visit, in_virtual_time, page
+from modules.platform.webio.visit import Visit, in_virtual_time, page, past
 from ravestate.modules import rawio, webio
 from ravestate.modules.platform.webio import connection, history
 from ravestate.runtime.agent import Agent
@@ -116,7 +116,7 @@ async def test_who_sends_too_much_has_to_wait_and_loses_nothing() -> None:
             visit.say(f"{number}", id=f"{number}")
         answers = [text for text in await visit.messages(201) if text.startswith("agent")]
         assert answers == ["agent: Hello!", *(f"agent: {number}" for number in range(100))]
-        assert asyncio.get_running_loop().time() == pytest.approx(80 / connection.RATE)
+        assert asyncio.get_running_loop().time() == pytest.approx(79 / connection.RATE)
 
 
 @in_virtual_time
@@ -131,15 +131,49 @@ async def test_what_was_written_need_not_wait_because_it_was_long_in_the_writing
 
 
 @in_virtual_time
-async def test_who_tells_all_the_time_of_writing_has_to_wait_too() -> None:
+async def test_who_tells_all_the_time_of_writing_is_heard_at_once_when_something_is_said() -> None:
     async with page() as app, Visit(app) as visit:
         await visit.hello()
         await visit.messages(1)
         for _ in range(100):
             visit.tell("writing")
-        visit.tell("ping")
-        assert (await visit.next())["type"] == "pong"
-        assert asyncio.get_running_loop().time() == pytest.approx(80 / connection.RATE)
+        visit.say("hello")
+        assert await visit.messages(2) == ["user: hello", "agent: hello"]
+        assert asyncio.get_running_loop().time() == 0.0
+
+
+@in_virtual_time
+async def test_of_too_many_that_tell_of_writing_the_rest_is_left_aside() -> None:
+    noticed = 0
+    scribe = rs.Module("scribe", requires=(rawio,))
+
+    @scribe.rule(when=rawio.typing)
+    async def count(ctx: rs.RuleContext) -> None:
+        nonlocal noticed
+        noticed += 1
+
+    async with page(scribe) as app, Visit(app) as visit:
+        await visit.hello()
+        for _ in range(100):
+            visit.tell("writing")
+        await past(1.0)
+        assert noticed == connection.BURST
+        before = noticed
+        visit.tell("writing")
+        await past(1.0)
+        assert noticed == before + 1  # it owes nothing
+
+
+@in_virtual_time
+async def test_who_sends_nonsense_all_the_time_has_to_wait_too() -> None:
+    async with page() as app, Visit(app) as visit:
+        await visit.hello()
+        await visit.messages(1)
+        for _ in range(30):
+            visit.send("nonsense")
+        for _ in range(30):
+            assert (await visit.next())["code"] == "malformed"
+        assert asyncio.get_running_loop().time() == pytest.approx(9 / connection.RATE)
 
 
 @in_virtual_time

@@ -45,8 +45,8 @@ SILENT = 10.0
 """Seconds within which a client says hello."""
 
 BURST, RATE = 20, 5.0
-"""Frames that are taken at once, and each second after that; and as many `Writing` beside them. Who sends more has to
-wait; nothing is lost."""
+"""Frames that are taken at once, and each second after that. Who sends more has to wait, and nothing is lost; but as many
+`Writing` are taken beside them, and more of those are left aside."""
 
 REPLIES = 32
 """Replies that may wait for a client. Who asks on and on, and does not read, is dropped."""
@@ -164,26 +164,25 @@ class Connection:
 
     async def _read(self, session: Session) -> None:
         now = asyncio.get_running_loop().time
-        # Counted apart, so that what was written need not wait because it was long in the writing.
         writing, others = (Bucket(burst=BURST, rate=RATE, now=now()) for _ in range(2))
         while True:
-            frame = _read_frame(await self._receive())
-            wait = (writing if isinstance(frame, Writing) else others).wait(now())
-            if wait:
-                await asyncio.sleep(wait)
+            text = await self._receive()
             try:
+                frame = parse(text, CLIENT)
+                if isinstance(frame, Writing):
+                    if writing.take(now()):
+                        session.notice_writing()
+                    await asyncio.sleep(0)  # others have their turn, however many there are
+                    continue
                 self._take(frame, session)
             except ProtocolError as error:
                 self._reply(Error(error.code, str(error), error.id))
+            await asyncio.sleep(others.wait(now()))
 
-    def _take(self, frame: Frame | ProtocolError, session: Session) -> None:
-        if isinstance(frame, ProtocolError):
-            raise frame
+    def _take(self, frame: Frame, session: Session) -> None:
         if isinstance(frame, Say):
             if not session.hear(frame.id, frame.text):
                 raise ProtocolError("over", "the conversation is ending: nothing more is heard", frame.id)
-        elif isinstance(frame, Writing):
-            session.notice_writing()
         elif isinstance(frame, Ping):
             self._reply(Pong())
         elif isinstance(frame, Bye):
@@ -236,14 +235,6 @@ class Connection:
 
     async def _send(self, frame: Frame | Message) -> None:
         await self._socket.send_text(serialise(frame))
-
-
-def _read_frame(text: str | bytes) -> Frame | ProtocolError:
-    """The client's frame that a text stands for; or what is wrong with it, which is told in its turn."""
-    try:
-        return parse(text, CLIENT)
-    except ProtocolError as error:
-        return error
 
 
 def _common(one: str, other: str) -> int:
