@@ -11,6 +11,7 @@ import pytest
 
 import ravestate as rs
 from ravestate.engine.engine import Engine
+from ravestate.engine.trace import Settled
 from ravestate.runtime import nest as nest_file
 from ravestate.runtime import runner as runner_file
 from ravestate.testing import simulate
@@ -111,6 +112,31 @@ async def test_a_rule_that_raises_is_logged_once_and_the_next_best_answers(
             assert record.levelno == logging.ERROR and record.getMessage().startswith("rule m:fails failed: ")
             assert record.exc_info is not None and record.exc_info[1] is failure
             assert await talk.ask(context) == "fallback"  # and the conversation goes on
+
+
+def test_the_trace_tells_where_in_its_file_a_rule_failed() -> None:
+    module = rs.Module("m")
+    go, slow = module.signal("go"), module.signal("slow")
+
+    def deeper() -> None:
+        raise ValueError("no stairs")
+
+    @module.rule(when=go)
+    async def climb(ctx: rs.RuleContext) -> None:
+        deeper()
+
+    @module.rule(when=slow)
+    def parse(ctx: rs.RuleContext) -> None:
+        int("twelve")  # raised by code that is nobody's file
+
+    with simulate(module) as sim:
+        sim.emit(go)
+        sim.emit(slow)
+        sim.advance(1)
+        reasons = {record.rule: record.reason for record in sim.trace if isinstance(record, Settled)}
+    line = deeper.__code__.co_firstlineno + 1
+    assert reasons["m:climb"] == f"ValueError('no stairs') (test_runner.py:{line})"
+    assert re.fullmatch(r"ValueError\(.*\(test_runner\.py:\d+\)", reasons["m:parse"])
 
 
 @on_loop

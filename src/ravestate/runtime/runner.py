@@ -6,6 +6,7 @@ import asyncio
 import contextlib
 import functools
 import logging
+import os
 import random
 import threading
 from collections import deque
@@ -429,7 +430,7 @@ class Runner:
                     "to end the agent"
                 )
                 failure.__cause__ = told
-            event = Finish(run, "failed", _short(failure), failure)
+            event = Finish(run, "failed", _short(failure) + _place(rule, failure), failure)
         self.receive(event)
 
     def _cancel(self, effect: Cancel) -> None:
@@ -597,6 +598,17 @@ def _nonsense(rule: Rule[Any, Any], result: Any) -> RuleError:
         f"rule {rule.name} ({rule.origin}) returned {_short(result)}; a rule returns nothing, rs.Resign(reason) or "
         "rs.Retire(); write its result to a slot"
     )
+
+
+def _place(rule: Rule[Any, Any], failure: BaseException) -> str:
+    """Where in the rule's own file it failed, e.g. `` (guide.py:42)``; nothing if that cannot be told."""
+    file = rule.origin.rpartition(":")[0]
+    line, step = 0, failure.__traceback__
+    while step is not None:
+        if step.tb_frame.f_code.co_filename == file:
+            line = step.tb_lineno
+        step = step.tb_next
+    return f" ({os.path.basename(file)}:{line})" if line else ""
 
 
 def _short(value: Any) -> str:
