@@ -505,12 +505,12 @@ async def test_a_plain_function_that_hangs_is_abandoned_and_may_not_act_later() 
             except rs.RunEnded as error:
                 loop.call_soon_threadsafe(told.put_nowait, error)
 
-    talk.rule(hang, emits=talk.word, timeout=0.001)
+    talk.rule(hang, emits=talk.word, timeout=0.1)  # so long that a thread has begun
     async with rs.Context(talk.module) as context:
         assert await talk.ask(context) == "fallback"
         failure = only_failure(talk)
         assert isinstance(failure, rs.RuleTimeout)
-        assert re.match(rf"rule m:hang took longer than its timeout of 0.001 s \({HERE}:\d+\)", str(failure))
+        assert re.match(rf"rule m:hang took longer than its timeout of 0.1 s \({HERE}:\d+\)", str(failure))
         release.set()
         for _ in range(3):
             assert str(await told.get()) == "rule m:hang acted after its run was over (timeout)"
