@@ -144,6 +144,18 @@ def test_fields_that_are_not_known_are_left_aside() -> None:
     assert parse('{"type": "bye", "why": "tired"}', CLIENT) == Bye()
 
 
+@pytest.mark.parametrize(
+    ("name", "shown"),
+    [
+        ("Ada\n Lovelace", "Ada Lovelace"),
+        ("\u202eAda\u2069", "Ada"),
+        ("\u0928\u093f\u200d\u0915", "\u0928\u093f\u200d\u0915"),  # spelt with a joiner
+    ],
+)
+def test_a_name_is_on_one_line_and_turns_nothing_round(name: str, shown: str) -> None:
+    assert parse(json.dumps({"type": "hello", "v": 1, "name": name}), CLIENT).name == shown
+
+
 def test_control_characters_are_taken_out() -> None:
     text = json.dumps({"type": "say", "id": "a", "text": "a\x1b[31mb\x00\ud800"})
     assert parse(text, CLIENT).text == "ab\ufffd"

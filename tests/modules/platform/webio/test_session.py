@@ -151,6 +151,36 @@ async def test_a_name_that_is_found_out_later_is_shown_then_as_plain_text() -> N
         assert now() == 3.0
 
 
+@pytest.mark.parametrize(
+    ("name", "shown"),
+    [
+        ("", "Ravestate"),
+        (" \n\x07", "Ravestate"),
+        ("Ro\n\n\u2028bin\t the  2nd", "Ro bin the 2nd"),
+        ("Ro\u202ebin\u2066", "Robin"),
+        ("Ro\ud800bin", "Ro\ufffdbin"),
+        ("\u200b\ufeff", "Ravestate"),
+        ("x" * 100_000, "x" * 80),
+        ("\U0001f469\u200d\U0001f680 Valentina", "\U0001f469\u200d\U0001f680 Valentina"),
+    ],
+)
+def test_whatever_the_agent_calls_itself_is_shown_as_a_name(name: str, shown: str) -> None:
+    @in_virtual_time
+    async def test() -> None:
+        async with page(parrot) as app, Visit(app) as visit:
+            await visit.hello()
+            await visit.messages(1)
+            (session,) = app.state.sessions
+            session.context.put(interloc.agent, "Elske")
+            assert await visit.next() == {"type": "renamed", "agent": "Elske"}
+            session.context.put(interloc.agent, name)
+            assert await visit.next() == {"type": "renamed", "agent": shown}
+            async with Visit(app) as window:
+                assert (await window.hello(session=visit.session))["agent"] == shown
+
+    test()
+
+
 @in_virtual_time
 async def test_a_title_that_is_set_stands_whatever_the_agent_calls_itself() -> None:
     async with page(named, title="Ravestate") as app, Visit(app) as visit:

@@ -206,8 +206,8 @@ class Connection:
             self._woken.clear()
             while self._replies:
                 await self._send(self._replies.popleft())
-            if self._name_of(session) != agent:
-                agent = self._name_of(session)
+            if (name := self._name_of(session)) != agent:
+                agent = name
                 await self._send(Renamed(agent))
             for message in session.history.since(last):
                 if message.n != last + 1:

@@ -24,6 +24,7 @@ from ravestate.modules._text import printable
 
 __all__ = [
     "CLIENT",
+    "LONGEST_NAME",
     "SERVER",
     "VERSION",
     "Bye",
@@ -41,12 +42,16 @@ __all__ = [
     "Welcome",
     "Writing",
     "heard_text",
+    "name_of",
     "parse",
     "serialise",
 ]
 
 VERSION = 1
 """Of the protocol. A frame or a field that is added does not change it; anything else does."""
+
+LONGEST_NAME = 80
+"""Characters of a name."""
 
 LONGEST_TEXT = 10_000
 """Characters that a visitor says at once."""
@@ -234,6 +239,7 @@ SERVER: Mapping[str, type[Any]] = {
 
 _NAMES = {kind: name for kinds in (CLIENT, SERVER) for name, kind in kinds.items()}
 _KEY = re.compile(r"[A-Za-z0-9_-]{1,64}")
+_JOINERS = "\u200c\u200d"  # some languages are spelt with them, and emoji
 _WIRE = {"speaker": "from"}  # a word of Python's own
 
 
@@ -316,6 +322,18 @@ def heard_text(text: str) -> str:
     return text
 
 
+def name_of(text: str) -> str:
+    """A text as a name that is shown among others: on one line, without characters that cannot be seen or turn others
+    round. It may have nothing in it.
+
+    Example:
+        >>> name_of(" Ada\\u202e\\nLovelace ")
+        'Ada Lovelace'
+    """
+    seen = "".join(c for c in printable(text) if c.isspace() or c.isprintable() or c in _JOINERS)
+    return " ".join(seen.split())
+
+
 def _malformed(message: str) -> ProtocolError:
     return ProtocolError("malformed", message)
 
@@ -348,8 +366,10 @@ def _text(value: object) -> str:
 
 
 def _name(value: object) -> str:
-    text = " ".join(_text(value).split())
-    if not 1 <= len(text) <= 80:
+    if not isinstance(value, str):
+        raise TypeError
+    text = name_of(value)
+    if not 1 <= len(text) <= LONGEST_NAME:
         raise ValueError
     return text
 
@@ -380,7 +400,7 @@ _FIELDS: Mapping[str, tuple[Callable[[object], Any], str]] = {
     "inside": _ANY_TEXT,
     "last": _WHOLE_NUMBER,
     "n": _WHOLE_NUMBER,
-    "name": (_name, "a text of 1 to 80 characters"),
+    "name": (_name, f"a text of 1 to {LONGEST_NAME} characters"),
     "on": _YES_OR_NO,
     "resumed": _YES_OR_NO,
     "session": _NAME_OF,

@@ -16,7 +16,7 @@ async def show(ctx: rs.RuleContext) -> None:
     """Show what is said."""
     session = ctx[page]
     if session is not None:
-        session.say(ctx.payload(rawio.output.changed))
+        session.utter(ctx.payload(rawio.output.changed))
 
 
 @module.rule(when=rawio.piece.max_age(None).detached(), reads=page, background=True)
@@ -37,10 +37,10 @@ async def end_piece(ctx: rs.RuleContext) -> None:
 
 @module.rule(when=interloc.agent.changed.max_age(None).detached(), reads=page, background=True)
 async def show_name(ctx: rs.RuleContext) -> None:
-    """Show what the agent is called."""
+    """Show what the agent is called now."""
     session = ctx[page]
     if session is not None:
-        session.rename(ctx.payload(interloc.agent.changed))
+        session.tell()
 
 
 @module.rule(when=rs.pressure.true.min_age(SLOW).max_age(None).detached(), reads=page, background=True)

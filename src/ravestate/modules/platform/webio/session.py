@@ -17,6 +17,7 @@ from ravestate.modules._text import printable, without_controls
 
 from . import page
 from .history import History
+from .protocol import LONGEST_NAME, name_of
 
 if TYPE_CHECKING:
     from ravestate.runtime.context import Context
@@ -78,8 +79,6 @@ class Session:
         self.name = name
         self.began = _now()
         """When it began (milliseconds since 1970)."""
-        self.agent = interloc.agent.default
-        """What the agent calls itself."""
         self.context = context
         self.history = History()
         self.partial = ""
@@ -91,6 +90,7 @@ class Session:
         self.ended: Ending | None = None
         """Why the conversation is over, once it is."""
         self.onlookers: set[Onlooker] = set()
+        self._begun = False
         self._left: asyncio.Event = asyncio.Event()
         self._reason = Ending.CANCELLED
         self._heard: OrderedDict[str, None] = OrderedDict()
@@ -107,6 +107,7 @@ class Session:
         """Be there until the visitor or the agent leaves, or this is cancelled; then end in order."""
         try:
             async with self.context as context:
+                self._begun = True
                 context.put(page, self)
                 context.put(interloc.users, {**context.read(interloc.users), self.visitor: self.name})
                 await self._until_left()
@@ -124,7 +125,7 @@ class Session:
             self.fall_silent()
             self.typing = False
             self.ended = self._reason
-            self._tell()
+            self.tell()
 
     def leave(self, reason: Ending) -> None:
         """End the conversation for good."""
@@ -177,7 +178,7 @@ class Session:
         self.history.add("user", text, _now(), id)
         self.context.put(rawio.input, text)
         self._expect(GRACE)
-        self._tell()
+        self.tell()
         return True
 
     def notice_writing(self) -> None:
@@ -187,29 +188,30 @@ class Session:
 
     # ------------------------------------------------------------------------------------ the agent
 
-    def rename(self, name: str) -> None:
-        """The agent calls itself by a name from now on."""
-        self.agent = printable(name)
-        self._tell()
+    @property
+    def agent(self) -> str:
+        """What the agent calls itself: 1 to 80 characters on one line, whatever stands in ``interloc.agent``."""
+        name = self.context.read(interloc.agent) if self._begun else ""
+        return name_of(name[:LONGEST_NAME]) or interloc.agent.default
 
-    def say(self, text: str) -> None:
+    def utter(self, text: str) -> None:
         """The agent has said something."""
         text = printable(text)
         self.partial = ""
         self._awaited = self.context.read(rs.pressure)  # then it was said to fill a pause
         if text.strip():
             self.history.add("agent", text, _now())
-        self._tell()
+        self.tell()
 
     def grow(self, piece: str) -> None:
         """The agent is saying something; the next piece of it."""
         self.partial += without_controls(piece)
-        self._tell()
+        self.tell()
 
     def fall_silent(self) -> None:
         """The agent says no more; what was said so far was said."""
         if self.partial:
-            self.say(self.partial)
+            self.utter(self.partial)
 
     def ponder(self) -> None:
         """The agent keeps something waiting."""
@@ -228,14 +230,15 @@ class Session:
                     await self.context.quiet()
             except TimeoutError:
                 self._slow = True
-                self._tell()
+                self.tell()
                 await self.context.quiet()
         finally:
             self._following = None
             self._slow = False
-            self._tell()
+            self.tell()
 
-    def _tell(self) -> None:
+    def tell(self) -> None:
+        """Wake those who look on: something has changed."""
         self.typing = self._slow and self._awaited and not self.partial and self.ended is None
         for onlooker in self.onlookers:
             onlooker.wake()
