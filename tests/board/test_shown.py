@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ravestate.board.shown import Shown, show
+from ravestate.board.shown import Shown, is_foreign, show, well_formed
 from ravestate.declare.slot import Entry
 
 JSON = st.recursive(
@@ -71,10 +71,43 @@ def test_what_has_no_end_is_shown() -> None:
     assert show(endless()).text == "[[...]]"
 
 
+class Counted:
+    asked = 0
+
+    def __repr__(self) -> str:
+        Counted.asked += 1
+        return "counted"
+
+
+def test_of_what_is_huge_and_foreign_no_more_is_made_than_is_shown() -> None:
+    for value in (
+        {Counted() for _ in range(1000)},
+        {n: Counted() for n in range(1000)},
+        [{Counted()}] * 1000,
+    ):
+        Counted.asked = 0
+        shown = show(value, 100)
+        assert (len(shown.text), shown.json, shown.cut) == (100, False, True)
+        assert Counted.asked <= 20
+
+
+def test_lone_surrogates_are_replaced() -> None:
+    assert show({1: "\ud800"}).text == "{1: '\\ud800'}"
+    assert well_formed("\ud800x") == "?x"
+    assert well_formed("café 👋🏽") == "café 👋🏽"
+
+
+def test_what_json_has_no_word_for_is_known() -> None:
+    assert (
+        is_foreign(Loud()) and is_foreign({"a": [Loud()]}) and is_foreign(Liar(a=1)) and is_foreign(endless())
+    )
+    assert not any(map(is_foreign, (None, True, 10**5000, float("nan"), "x" * 10**7, [1] * 10**6, (1, 2))))
+
+
 @pytest.mark.parametrize(
     "value",
-    ["x" * 10**7, list(range(10**6)), 10**5000, {"k" * 10**6: 1}],
-    ids=["text", "list", "number", "key"],
+    ["x" * 10**7, list(range(10**6)), 10**5000, {"k" * 10**6: 1}, set(range(10**5)), {1: "x" * 10**7}],
+    ids=["text", "list", "number", "key", "set", "odd keys"],
 )
 def test_what_is_huge_is_cut(value: object) -> None:
     shown = show(value, 100)

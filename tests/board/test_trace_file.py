@@ -1,6 +1,7 @@
 """Recorded traces: what is written is read again, and what is no trace is refused with the place where it is wrong."""
 
 import json
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -100,6 +101,39 @@ def test_a_diagram_that_does_not_hang_together_is_refused(tmp_path: Path) -> Non
     data["policy"]["diagram"]["edges"][0]["target"] = "nowhere"
     with pytest.raises(ValueError, match="nowhere"):
         read_trace(json.dumps(data))
+
+
+@pytest.mark.parametrize("spell", [json.dumps, lambda data: json.dumps(data, ensure_ascii=False)])
+def test_texts_that_no_encoding_carries_are_mended(tmp_path: Path, spell: Callable[[Any], str]) -> None:
+    recorded(tmp_path / "trace.json")
+    data = json.loads((tmp_path / "trace.json").read_text("utf-8"))
+    data["title"] = "\ud800x 👋 \\ud800"
+    data["records"].append(
+        {"kind": "settled", "time": 9, "run": 1, "rule": "\udfff", "outcome": "failed",
+         "reason": "no \ud83d", "fired": False}
+    )  # fmt: skip
+    data["policy"]["rules"][0]["doc"] = "\udc00"
+    data["records"][0]["payload"] = {"text": '"\ud800"'}
+    text = spell(data)
+    for found in (read_trace(text), read_trace(text.encode("utf-8", "surrogatepass"))):
+        assert found.title == "?x 👋 \\ud800"
+        told = [data_of(record) for record in found.records]
+        assert (told[-1]["rule"], told[-1]["reason"], told[0]["payload"]) == ("?", "no ?", {"text": '"?"'})
+        json.dumps([whole_data(found.description), told], ensure_ascii=False).encode()
+        save_trace(tmp_path / "again.json", simulated(), found.records, title="\ud800")
+    assert open_trace(tmp_path / "again.json").title == "?"
+
+
+def simulated() -> rs.Policy:
+    with simulate(gossip, parrot) as sim:
+        return sim.context.policy
+
+
+def test_a_trace_may_begin_with_a_byte_order_mark(tmp_path: Path) -> None:
+    recorded(tmp_path / "trace.json")
+    assert read_trace(b"\xef\xbb\xbf" + (tmp_path / "trace.json").read_bytes()).title == "Elske"
+    with pytest.raises(ValueError, match="it is not JSON"):
+        read_trace(b'{"format": "\xff"}')
 
 
 def test_a_file_that_is_not_there_is_told(tmp_path: Path) -> None:

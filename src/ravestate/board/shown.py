@@ -9,11 +9,12 @@ import json
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any, cast
+from typing import cast
 
+from ravestate.board.pieces import pieces
 from ravestate.declare.slot import Entry
 
-__all__ = ["Shown", "is_foreign", "show"]
+__all__ = ["Shown", "is_foreign", "show", "well_formed"]
 
 DEEPEST = 6
 """Containers within containers that are looked into."""
@@ -55,10 +56,10 @@ def show(value: object, most: int = 2000) -> Shown:
     if kind is str:
         text = cast("str", value)
         if len(text) < most - 2:
-            whole = json.dumps(_well_formed(text), ensure_ascii=False)
+            whole = json.dumps(well_formed(text), ensure_ascii=False)
             if len(whole) <= most:
                 return Shown(whole)
-        return Shown(json.dumps(_well_formed(text[:most]), ensure_ascii=False)[:most], False, True)
+        return Shown(json.dumps(well_formed(text[:most]), ensure_ascii=False)[:most], False, True)
     if kind is Entry:  # of a collection: its key says most
         key, item = cast("Entry", value)
         name = show(str(key), most).text
@@ -107,7 +108,7 @@ def _json(value: object, depth: int) -> Iterator[str]:
             raise _Foreign
         yield json.dumps(value)
     elif isinstance(value, str):
-        yield json.dumps(_well_formed(value[:100_000]), ensure_ascii=False)
+        yield json.dumps(well_formed(value[:100_000]), ensure_ascii=False)
     elif depth > DEEPEST:
         raise _Foreign
     elif isinstance(value, Mapping):
@@ -115,7 +116,7 @@ def _json(value: object, depth: int) -> Iterator[str]:
         for number, (key, item) in enumerate(cast("Mapping[object, object]", value).items()):
             if not isinstance(key, str):
                 raise _Foreign
-            yield (", " if number else "") + json.dumps(_well_formed(key[:1000]), ensure_ascii=False) + ": "
+            yield (", " if number else "") + json.dumps(well_formed(key[:1000]), ensure_ascii=False) + ": "
             yield from _json(item, depth + 1)
         yield "}"
     elif type(value) in (list, tuple):
@@ -130,13 +131,25 @@ def _json(value: object, depth: int) -> Iterator[str]:
 
 
 def _repr(value: object, most: int) -> Shown:
+    found: list[str] = []
+    size = 0
     try:
-        text = _well_formed(repr(value))
-    except Exception as error:  # its repr is foreign code
+        for piece in pieces(value):
+            found.append(piece)
+            size += len(piece)
+            if size > most:
+                break
+    except Exception as error:  # a container that changes, or a field that fails, while it is looked through
         return Shown(f"<{type(value).__name__} whose repr fails: {type(error).__name__}>", False)
+    text = well_formed("".join(found)[: most + 1])
     return Shown(text[:most], False, len(text) > most)
 
 
-def _well_formed(text: Any) -> str:
-    """Without lone surrogates, which no encoding carries."""
+def well_formed(text: str) -> str:
+    """A text without lone surrogates, which no encoding carries.
+
+    Example:
+        >>> well_formed("\\ud800x")
+        '?x'
+    """
     return text if text.isascii() else text.encode("utf-8", "replace").decode("utf-8")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,6 +11,7 @@ from typing import Any, cast
 
 from ravestate.board.description import Description, describe
 from ravestate.board.recorder import Gap
+from ravestate.board.shown import well_formed
 from ravestate.board.wire import VERSION, data_of, description_of, record_of, whole_data
 from ravestate.engine.trace import Record
 from ravestate.errors import PlatformError
@@ -18,6 +20,9 @@ from ravestate.policy.policy import Policy
 __all__ = ["FORMAT", "Recording", "open_trace", "read_trace", "save_trace"]
 
 FORMAT = "ravestate-trace"
+
+SURROGATE = re.compile(r"\\u[dD][89a-fA-F]")
+"""Half of a pair, as JSON spells it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,7 +61,7 @@ def save_trace(
         "policy": whole_data(describe(policy)),
         "records": [data_of(record) for record in records],
     }
-    path.write_text(json.dumps(data, ensure_ascii=False), encoding="utf-8")
+    path.write_text(well_formed(json.dumps(data, ensure_ascii=False)), encoding="utf-8")
 
 
 def open_trace(path: Path) -> Recording:
@@ -74,13 +79,13 @@ def open_trace(path: Path) -> Recording:
 
 
 def read_trace(text: str | bytes) -> Recording:
-    """Read a trace.
+    """Read a trace. Texts in it that no encoding carries, as they have lone surrogates, are mended.
 
     Raises:
         ValueError: It is none; the message says where it is wrong.
     """
     try:
-        found: Any = json.loads(text)
+        found = _parsed(text)
     except (ValueError, RecursionError):
         raise ValueError("it is not JSON") from None
     if not isinstance(found, dict) or cast("dict[str, Any]", found).get("format") != FORMAT:
@@ -104,6 +109,17 @@ def read_trace(text: str | bytes) -> Recording:
     return Recording(
         str(data.get("title", "Ravestate"))[:80], description, tuple(read), data.get("whole") is True
     )
+
+
+def _parsed(text: str | bytes) -> Any:
+    """What JSON stands for, its texts well formed."""
+    if isinstance(text, bytes):
+        text = text.decode("utf-8-sig", "surrogatepass")
+    text = well_formed(text)
+    found = json.loads(text)
+    if SURROGATE.search(text) is None:
+        return found
+    return json.loads(well_formed(json.dumps(found, ensure_ascii=False)))
 
 
 def _first(error: ValueError) -> str:
