@@ -1,6 +1,7 @@
 import { expect, test } from "vitest";
 import type { TraceRecord } from "../src/board/protocol";
-import { from, Trace } from "../src/board/trace";
+import { type Bar, from, Trace } from "../src/board/trace";
+import { gaveUp } from "../src/board/words";
 
 let spikes = 0;
 
@@ -30,8 +31,16 @@ function held(
   return { kind: "held", time, activation, rule, clause: 0, spike, signal: "m:s", lacks };
 }
 
-function gaveup(time: number, activation: number, spike: number, reason: string, by = ""): TraceRecord {
-  return { kind: "gaveup", time, activation, rule: "m:r", spike, signal: "m:s", reason, by };
+function gaveup(
+  time: number,
+  activation: number,
+  spike: number,
+  reason: string,
+  by = "",
+  run?: number,
+): TraceRecord {
+  const lost = { time, activation, rule: "m:r", spike, signal: "m:s", reason, by };
+  return { kind: "gaveup", ...lost, ...(run === undefined ? {} : { run }) };
 }
 
 function bars(trace: Trace, rule: string) {
@@ -61,11 +70,8 @@ test("one that gives up its last spike has ended, and says who answered", () => 
   trace.add([held(1, 7, "m:r", 1, ["m:u"]), held(1, 7, "m:r", 2, ["m:u"]), gaveup(2, 7, 1, "age")]);
   expect(trace.bar(7)?.to).toBeNull();
   trace.add([gaveup(3, 7, 2, "consumed", "m:best")]);
-  expect([trace.bar(7)?.to, trace.bar(7)?.outcome, trace.bar(7)?.reason]).toEqual([
-    3,
-    "consumed",
-    "m:best answered",
-  ]);
+  const bar = trace.bar(7) as Bar;
+  expect([bar.to, bar.outcome, gaveUp(bar, trace)]).toEqual([3, "consumed", "m:best answered it"]);
 });
 
 test("who answered is told with the rule that raised what it heard", () => {
@@ -77,9 +83,64 @@ test("who answered is told with the rule that raised what it heard", () => {
     born(1, "m:said", { parents: [1], source: 5 } as Partial<TraceRecord>),
     { kind: "started", time: 1, run: 6, rule: "m:verbalise", clause: 0, spikes: [2] },
     held(1, 7, "m:r", 1),
-    gaveup(2, 7, 1, "consumed", "m:verbalise"),
+    gaveup(2, 7, 1, "consumed", "m:verbalise", 6),
+    held(1, 8, "m:r", 1),
+    gaveup(2, 8, 1, "consumed", "m:verbalise"), // from a trace that does not tell the run
   ]);
-  expect(trace.bar(7)?.reason).toBe("m:skill → m:verbalise answered");
+  expect(gaveUp(trace.bar(7) as Bar, trace)).toBe("m:skill → m:verbalise answered it");
+  expect(gaveUp(trace.bar(8) as Bar, trace)).toBe("m:verbalise answered it");
+});
+
+test("of two runs that which answered is told, and what raised a spike of another cause has no part in it", () => {
+  spikes = 0;
+  const trace = new Trace();
+  trace.add([
+    born(0, "m:boot", { group: 2 } as Partial<TraceRecord>),
+    { kind: "started", time: 0, run: 1, rule: "m:warm_up", clause: 0, spikes: [1] },
+    born(0, "m:ready", { group: 2, parents: [1], source: 1 } as Partial<TraceRecord>),
+    born(1, "m:input"),
+    { kind: "started", time: 1, run: 2, rule: "m:one", clause: 0, spikes: [3] },
+    born(1, "m:first", { parents: [3], source: 2 } as Partial<TraceRecord>),
+    { kind: "started", time: 1, run: 3, rule: "m:two", clause: 0, spikes: [3] },
+    born(1, "m:second", { parents: [3], source: 3 } as Partial<TraceRecord>),
+    held(1, 9, "m:r", 3),
+    held(1, 4, "m:say", 4),
+    held(1, 5, "m:say", 5),
+    { kind: "started", time: 1, run: 5, rule: "m:say", clause: 0, spikes: [5] },
+    { kind: "settled", time: 1, run: 5, rule: "m:say", outcome: "resigned", reason: "", fired: false },
+    { kind: "started", time: 1, run: 4, rule: "m:say", clause: 1, spikes: [2, 4] },
+    gaveup(1, 9, 3, "consumed", "m:say", 4),
+  ]);
+  expect(gaveUp(trace.bar(9) as Bar, trace)).toBe("m:one → m:say answered it");
+});
+
+test("one whose rule resigned by another run says so", () => {
+  const trace = new Trace();
+  trace.add([held(1, 7, "m:r", 1), gaveup(2, 7, 1, "resigned", "m:r", 6)]);
+  expect(gaveUp(trace.bar(7) as Bar, trace)).toBe("the rule resigned for it");
+});
+
+test("who was behind the answer is looked for when it is told, not while the records come in", () => {
+  const trace = new Trace();
+  let asked = 0;
+  trace.spike =
+    trace.behind =
+    trace.group =
+      () => {
+        asked += 1;
+        return undefined as never;
+      };
+  spikes = 0;
+  for (let i = 1; i <= 500; i++) {
+    trace.add([
+      born(1, "m:tick"),
+      { kind: "started", time: 1, run: 2 * i, rule: "m:best", clause: 0, spikes: [i] },
+      held(1, 2 * i + 1, "m:r", i),
+      gaveup(1, 2 * i + 1, i, "consumed", "m:best", 2 * i),
+    ]);
+  }
+  expect(asked).toBe(0);
+  expect(trace.bar(1001)?.run).toBe(1000);
 });
 
 test("one that loses a spike after it had all gathers again", () => {
@@ -120,7 +181,9 @@ test("groups that merge are one", () => {
     { kind: "merged", time: 1, group: 3, into: 2 },
     { kind: "merged", time: 2, group: 2, into: 1 },
   ]);
-  expect([trace.group(3), trace.group(2), trace.group(1), trace.group(9)]).toEqual([1, 1, 1, 9]);
+  const found = () => [3, 2, 1, 9].map((group) => trace.group(group));
+  expect(found()).toEqual([1, 1, 1, 9]);
+  expect(found()).toEqual([1, 1, 1, 9]); // asked again
 });
 
 test("after a gap, bars that are alive no more are ended, and those that are new are shown", () => {
@@ -150,6 +213,19 @@ test("the oldest is forgotten, with all that is of it, and the rest stays", () =
   expect(trace.spike(1)).toBeUndefined();
   expect(trace.spike(3000)?.time).toBe(2999);
   expect(trace.first).toBe(trace.records[0]?.time);
+});
+
+test("groups stay one though those between them are forgotten", () => {
+  spikes = 0;
+  const trace = new Trace(10);
+  trace.add([
+    born(1, "m:s", { group: 2 } as Partial<TraceRecord>),
+    { kind: "merged", time: 2, group: 3, into: 2 },
+    { kind: "merged", time: 2, group: 2, into: 1 },
+    ...Array.from({ length: 10 }, () => born(3, "m:s", { group: 3 } as Partial<TraceRecord>)),
+  ]);
+  expect(trace.spike(1)).toBeUndefined();
+  expect(trace.group(3)).toBe(1);
 });
 
 test("100,000 records are folded", () => {

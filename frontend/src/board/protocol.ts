@@ -103,7 +103,7 @@ export type TraceRecord =
   | { kind: "merged"; time: number; group: number; into: number }
   | { kind: "set"; time: number; slot: string; value: Shown; run: number }
   | ({ kind: "held"; activation: number; clause: number; lacks: string[] } & OfRule & OfSpike)
-  | ({ kind: "gaveup"; activation: number; reason: string; by: string } & OfRule & OfSpike)
+  | ({ kind: "gaveup"; activation: number; reason: string; by: string; run?: number } & OfRule & OfSpike)
   | ({ kind: "passed"; clause: number; reason: string } & OfRule & OfSpike)
   | ({ kind: "waits"; activation: number; for: string[]; until: number | null } & OfRule)
   | ({ kind: "pressed"; by: string; lacks: string[]; until: number } & OfRule)

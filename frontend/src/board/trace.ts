@@ -23,8 +23,9 @@ export interface Bar {
   /** Once it has ended: `done`, `resigned`, `failed`, ... or why it gave its spikes up: `age`, `consumed`, ... */
   outcome: string;
   reason: string;
-  /** The rule that answered instead, if that is why it gave up. */
+  /** The rule that answered instead, or resigned for it, if that is why it gave up; and the number of its run, 0 if not known. */
   by: string;
+  run: number;
   holds: Set<number>;
   spikes: number[];
   lacks: string[];
@@ -129,7 +130,22 @@ export class Trace {
   group(id: number): number {
     let root = id;
     for (let into = this.#into.get(root); into !== undefined; into = this.#into.get(root)) root = into;
+    for (let at = id; at !== root; ) {
+      const into = this.#into.get(at) ?? root;
+      this.#into.set(at, root); // who asks again need not follow the way again
+      at = into;
+    }
     return root;
+  }
+
+  /** The rule that raised what the run of another one took, for which a bar gave up; empty: none, or not known. */
+  behind(bar: Bar): string {
+    const groups = new Set(bar.spikes.map((id) => this.#groupOf(id)));
+    for (const id of this.#bars.get(bar.run)?.spikes ?? []) {
+      const rule = this.#spikes.get(id)?.rule ?? "";
+      if (rule !== "" && rule !== bar.by && groups.has(this.#groupOf(id))) return rule;
+    }
+    return "";
   }
 
   /** A spike, all that it comes from, and all that comes from it. */
@@ -246,8 +262,8 @@ export class Trace {
           break;
         }
         bar.by = record.by;
-        const reason = record.by === "" ? "" : `${this.#path(record.by, record.spike, record.time)} answered`;
-        this.#end(bar, record.time, record.reason, reason);
+        bar.run = record.run ?? 0;
+        this.#end(bar, record.time, record.reason, "");
         break;
       }
       case "waits": {
@@ -291,6 +307,7 @@ export class Trace {
       outcome: "",
       reason: "",
       by: "",
+      run: 0,
       holds: new Set(),
       spikes: [],
       lacks: [],
@@ -302,20 +319,9 @@ export class Trace {
     return bar;
   }
 
-  /** A rule that ran for the cause of a spike; before it the one that raised what it heard, where there is one. */
-  #path(rule: string, spike: number, time: number): string {
-    const group = this.group(this.#spikes.get(spike)?.group ?? 0);
-    const ran = this.lane(rule).bars.findLast(
-      (bar) =>
-        bar.from <= time &&
-        bar.phases.some((phase) => phase.state === "running") &&
-        bar.spikes.some((id) => this.group(this.#spikes.get(id)?.group ?? -1) === group),
-    );
-    for (const id of ran?.spikes ?? []) {
-      const before = this.#spikes.get(id)?.rule ?? "";
-      if (before !== "" && before !== rule) return `${before} → ${rule}`;
-    }
-    return rule;
+  #groupOf(spike: number): number | undefined {
+    const group = this.#spikes.get(spike)?.group;
+    return group === undefined ? undefined : this.group(group);
   }
 
   #phase(bar: Bar, state: State, from: number, waits?: string[], until?: number | null): void {
@@ -353,6 +359,7 @@ export class Trace {
       lane.bars = lane.bars.filter((bar) => bar.to === null || !gone(bar.to));
     }
     const groups = new Set(this.spikes.map((spike) => spike.group));
+    for (const group of groups) this.group(group); // from now on without those between, which are deleted
     for (const group of this.#into.keys()) if (!groups.has(group)) this.#into.delete(group);
   }
 }

@@ -1,5 +1,5 @@
 import type { Policy, Shown } from "./protocol";
-import type { Bar, Spike } from "./trace";
+import type { Bar, Spike, Trace } from "./trace";
 
 /** A value in one line of at most so many characters. */
 export function value(shown: Shown | undefined, most = 200): string {
@@ -30,17 +30,20 @@ export function typed(text: string): unknown {
   }
 }
 
-/** Why an activation gave its spikes up. */
-export function gaveUp(bar: Bar): string {
-  return bar.reason === "" ? (REASONS[bar.outcome] ?? bar.outcome) : bar.reason;
+/** Why an activation gave its spikes up: the words of `why_given_up` in ravestate.engine.explain. */
+export function gaveUp(bar: Bar, trace: Trace): string {
+  if (bar.reason !== "") return bar.reason;
+  if (bar.outcome !== "consumed" || bar.by === "") return REASONS[bar.outcome] ?? bar.outcome;
+  const behind = trace.behind(bar);
+  return `${behind === "" ? "" : `${behind} → `}${bar.by} answered it`;
 }
 
 const REASONS: Record<string, string> = {
-  age: "a spike was too old",
-  consumed: "another rule answered",
-  resigned: "the rule resigned for this cause",
+  age: "the spike was too old",
+  consumed: "another rule answered it",
+  resigned: "the rule resigned for it",
   eliminated: "its patience ran out while others waited",
-  withdrawn: "a spike was withdrawn",
+  withdrawn: "the spike was withdrawn",
   retired: "the rule retired",
 };
 

@@ -5,8 +5,11 @@ Built once for a question, from the records alone.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from bisect import bisect_right
+from collections.abc import Collection, Iterable
 from dataclasses import dataclass, field
+from itertools import accumulate
+from operator import attrgetter
 
 from ravestate.engine.trace import (
     Born,
@@ -25,6 +28,9 @@ from ravestate.engine.trace import (
 )
 
 __all__ = ["Attempt", "History"]
+
+NEVER = float("inf")
+BY_TIME = attrgetter("time")
 
 
 @dataclass(slots=True)
@@ -95,6 +101,9 @@ class History:
         records: The trace, in order.
         spike: The number of a spike in it.
 
+    Attributes:
+        raising: The number of a run and a signal, for each signal that it raised.
+
     Raises:
         LookupError: The trace does not have the spike (any more).
     """
@@ -108,10 +117,14 @@ class History:
         self.values: dict[str, list[Set]] = {}
         self.retired: dict[str, float] = {}
         self.fired: dict[str, list[float]] = {}
+        self.raising: set[tuple[int, str]] = set()
         self.dropped: dict[int, Dropped] = {}
         self.first = self.last = 0.0
         self._runs: dict[int, Attempt] = {}
         self._into: dict[int, int] = {}
+        self._answers: list[Attempt] = []  # in the order of their end
+        self._of: dict[str, list[Attempt]] = {}
+        self._spans: dict[str, tuple[list[float], list[float]]] = {}
         started = False
         for record in records:
             if not started:
@@ -126,40 +139,66 @@ class History:
 
     def root(self, group: int) -> int:
         """The group into which one has merged, at last."""
-        while group in self._into:
-            group = self._into[group]
-        return group
+        root = group
+        while root in self._into:
+            root = self._into[root]
+        while group != root:  # who asks again need not follow the way again
+            self._into[group], group = root, self._into[group]
+        return root
 
     def of(self, rule: str) -> list[Attempt]:
         """The attempts of a rule on spikes of the group, in the order of their beginning."""
-        return [
-            attempt
-            for attempt in self.attempts.get(rule, {}).values()
-            if any(held.spike in self.group for held in attempt.held)
-            or (attempt.started is not None and any(s in self.group for s in attempt.started.spikes))
-        ]
+        if rule not in self._of:
+            self._of[rule] = [a for a in self.attempts.get(rule, {}).values() if self._is_ours(a)]
+        return self._of[rule]
 
     def raised(self, signal: str) -> list[Born]:
         """The spikes of a signal in the group."""
         return [self.born[id] for id in self.group if self.born[id].signal == signal]
 
-    def before(self, rule: str, time: float) -> str | None:
-        """The rule that raised what another one ran for, in this group, up to a time (seconds); None: no other rule."""
-        ran = [a.started for a in self.of(rule) if a.started is not None and a.started.time <= time]
-        for spike in ran[-1].spikes if ran else ():
-            source = self._runs.get(self.born[spike].source) if spike in self.born else None
-            if source is not None and source.rule != rule:
-                return source.rule
-        return None
+    def ran(self, rule: str, time: float) -> bool:
+        """Whether a rule ran for the group at a time (seconds)."""
+        if rule not in self._spans:
+            spans = sorted(
+                (attempt.started.time, NEVER if attempt.end is None else attempt.end)
+                for attempt in self.of(rule)
+                if attempt.started is not None
+            )
+            self._spans[rule] = (
+                [start for start, _ in spans],
+                list(accumulate((end for _, end in spans), max)),
+            )
+        starts, ends = self._spans[rule]
+        begun = bisect_right(starts, time)
+        return begun > 0 and ends[begun - 1] >= time
+
+    def answered(self, rules: Collection[str]) -> Attempt | None:
+        """The first run for the group in which one of these rules answered."""
+        return next((a for a in self._answers if a.rule in rules and self._is_ours(a)), None)
+
+    def before(self, run: int) -> str:
+        """The rule that raised what a run of another one took of this group; empty: none, or not known."""
+        attempt = self._runs.get(run)
+        if attempt is None or attempt.started is None:
+            return ""
+        for spike in attempt.started.spikes:
+            if spike in self.group:
+                source = self._runs.get(self.born[spike].source)
+                if source is not None and source.rule != attempt.rule:
+                    return source.rule
+        return ""
 
     def value(self, slot: str, time: float) -> Set | None:
         """The last write of a slot up to a time (seconds), if the trace has one."""
-        found = None
-        for record in self.values.get(slot, ()):
-            if record.time > time:
-                break
-            found = record
-        return found
+        written = self.values.get(slot, [])
+        number = bisect_right(written, time, key=BY_TIME)
+        return written[number - 1] if number else None
+
+    def _is_ours(self, attempt: Attempt) -> bool:
+        started = attempt.started
+        return any(held.spike in self.group for held in attempt.held) or (
+            started is not None and any(spike in self.group for spike in started.spikes)
+        )
 
     def _attempt(self, id: int, rule: str, clause: int) -> Attempt:
         attempts = self.attempts.setdefault(rule, {})
@@ -171,6 +210,7 @@ class History:
         match record:
             case Born():
                 self.born[record.spike] = record
+                self.raising.add((record.source, record.signal))
             case Held():
                 self._attempt(record.activation, record.rule, record.clause).take(record)
             case GaveUp():
@@ -184,6 +224,8 @@ class History:
             case Settled():
                 if record.run in self._runs:
                     self._runs[record.run].settled = record
+                    if record.fired:
+                        self._answers.append(self._runs[record.run])
                 if record.fired:
                     self.fired.setdefault(record.rule, []).append(record.time)
                 if record.outcome == "retired":

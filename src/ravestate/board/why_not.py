@@ -6,14 +6,15 @@ is how far the rule came, at best, and what it failed for there.
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any, Literal
 
 from ravestate.board.description import ClauseView, Description, RuleView
 from ravestate.board.history import Attempt, History
-from ravestate.engine.explain import how_ended
-from ravestate.engine.trace import Record, Settled
+from ravestate.engine.explain import PASSED, how_ended, why_given_up
+from ravestate.engine.trace import GaveUp, Record, Settled, Waits
 
 __all__ = ["Missing", "Moment", "Raiser", "Verdict", "WhyNot", "why_not"]
 
@@ -47,6 +48,9 @@ FURTHEST: dict[str, int] = {
 
 DEEPEST = 3
 """Causes of causes that are told."""
+
+MOST = 200
+"""Moments that are told; of more, the first and the last."""
 
 Opens = Callable[[str, int, int, Any], bool | None]
 """Whether a gate is open for a value of its slot: the rule, its clause and the gate by their numbers, the value; None
@@ -97,7 +101,8 @@ class WhyNot:
         at: When that was decided (seconds), if it is.
         clause: By which clause (its number), if it took a spike.
         missing: What it lacked, and who might have raised it.
-        moments: What befell it, in order.
+        moments: What befell it, in order; of more than 200 the first and the last, with one between them that says how
+            many are left out.
         whole: Whether the trace reaches back to before the spike; otherwise something may have gone unseen.
     """
 
@@ -165,12 +170,18 @@ def why_not(
     return _Inquiry(history, description, opens).answer(view, whole or history.first < history.spike.time)
 
 
+Judgement = tuple[Verdict, str, float | None, Attempt | None]
+"""How far a rule came, in words too, when that was decided, and with which attempt."""
+
+
 class _Inquiry:
     def __init__(self, history: History, description: Description, opens: Opens | None) -> None:
         self.history = history
         self.description = description
         self.opens = opens
         self.asked: list[str] = []  # rules that are being explained: causes may be circular
+        self._judged: dict[str, Judgement] = {}
+        self._first: dict[str, Attempt | None] = {}  # by the rule whose slots were taken
 
     def answer(self, rule: RuleView, whole: bool) -> WhyNot:
         born = self.history.spike
@@ -178,7 +189,7 @@ class _Inquiry:
         missing: tuple[Missing, ...] = ()
         if verdict in ("lacked", "eliminated", "untouched"):
             missing = self.missing(rule, attempt)
-        moments = tuple(sorted(self.moments(rule), key=lambda moment: moment.time))
+        moments = _abridged(sorted(self.moments(rule), key=lambda moment: moment.time))
         clause = None if attempt is None else attempt.clause
         return WhyNot(
             rule.name,
@@ -196,9 +207,14 @@ class _Inquiry:
 
     # ------------------------------------------------------------------------------------ the verdict
 
-    def judge(self, rule: RuleView) -> tuple[Verdict, str, float | None, Attempt | None]:
+    def judge(self, rule: RuleView) -> Judgement:
         """How far a rule came in this group, and why no further."""
-        best: tuple[Verdict, str, float | None, Attempt | None] | None = None
+        if rule.name not in self._judged:
+            self._judged[rule.name] = self._furthest(rule)
+        return self._judged[rule.name]
+
+    def _furthest(self, rule: RuleView) -> Judgement:
+        best: Judgement | None = None
         for attempt in self.history.of(rule.name):
             verdict, words, at = self._judge(rule, attempt)
             if best is None or FURTHEST[verdict] < FURTHEST[best[0]]:
@@ -211,12 +227,12 @@ class _Inquiry:
         passed = [p for p in self.history.passed.get(rule.name, ()) if p.spike in self.history.group]
         if passed:
             first = passed[0]
-            reasons = {
-                "payload": f"it did not take {first.signal}: its payload did not fit the predicate",
-                "consumed": f"it did not take {first.signal}: {self._path(self._answered(rule, first.time), first.time)} had answered this cause already",
-                "caused": f"it did not take {first.signal}: the rule itself was among its causes, and no rule is its own cause",
-            }
-            return "passed", reasons.get(first.reason, f"it did not take {first.signal}"), first.time, None
+            reason = PASSED.get(first.reason, first.reason)
+            if first.reason == "consumed":
+                reason = f"{self._path(*self._answered(rule, first.time))} had answered this cause already"
+            elif first.reason == "caused":
+                reason += ", and no rule is its own cause"
+            return "passed", f"it did not take {first.signal}: {reason}", first.time, None
         if retired is not None:
             return (
                 "retired",
@@ -244,40 +260,24 @@ class _Inquiry:
             return "withdrawn", f"{last.signal} was withdrawn at {_s(end)}{why}", end
         if last.reason == "retired":
             return "retired", f"it retired at {_s(end)}, while it held {_names(self._held(attempt))}", end
-        by = last.by or self._answered(rule, end)
-        if attempt.waits and not attempt.lacks:
-            wait = attempt.waits[-1]
-            return (
-                "outrun",
-                f"it was ready, and waited for {self._rivals(rule, attempt, wait.time)}; "
-                f"{self._path(by, end)} answered at {_s(end)}",
-                end,
-            )
+        lost = self._lost(rule, last, clause)
         if attempt.lacks:
             lacked = f"it took {_names(self._held(attempt))}, but lacked {_names(attempt.lacks)}"
             if last.reason == "eliminated":
                 return "eliminated", f"{lacked}; {self._pressure(rule, end)}", end
-            return "lacked", f"{lacked}{self._lost(attempt, clause, by)}", end
+            return "lacked", f"{lacked}{lost}", end
+        waited = self._waited(rule, attempt)
         if ripe is not None and end < ripe:
-            return "young", f"{self._young(clause, attempt, ripe)}{self._lost(attempt, clause, by)}", end
-        if (
-            clause.gates
-            and self._shut(rule, attempt, end) is not False
-            and (
-                last.reason != "consumed"
-                or self._shut(rule, attempt, end)
-                or (ripe is not None and ripe < end)
-            )
-        ):
-            return "gated", f"{self._gated(clause, end)}{self._lost(attempt, clause, by)}", end
-        if last.reason == "consumed":
-            ahead = self._ahead(by, rule, attempt, end)
-            return (
-                "outrun",
-                f"it was ready, but {self._path(by, end)}{ahead} was asked first, and answered at {_s(end)}",
-                end,
-            )
-        return "lacked", f"it took {_names(self._held(attempt))}{self._lost(attempt, clause, by)}", end
+            return "young", f"{waited and f'{waited}; '}{self._young(clause, ripe)}{lost}", end
+        if self._was_gated(rule, attempt, ripe, last):
+            return "gated", f"{self._gated(clause, waited)}{lost}", end
+        if last.reason != "consumed":
+            return "lacked", f"{waited or f'it took {_names(self._held(attempt))}'}{lost}", end
+        by, run = self._answerer(rule, last)
+        if waited:
+            return "outrun", f"{waited}; {self._path(by, run)} answered at {_s(end)}", end
+        first = f"{self._path(by, run)}{self._ahead(by, rule, attempt, end)} was asked first"
+        return "outrun", f"it was ready, but {first}, and answered at {_s(end)}", end
 
     def _ran(
         self, rule: RuleView, attempt: Attempt, began: float, settled: Settled
@@ -318,19 +318,21 @@ class _Inquiry:
         if attempt.lacks or attempt.complete is None:
             lacks = _names(attempt.lacks)
             return "lacked", f"it has {_names(self._held(attempt))}, and still lacks {lacks}", None
-        if attempt.waits:
-            wait = attempt.waits[-1]
-            until = "" if wait.until is None else f", until {_s(wait.until)} at the latest"
-            return (
-                "waiting",
-                f"it is ready since {_s(wait.time)}, and waits for {self._rivals(rule, attempt, wait.time)}{until}",
-                None,
-            )
         if ripe is not None and ripe > self.history.last:
-            return "young", self._young(clause, attempt, ripe), None
-        if clause.gates:
-            return "gated", self._gated(clause, self.history.last), None
-        return "waiting", f"it is ready since {_s(attempt.complete)}, and will be asked next", None
+            return "young", self._young(clause, ripe), None
+        wait = attempt.waits[-1] if attempt.waits else None
+        if clause.gates and (wait is None or self._stands_still(rule, attempt, wait)):
+            return "gated", self._gated(clause, self._waited(rule, attempt)), None
+        if wait is None:
+            return "waiting", f"it is ready since {_s(attempt.complete)}, and will be asked next", None
+        whom = f"{self._rivals(rule, attempt, wait)}{_until(wait)}"
+        return "waiting", f"it is ready since {_s(wait.time)}, and waits for {whom}", None
+
+    def _stands_still(self, rule: RuleView, attempt: Attempt, wait: Waits) -> bool:
+        """Whether one that waited waits no longer, and is not ready either: a gate was shut meanwhile."""
+        last = self.history.last
+        shut = self._shut(rule, attempt, last)
+        return shut is True or (shut is None and wait.until is not None and wait.until < last)
 
     def _ripe(self, clause: ClauseView, attempt: Attempt) -> float | None:
         """When all its spikes are old enough (seconds); None if it never had all."""
@@ -343,7 +345,7 @@ class _Inquiry:
                 ripe = max(ripe, self.history.born[held[-1]].time + constraint.min_age)
         return ripe
 
-    def _young(self, clause: ClauseView, attempt: Attempt, ripe: float) -> str:
+    def _young(self, clause: ClauseView, ripe: float) -> str:
         slow = max(clause.constraints, key=lambda constraint: constraint.min_age)
         return f"{slow.signal} has to be {slow.min_age:g} s old, which it would have been at {_s(ripe)}"
 
@@ -360,30 +362,38 @@ class _Inquiry:
             known = known and told is not None
         return False if known else None
 
-    def _gated(self, clause: ClauseView, time: float) -> str:
-        return f"it had all spikes, but {' and '.join(gate.text for gate in clause.gates)} was false"
+    def _was_gated(self, rule: RuleView, attempt: Attempt, ripe: float | None, last: GaveUp) -> bool:
+        """Whether a gate was shut when an attempt lost what it had: as far as its slot tells, or else by its not having
+        been asked."""
+        if not rule.clauses[attempt.clause].gates:
+            return False
+        shut = self._shut(rule, attempt, last.time)
+        if shut is not None:
+            return shut
+        return last.reason != "consumed" or (ripe is not None and ripe < last.time and not attempt.waits)
+
+    def _gated(self, clause: ClauseView, waited: str) -> str:
+        shut = f"{' and '.join(gate.text for gate in clause.gates)} was false"
+        return f"{waited}; then {shut}" if waited else f"it had all spikes, but {shut}"
 
     # ------------------------------------------------------------------------------------ the others
 
-    def _rivals(self, rule: RuleView, attempt: Attempt, time: float) -> str:
-        """For whom an attempt waited from a time on, and why."""
-        wait = next(w for w in reversed(attempt.waits) if w.time <= time)
+    def _waited(self, rule: RuleView, attempt: Attempt) -> str:
+        """That it was ready, and for whom it waited; empty if it did not wait."""
+        if not attempt.waits:
+            return ""
+        return f"it was ready, and waited for {self._rivals(rule, attempt, attempt.waits[-1])}"
+
+    def _rivals(self, rule: RuleView, attempt: Attempt, wait: Waits) -> str:
+        """For whom an attempt waited, and why."""
         parts: list[str] = []
         for name in wait.for_:
-            running = next(
-                (
-                    a
-                    for a in self.history.of(name)
-                    if a.started and a.started.time <= wait.time and (a.end is None or a.end >= wait.time)
-                ),
-                None,
-            )
-            other = self.description.rule(name)
-            common = [] if other is None else [slot for slot in rule.writes if slot in other.writes]
-            if running is not None and name != rule.name:
-                parts.append(f"{name}, which ran and had taken {_names(common) or 'the spike'}")
-            elif name == rule.name:
+            if name == rule.name:
                 parts.append("another run of its own on the same spike")
+            elif self.history.ran(name, wait.time):
+                other = self.description.rule(name)
+                common = [] if other is None else [slot for slot in rule.writes if slot in other.writes]
+                parts.append(f"{name}, which ran and had taken {_names(common) or 'the spike'}")
             else:
                 parts.append(f"{name}{self._ahead(name, rule, attempt, wait.time)}")
         return _and(parts)
@@ -401,35 +411,40 @@ class _Inquiry:
 
     def _recovered(self, rule: RuleView, time: float) -> float:
         """The share of its utility that a rule has recovered since it ran last (L9)."""
-        ran = [fired for fired in self.history.fired.get(rule.name, ()) if fired <= time]
-        return min(1.0, (time - ran[-1]) / rule.cooldown) if rule.cooldown and ran else 1.0
+        fired = self.history.fired.get(rule.name, [])
+        times = bisect_right(fired, time)
+        return min(1.0, (time - fired[times - 1]) / rule.cooldown) if rule.cooldown and times else 1.0
 
-    def _path(self, by: str, time: float) -> str:
+    def _path(self, by: str, run: int) -> str:
         """Who answered, and on what account: behind the rule that raised what it heard, where there is one."""
-        before = self.history.before(by, time)
-        return by if before is None else f"{before} → {by}"
+        before = self.history.before(run)
+        return f"{before} → {by}" if before else by
 
-    def _answered(self, rule: RuleView, time: float) -> str:
+    def _answerer(self, rule: RuleView, lost: GaveUp) -> tuple[str, int]:
+        """Who answered what an attempt lost: the rule, and the number of its run (0: not known)."""
+        return (lost.by, lost.run) if lost.by else self._answered(rule, lost.time)
+
+    def _answered(self, rule: RuleView, time: float) -> tuple[str, int]:
         """Who had taken one of the rule's slots in this group by a time, if the trace tells."""
-        found = ""
-        for other in self.description.rules:
-            if other.name == rule.name or not set(other.writes) & set(rule.writes):
-                continue
-            for attempt in self.history.of(other.name):
-                if attempt.settled is not None and attempt.settled.fired and attempt.settled.time <= time:
-                    found = other.name
-        return found or "another rule"
+        if rule.name not in self._first:
+            slots = set(rule.writes)
+            others = {o.name for o in self.description.rules if o.name != rule.name and slots & set(o.writes)}
+            self._first[rule.name] = self.history.answered(others)
+        first = self._first[rule.name]
+        if first is None or first.end is None or first.end > time:
+            return "another rule", 0
+        return first.rule, first.id
 
     def _pressure(self, rule: RuleView, end: float) -> str:
-        pressed = [p for p in self.history.pressed.get(rule.name, ()) if p.until <= end]
-        if not pressed:
+        pressed = self.history.pressed.get(rule.name, [])
+        times = bisect_right(pressed, end, key=lambda one: one.until)  # its patience is always the same
+        if not times:
             return f"its patience ran out at {_s(end)}"
-        last = pressed[-1]
+        last = pressed[times - 1]
         return f"{last.by} waited for it from {_s(last.time)} on, and its patience ran out at {_s(end)}"
 
-    def _lost(self, attempt: Attempt, clause: ClauseView, by: str) -> str:
+    def _lost(self, rule: RuleView, last: GaveUp, clause: ClauseView) -> str:
         """How it ended, as the end of a sentence."""
-        last = attempt.gave_up[-1]
         if last.reason == "age":
             ages = [
                 c.max_age for c in clause.constraints if c.signal == last.signal and c.max_age is not None
@@ -437,10 +452,8 @@ class _Inquiry:
             most = f" of {ages[0]:g} s" if ages else ""
             return f"; {last.signal} reached its greatest age{most} at {_s(last.time)}"
         if last.reason == "consumed":
-            return f"; {self._path(by, last.time)} answered this cause at {_s(last.time)}"
-        if last.reason == "resigned":
-            return f"; the rule resigned for it at {_s(last.time)}"
-        return f"; {REASONS.get(last.reason, last.reason)} at {_s(last.time)}"
+            return f"; {self._path(*self._answerer(rule, last))} answered this cause at {_s(last.time)}"
+        return f"; {why_given_up(last)} at {_s(last.time)}"
 
     def _held(self, attempt: Attempt) -> list[str]:
         return list(dict.fromkeys(held.signal for held in attempt.held))
@@ -474,7 +487,8 @@ class _Inquiry:
             if p.signal == name and p.spike in self.history.group
         ]
         if refused:
-            return f"occurred at {_s(refused[0].time)}, but {PASSED[refused[0].reason]}"
+            why = PASSED.get(refused[0].reason, refused[0].reason)
+            return f"occurred at {_s(refused[0].time)}, but {why}"
         if here:
             late = attempt is not None and attempt.end is not None and here[0].time > attempt.end
             return f"occurred at {_s(here[0].time)}, {'after it had given up' if late else 'but was not held then'}"
@@ -493,10 +507,8 @@ class _Inquiry:
             last = runs[-1]
             if last.settled is None:
                 return Raiser(name, "running", None, f"{name} may still raise it: it runs")
-            raised = any(
-                born.source == last.id and born.signal == signal for born in self.history.born.values()
-            )
             ended = last.settled
+            raised = (last.id, signal) in self.history.raising
             what = "raised it" if raised else f"{how_ended(last.settled)} without raising it"
             why = f": {ended.reason}" if ended.reason else ""
             return Raiser(name, ended.outcome, ended.time, f"{name} {what}, at {_s(ended.time)}{why}")
@@ -519,15 +531,15 @@ class _Inquiry:
         """What befell the rule in this group."""
         for passed in self.history.passed.get(rule.name, ()):
             if passed.spike in self.history.group:
-                yield Moment(passed.time, f"did not take {passed.signal}: {PASSED[passed.reason]}")
+                why = PASSED.get(passed.reason, passed.reason)
+                yield Moment(passed.time, f"did not take {passed.signal}: {why}")
         for attempt in self.history.of(rule.name):
             for held in attempt.held:
                 lacking = f", still lacking {_names(held.lacks)}" if held.lacks else ": it has all it needs"
                 yield Moment(held.time, f"took {held.signal}{lacking}")
             last = ""
             for wait in attempt.waits:
-                until = "" if wait.until is None else f", until {_s(wait.until)} at the latest"
-                words = f"was ready, and waited for {self._rivals(rule, attempt, wait.time)}{until}"
+                words = f"was ready, and waited for {self._rivals(rule, attempt, wait)}{_until(wait)}"
                 if words != last:  # it may be asked again, and still wait for the same
                     yield Moment(wait.time, words, wait.for_)
                 last = words
@@ -539,11 +551,7 @@ class _Inquiry:
                 reason = f": {attempt.settled.reason}" if attempt.settled.reason else ""
                 yield Moment(attempt.settled.time, f"{how_ended(attempt.settled)}{reason}")
             for lost in attempt.gave_up:
-                why = (
-                    f"{self._path(lost.by, lost.time)} answered it"
-                    if lost.reason == "consumed" and lost.by
-                    else REASONS.get(lost.reason, lost.reason)
-                )
+                why = why_given_up(lost, self.history.before(lost.run))
                 yield Moment(lost.time, f"gave {lost.signal} up: {why}", (lost.by,) if lost.by else ())
         for pressed in self.history.pressed.get(rule.name, ()):
             if any(a.id for a in self.history.of(pressed.by)):
@@ -555,26 +563,26 @@ class _Inquiry:
                 )
 
 
-REASONS = {
-    "age": "too old",
-    "consumed": "another rule answered it",
-    "resigned": "the rule resigned for it",
-    "eliminated": "its patience ran out while others waited",
-    "withdrawn": "it was withdrawn",
-    "retired": "the rule retired",
-}
-
-PASSED = {
-    "payload": "its payload did not fit the predicate",
-    "consumed": "another rule had answered its cause",
-    "caused": "the rule itself was among its causes",
-}
-
 DROPPED = {
     "overflow": "there were too many of it",
     "superseded": "a later one took its place",
     "wiped": "it was wiped",
 }
+
+
+def _abridged(moments: list[Moment]) -> tuple[Moment, ...]:
+    if len(moments) <= MOST:
+        return tuple(moments)
+    half = MOST // 2
+    left = moments[half : 1 - half]
+    told = Moment(
+        left[0].time, f"and {len(left)} moments more, until {_s(left[-1].time)}, that are left out here"
+    )
+    return (*moments[:half], told, *moments[1 - half :])
+
+
+def _until(wait: Waits) -> str:
+    return "" if wait.until is None else f", until {_s(wait.until)} at the latest"
 
 
 def _s(time: float) -> str:

@@ -292,7 +292,7 @@ class Engine(Waves):
                         and other.state < RUNNING
                         and not other.clause.rule.slotset.isdisjoint(rule.slotset)
                     ):
-                        self._lose(other, self._of_group(other, group), "consumed", rule.name)
+                        self._lose(other, self._of_group(other, group), "consumed", run)
                 self._dirty[group] = None
         else:
             self._give_up(run, spikes, "consumed")
@@ -315,7 +315,7 @@ class Engine(Waves):
         for spike in spikes:
             for other in list(spike.holders) if len(spike.holders) > 1 else ():
                 if other is not run and other.clause.rule is rule and other.state < RUNNING:
-                    self._lose(other, self._of_spike(other, spike), reason, rule.name)
+                    self._lose(other, self._of_spike(other, spike), reason, run)
 
     def _retire(self, rule: RulePlan) -> None:
         self.unfold_all()

@@ -13,7 +13,9 @@ from ravestate.policy.plan import Clause, RulePlan
 if TYPE_CHECKING:
     from ravestate.engine.engine import Engine
 
-__all__ = ["ActivationState", "ClauseState", "Explanation", "explain", "how_ended"]
+__all__ = [
+    "GAVE_UP", "PASSED", "ActivationState", "ClauseState", "Explanation", "explain", "how_ended", "why_given_up",
+]  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
@@ -165,6 +167,13 @@ def how_ended(settled: Settled) -> str:
     return settled.outcome if past else f"was {settled.outcome}"
 
 
+def why_given_up(lost: GaveUp, behind: str = "") -> str:
+    """Why a spike was given up: as ``rule answered it``, or ``behind → rule answered it``, if another rule did."""
+    if lost.reason != "consumed" or not lost.by:
+        return GAVE_UP.get(lost.reason, lost.reason)
+    return f"{f'{behind} → ' if behind else ''}{lost.by} answered it"
+
+
 def _missing(engine: Engine, rule: RulePlan, records: Sequence[Record]) -> Iterator[str]:
     """What has not occurred of the signals of a rule, and why not."""
     if not records:
@@ -196,14 +205,9 @@ def _history(rule: str, records: Iterable[Record]) -> Iterator[str]:
                 )
                 yield f"{record.time:.3f} s: took {record.signal}{lacking}"
             case GaveUp(rule=name) if name == rule:
-                why = (
-                    f"{record.by} answered it"
-                    if record.reason == "consumed" and record.by
-                    else WHY[record.reason]
-                )
-                yield f"{record.time:.3f} s: gave {record.signal} up: {why}"
+                yield f"{record.time:.3f} s: gave {record.signal} up: {why_given_up(record)}"
             case Passed(rule=name) if name == rule:
-                yield f"{record.time:.3f} s: did not take {record.signal}: {WHY_NOT[record.reason]}"
+                yield f"{record.time:.3f} s: did not take {record.signal}: {PASSED[record.reason]}"
             case Waits(rule=name) if name == rule:
                 until = f" until {record.until:.3f} s at the latest" if record.until is not None else ""
                 yield f"{record.time:.3f} s: was ready, and waited for {', '.join(record.for_)}{until}"
@@ -222,17 +226,19 @@ def _history(rule: str, records: Iterable[Record]) -> Iterator[str]:
                 pass
 
 
-WHY_NOT = {
-    "payload": "its payload did not fit",
+PASSED = {
+    "payload": "its payload did not fit the predicate",
     "consumed": "another rule had answered its cause",
     "caused": "the rule itself was among its causes",
 }
+"""Why a rule did not take a spike."""
 
-WHY = {
-    "age": "too old",
+GAVE_UP = {
+    "age": "the spike was too old",
     "consumed": "another rule answered it",
     "resigned": "the rule resigned for it",
     "eliminated": "its patience ran out while others waited",
-    "withdrawn": "it was withdrawn",
-    "retired": "the rule has retired",
+    "withdrawn": "the spike was withdrawn",
+    "retired": "the rule retired",
 }
+"""Why an activation gave a spike up. The board's page says it in the same words (``frontend/src/board/words.ts``)."""

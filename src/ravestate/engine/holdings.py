@@ -312,8 +312,8 @@ class Holdings:
         else:
             self._free.append(activation)
 
-    def _release(self, activation: Activation, need: Need, reason: str, by: str = "") -> None:
-        """Take a spike from an activation."""
+    def _release(self, activation: Activation, need: Need, reason: str, by: Activation | None = None) -> None:
+        """Take a spike from an activation, perhaps because of a run."""
         spike = activation.spikes[need.index]
         if spike is None:
             return
@@ -341,11 +341,14 @@ class Holdings:
                     spike.id,
                     spike.signal.name,
                     reason,
-                    by,
+                    "" if by is None else by.clause.rule.name,
+                    0 if by is None else by.id,
                 )
             )
 
-    def _lose(self, activation: Activation, needs: Iterable[Need], reason: str, by: str = "") -> None:
+    def _lose(
+        self, activation: Activation, needs: Iterable[Need], reason: str, by: Activation | None = None
+    ) -> None:
         """An activation gives spikes up; without any left it is no more."""
         needs = [need for need in needs if not need.bit & activation.missing]
         if not needs:
@@ -382,7 +385,7 @@ class Holdings:
         self._asking.pop(activation, None)
         self.gated.pop(activation, None)
 
-    def _end(self, activation: Activation, reason: str = "", by: str = "") -> None:
+    def _end(self, activation: Activation, reason: str = "", by: Activation | None = None) -> None:
         """An activation is no more: nothing of it is left. With a reason, what it held counts as given up."""
         before = activation.state
         activation.step(END)

@@ -92,7 +92,8 @@ class GaveUp:
     spike: int
     signal: str
     reason: str
-    by: str = ""  # the rule that consumed it, if one did
+    by: str = ""  # the rule that consumed it, or resigned for it, if one did
+    run: int = 0  # the number of its run; 0: of none, or not known
 
 
 @dataclass(frozen=True, slots=True)
