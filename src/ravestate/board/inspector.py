@@ -56,6 +56,9 @@ BURST, SPEED = 60, 30.0
 LISTED = 1.0
 """Seconds between two looks at which conversations there are."""
 
+LIST = 100
+"""Conversations that are listed: the newest, and the one that is looked at."""
+
 WORDS = 48
 """Characters of a visitor's last words, by which a conversation is known."""
 
@@ -201,7 +204,7 @@ class Inspector:
         elif hello.visitor is not None:
             session = next((s for s in self._sessions if s.visitor == hello.visitor), None)
         else:
-            going_on = list(self._sessions)
+            going_on = [session for session in self._sessions if not session.leaving]
             return going_on[-1] if going_on else await self._sessions.open()
         if session is None:
             raise ProtocolError("gone", "this conversation has ended")
@@ -275,7 +278,7 @@ class Inspector:
         """Tell what happens, some twenty times a second at most, and answer."""
         leisure = Leisure()
         clock: dict[str, Any] = {}
-        listed: list[dict[str, Any]] = []
+        listed: dict[str, Any] = {}
         now, looked = asyncio.get_running_loop().time, -LISTED
         while True:
             began = perf_counter()
@@ -289,9 +292,9 @@ class Inspector:
                 await self._send({"type": "renamed", "title": title})
             if session is not None and now() - looked >= LISTED:
                 looked = now()
-                if (conversations := self._conversations()) != listed:
+                if (conversations := self._conversations(session)) != listed:
                     listed = conversations
-                    await self._send({"type": "conversations", "conversations": listed})
+                    await self._send({"type": "conversations", **listed})
             missed = max(0, subject.first - 1 - seen)
             if subject.live and subject.last - seen > LAG:
                 missed = subject.last - seen - MOST
@@ -339,19 +342,31 @@ class Inspector:
     def _title_of(self, session: Session) -> str:
         return session.agent if self._title is None else self._title
 
-    def _conversations(self) -> list[dict[str, Any]]:
-        listed: list[dict[str, Any]] = []
-        for session in list(self._sessions)[-100:]:
-            newest = session.history.newest("user")
-            said = None if newest is None else newest.text[:WORDS]
-            listed.append(
-                {"visitor": session.visitor, "name": session.name, "began": session.began, "said": said}
-            )
-        return listed
+    def _conversations(self, own: Session) -> dict[str, Any]:
+        """Those that go on, the oldest first, and how many more there are."""
+        going_on = list(self._sessions)
+        listed = going_on[-LIST:]
+        if own in going_on[:-LIST]:
+            listed[0] = own
+        return {
+            "conversations": [_conversation(session) for session in listed],
+            "more": len(going_on) - len(listed),
+        }
 
     async def _send(self, frame: dict[str, Any]) -> None:
         await self._socket.send_text(_json(frame))
 
 
+def _conversation(session: Session) -> dict[str, Any]:
+    newest = session.history.newest("user")
+    return {
+        "visitor": session.visitor,
+        "name": session.name,
+        "began": session.began,
+        "said": None if newest is None else newest.text[:WORDS],
+    }
+
+
 def _json(frame: dict[str, Any]) -> str:
-    return json.dumps(frame, ensure_ascii=False, separators=(",", ":"))
+    """In ASCII, as there may be halves of characters in it, which nothing else can be sent with."""
+    return json.dumps(frame, separators=(",", ":"))

@@ -120,6 +120,7 @@ class Visit:
             return
         if message["type"] == "websocket.close":
             self.closed = message["code"]
+        message.get("text", "").encode()  # as a server does
         self._out.put_nowait(message)
 
     def send(self, text: str | bytes) -> None:
