@@ -19,6 +19,7 @@ from end_to_end.test_access import findings
 from ravestate.board.application import INSIDE, PAGE, RecordedAgent, routes
 from ravestate.modules import rawio, webio
 from ravestate.modules.platform.webio.server import Server
+from ravestate.modules.platform.webio.session import Ending
 
 SCRIPT = 300_000
 """Bytes of script, compressed, that the page may load."""
@@ -469,7 +470,7 @@ async def test_a_conversation_that_has_ended_takes_nothing_more_and_says_why(sta
         await page.get_by_role("tab", name="Slots").click()
         await expect(page.get_by_role("button", name="Edit keeper:notebook")).to_be_visible()
         (session,) = host.sessions
-        host.app.state.sessions.leave(session, "the visitor left")
+        host.app.state.sessions.leave(session, Ending.BYE)
         await expect(page.get_by_text("This conversation has ended: the visitor left.")).to_be_visible()
         await expect(page.get_by_role("button", name="Say", exact=True)).to_be_disabled()
         await expect(page.get_by_role("button", name="Edit keeper:notebook")).to_have_count(0)
@@ -503,6 +504,9 @@ async def test_the_keyboard_reaches_the_timeline(stage: Stage) -> None:
         await expect(page.locator("button.lane")).to_have_count(1)
         await page.keyboard.press("Enter")
         await expect(page.get_by_role("heading", name="keeper:small_talk")).to_be_visible()
+        await expect(page.get_by_label("Filter rules")).to_have_value("")
+        await page.keyboard.type("nowhere")
+        await expect(page.get_by_text("no rule has “nowhere”")).to_be_visible()
         await page.keyboard.press("Escape")
         await expect(page.get_by_label("Filter rules")).to_have_value("")
         await page.get_by_role("button", name="Choose no rule").click()

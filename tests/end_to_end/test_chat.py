@@ -9,6 +9,7 @@ from end_to_end.host import Cue, host, namesake, storyteller, watcher
 from end_to_end.stage import PHONE, Stage, on_stage
 from ravestate.modules import webio
 from ravestate.modules.platform.webio.server import Server
+from ravestate.modules.platform.webio.session import Ending
 from ravestate.runtime.agent import Agent
 
 TOKEN = "open sesame, please"
@@ -132,7 +133,7 @@ async def test_a_lost_connection_loses_nothing(stage: Stage) -> None:
             await expect(page.get_by_text("The connection is lost.")).to_be_visible()
             await say(page, "Are you there?")
             await expect(page.locator(".pending")).to_have_text("You: Are you there? (not sent yet)")
-            served.sessions[0].say("I was gone for a while.")
+            served.sessions[0].utter("I was gone for a while.")
         await said(
             page, "Good evening.", "I was gone for a while.", "> Are you there?", "You said: Are you there?"
         )
@@ -167,7 +168,7 @@ async def test_after_a_restart_a_new_conversation_follows(stage: Stage) -> None:
         with first.away():
             await expect(page.get_by_text("The connection is lost.")).to_be_visible()
             sessions = first.app.state.sessions
-            sessions.leave(first.sessions[0], "forgotten")
+            sessions.leave(first.sessions[0], Ending.ABANDONED)
         await expect(page.get_by_text("A new conversation")).to_be_visible()
         await said(page, "Good evening.", "Good evening.")
 
@@ -176,7 +177,7 @@ async def test_after_a_restart_a_new_conversation_follows(stage: Stage) -> None:
 async def test_when_the_agent_is_switched_off_the_page_says_so(stage: Stage) -> None:
     async with stage.serve(host, title="Elske") as served, stage.open(served.address) as page:
         await said(page, "Good evening.")
-        await served.app.state.sessions.close("the agent has been switched off")
+        await served.app.state.sessions.close()
         await said(page, "Good evening.", "Until next time!")
         await expect(page.get_by_text("The agent has been switched off.")).to_be_visible()
 
@@ -343,12 +344,29 @@ async def test_who_reads_further_up_is_not_torn_away(stage: Stage) -> None:
         await log(page).evaluate("(log) => { log.scrollTop = 0; }")
         newest = page.get_by_role("button", name="Newest")
         await expect(newest).to_be_visible()
-        served.sessions[0].say("Something new.")
+        served.sessions[0].utter("Something new.")
         await expect(lines(page)).to_have_count(26)
         await expect(lines(page).first).to_be_in_viewport()
         await newest.click()
         await expect(lines(page).last).to_be_in_viewport()
         await expect(newest).to_be_hidden()
+
+
+@on_stage
+async def test_however_long_it_grows_only_the_log_scrolls_and_its_end_is_seen(stage: Stage) -> None:
+    async with stage.serve(host, title="Elske") as served, stage.open(served.address, **PHONE) as page:
+        await said(page, "Good evening.")
+        for number in range(12):
+            await say(page, f"{number}")
+            await expect(lines(page)).to_have_count(2 * number + 3)
+        grown = "document.documentElement.scrollHeight - document.documentElement.clientHeight"
+        assert await page.evaluate(grown) == 0
+        (session,) = served.sessions
+        served.app.state.sessions.leave(session, Ending.BYE)
+        await expect(page.get_by_role("button", name="Begin a new conversation")).to_be_visible()
+        await expect(lines(page).last).to_have_text("Elske: Until next time!")
+        await expect(lines(page).last).to_be_in_viewport(ratio=1)
+        assert await page.evaluate(grown) == 0
 
 
 @on_stage

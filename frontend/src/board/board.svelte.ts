@@ -56,7 +56,11 @@ export class Board {
   });
   #causes = $derived.by(() => {
     void this.version;
-    const inputs = this.trace.inputs(RECENT);
+    const all = this.trace.inputs(RECENT);
+    const heard = all.filter((spike) =>
+      this.trace.siblings(spike).some(({ signal }) => !this.#aside.has(signal)),
+    );
+    const inputs = heard.length > 0 ? heard : all;
     const pointed = this.spike === null ? undefined : this.trace.spike(this.spike);
     if (pointed === undefined || inputs.includes(pointed)) return inputs;
     const same = inputs.findIndex(({ group }) => group === pointed.group);
@@ -233,22 +237,17 @@ export class Board {
     return this.#found;
   }
 
-  /** What one may ask about: what came from outside, the newest first; before it the spike that was pointed at. */
+  /**
+   * What one may ask about: what came from outside, the newest first; before it the spike that was pointed at. What only
+   * background rules hear, such as that somebody is writing, is left out where there is anything else.
+   */
   get causes(): readonly Spike[] {
     return this.#causes;
   }
 
-  /**
-   * What is asked about: the spike that was pointed at, or else the newest cause. One that only background rules hear,
-   * such as that somebody is writing, does not take the place of what was said before.
-   */
+  /** What is asked about: the spike that was pointed at, or else the newest cause. */
   get cause(): Spike | undefined {
-    const causes = this.#causes;
-    return (
-      causes.find((spike) => spike.id === this.spike) ??
-      causes.find((spike) => this.trace.siblings(spike).some(({ signal }) => !this.#aside.has(signal))) ??
-      causes[0]
-    );
+    return this.#causes.find((spike) => spike.id === this.spike) ?? this.#causes[0];
   }
 
   value(slot: string): Shown | undefined {

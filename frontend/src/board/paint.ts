@@ -380,7 +380,9 @@ function paintAncestry(context: CanvasRenderingContext2D, scene: Scene, places: 
   const many = scene.kin.size > 12;
   context.lineWidth = many ? 1 : 1.5;
   context.globalAlpha = many ? 0.5 : 0.8;
+  const unlined = crowds(trace, scene.kin);
   for (const id of scene.kin) {
+    if (unlined.has(id)) continue;
     const spike = trace.spike(id);
     const y = spike === undefined ? undefined : places.get(laneOf(spike));
     if (spike === undefined || y === undefined) continue;
@@ -399,6 +401,26 @@ function paintAncestry(context: CanvasRenderingContext2D, scene: Scene, places: 
     context.stroke();
   }
   context.globalAlpha = 1;
+}
+
+const CROWD = 6; // spikes of one signal because of another, such as the pieces of an answer: of more, not each has a line
+
+/** Of crowds of spikes all but the first and the last. */
+function crowds(trace: Trace, kin: ReadonlySet<number>): Set<number> {
+  const found = new Set<number>();
+  for (const id of kin) {
+    const signals = new Map<string, number[]>();
+    for (const child of trace.spike(id)?.children ?? []) {
+      const signal = trace.spike(child)?.signal ?? "";
+      const those = signals.get(signal);
+      if (those === undefined) signals.set(signal, [child]);
+      else those.push(child);
+    }
+    for (const those of signals.values()) {
+      if (those.length > CROWD) for (const child of those.slice(1, -1)) found.add(child);
+    }
+  }
+  return found;
 }
 
 interface Label {
