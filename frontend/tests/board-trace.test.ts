@@ -215,6 +215,15 @@ test("the oldest is forgotten, with all that is of it, and the rest stays", () =
   expect(trace.first).toBe(trace.records[0]?.time);
 });
 
+test("a file in which groups merge in circles is read all the same", () => {
+  const trace = new Trace();
+  trace.add([
+    { kind: "merged", time: 1, group: 2, into: 1 },
+    { kind: "merged", time: 1, group: 1, into: 2 },
+  ]);
+  expect([trace.group(1), trace.group(2)]).toEqual([1, 1]);
+});
+
 test("groups stay one though those between them are forgotten", () => {
   spikes = 0;
   const trace = new Trace(10);

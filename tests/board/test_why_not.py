@@ -18,7 +18,7 @@ from ravestate.board.recorder import Gap
 from ravestate.board.why_not import MOST, WhyNot, why_not
 from ravestate.board.wire import data_of, record_of
 from ravestate.engine.explain import GAVE_UP
-from ravestate.engine.trace import Born, GaveUp, Settled
+from ravestate.engine.trace import Born, GaveUp, Settled, Started
 from ravestate.testing import Simulation, simulate
 
 
@@ -679,3 +679,13 @@ def test_the_page_gives_the_same_reasons_in_the_same_words() -> None:
     source = (Path(__file__).parents[2] / "frontend/src/board/words.ts").read_text(encoding="utf-8")
     (block,) = re.findall(r"const REASONS[^{]*\{(.*?)\n\}", source, re.DOTALL)
     assert dict(re.findall(r'(\w+): "([^"]*)"', block)) == GAVE_UP
+
+
+def test_a_run_of_which_the_beginning_went_unseen_is_told_all_the_same(stage: Stage) -> None:
+    conversation(stage, is_question=False)
+    with stage.run() as sim:
+        sim.put(stage.input, "x")
+        records = [record for record in sim.trace if not isinstance(record, Started)]
+        spike = spike_of(sim, "demo:input:changed")
+        found = why_not(records, describe(sim.context.policy), "demo:talk", spike)
+    assert found.verdict == "fired"

@@ -239,7 +239,7 @@ export class Trace {
         break;
       }
       case "merged":
-        this.#into.set(record.group, record.into);
+        if (this.group(record.into) !== record.group) this.#into.set(record.group, record.into); // never in circles
         break;
       case "set":
         this.slots.set(record.slot, { shown: record.value, time: record.time });

@@ -238,7 +238,10 @@ class History:
                 self.writes.setdefault(record.run, []).append(record)
                 self.values.setdefault(record.slot, []).append(record)
             case Merged():
-                self._into[record.group] = record.into
+                if (
+                    self.root(record.into) != record.group
+                ):  # a file may say anything, but groups do not merge in circles
+                    self._into[record.group] = record.into
             case Told():
                 if record.run in self._runs:
                     self._runs[record.run].told = record

@@ -244,8 +244,9 @@ class _Inquiry:
 
     def _judge(self, rule: RuleView, attempt: Attempt) -> tuple[Verdict, str, float | None]:
         settled = attempt.settled
-        if settled is not None and attempt.started is not None:
-            return self._ran(rule, attempt, attempt.started.time, settled)
+        if settled is not None:  # a gap may have swallowed its beginning
+            began = settled.time if attempt.started is None else attempt.started.time
+            return self._ran(rule, attempt, began, settled)
         if attempt.started is not None:
             return "running", f"it runs since {_s(attempt.started.time)}", attempt.started.time
         clause = rule.clauses[attempt.clause]
