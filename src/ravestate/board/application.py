@@ -6,7 +6,7 @@ import asyncio
 from pathlib import Path
 from typing import Any
 
-from starlette.requests import Request
+from starlette.requests import ClientDisconnect, Request
 from starlette.responses import JSONResponse, PlainTextResponse, RedirectResponse, Response
 from starlette.routing import BaseRoute, Mount, Route, WebSocketRoute
 from starlette.websockets import WebSocket
@@ -28,7 +28,7 @@ PAGE = Path(__file__).parent / "page"
 INSIDE = "board/"
 """Where the board is, seen from the chat page."""
 
-LARGEST = 64 * 1024 * 1024
+LARGEST = 16 * 1024 * 1024
 """Bytes that a recording may have that is sent to be looked at."""
 
 
@@ -60,6 +60,7 @@ def routes(
     """
     known = Recorders() if recorders is None else recorders
     shelf = Shelf(recording)
+    reading = asyncio.Lock()  # one recording at a time: while it is read it takes many times its size
 
     async def inspect(socket: WebSocket) -> None:
         state = socket.app.state
@@ -70,6 +71,13 @@ def routes(
         if not request.app.state.gate.admits(bearer):
             await asyncio.sleep(PAUSE)
             return PlainTextResponse("the token is wrong, or missing", 401)
+        try:
+            async with reading:
+                return await read(request)
+        except ClientDisconnect:
+            return Response(status_code=400)  # to nobody
+
+    async def read(request: Request) -> Response:
         data = bytearray()
         async for piece in request.stream():
             data += piece

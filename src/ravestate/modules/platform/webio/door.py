@@ -12,7 +12,7 @@ import socket
 import struct
 from typing import Any, cast
 
-from uvicorn.protocols.http.h11_impl import H11Protocol
+from uvicorn.protocols.http.h11_impl import H11Protocol, RequestResponseCycle
 from uvicorn.protocols.utils import ClientDisconnected
 from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
 
@@ -20,6 +20,9 @@ __all__ = ["Door", "Line"]
 
 PATIENCE = 10.0
 """Seconds in which a client is to send its request, and then to read the answer."""
+
+SLOWEST = 8 * 1024
+"""Bytes a second that a client is to send at least while more of its request is to come."""
 
 STALLED = 20.0
 """Seconds for which a client may leave unread what the server has for it."""
@@ -51,7 +54,8 @@ class Door(H11Protocol):
         self.logger = log
         self._per_address = per_address
         self._most = most
-        self._answered: object = None
+        self._received = 0  # bytes, since the last look
+        self._waited: object = None  # the request for whose client was waited at the last look; at first, any
 
     def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]  # as above it
         """Take a connection, or refuse it."""
@@ -62,6 +66,11 @@ class Door(H11Protocol):
             self._refuse("too many connections from your address")
         else:
             self.loop.call_later(PATIENCE, self._look)
+
+    def data_received(self, data: bytes) -> None:
+        """Take what the client has sent."""
+        self._received += len(data)
+        super().data_received(data)
 
     def _from_here(self) -> int:
         here = self.client[0] if self.client else None
@@ -74,14 +83,27 @@ class Door(H11Protocol):
         self.transport.close()
 
     def _look(self) -> None:
-        """Close if nothing has been asked since the last look, or its answer is still not read."""
+        """Close if nothing has been asked since the last look, or the rest of it does not come, or its answer is still not
+        read."""
         if self.transport.is_closing() or self.transport.get_protocol() is not self:
             return
-        if self.cycle is self._answered:  # both are None until there is a request
+        if self._goes_on():
+            self._waited = self  # for none
+        elif self.cycle is not self._waited:
+            self._waited = self.cycle
+        else:
             _hang_up(self.transport)
             return
-        self._answered = self.cycle
+        self._received = 0
         self.loop.call_later(PATIENCE, self._look)
+
+    def _goes_on(self) -> bool:
+        """Whether a request comes in as quickly as it should, or the client has to wait for its answer."""
+        request = cast("RequestResponseCycle | None", self.cycle)
+        if request is None or request.response_complete or self.flow.write_paused:
+            return False
+        comes = self._received >= SLOWEST * PATIENCE
+        return comes or self.flow.read_paused or not request.more_body
 
 
 class Line(WebSocketsSansIOProtocol):
