@@ -213,6 +213,23 @@ def test_it_lacked_an_input_until_its_spike_was_too_old(stage: Stage) -> None:
     assert found.missing[0].words == "demo:touch comes from outside, and did not come"
 
 
+def test_what_may_come_from_outside_as_well_as_from_a_rule_is_told_so(stage: Stage) -> None:
+    rung = stage.module.signal("rung", input=True)
+
+    @stage.module.rule(when=stage.touch, emits=rung)
+    async def ring(ctx: rs.RuleContext) -> None: ...
+
+    @stage.module.rule(when=stage.input.changed & rung)
+    async def both(ctx: rs.RuleContext) -> None: ...
+
+    with stage.run() as sim:
+        sim.put(stage.input, "x")
+        sim.advance(6)
+        (missing,) = ask(sim, "both").missing
+    assert missing.words == "demo:rung did not come from outside, and no rule raised it"
+    assert [raiser.rule for raiser in missing.raisers] == ["demo:ring"]
+
+
 def test_its_patience_ran_out_while_another_waited(stage: Stage) -> None:
     @stage.module.rule(when=stage.input.changed & stage.touch, writes=stage.output)
     async def fused(ctx: rs.RuleContext) -> None: ...

@@ -499,6 +499,8 @@ class _Inquiry:
             return f"did not occur for this cause (for another one at {_s(near.time)})"
         if outside and not raisers:
             return "comes from outside, and did not come"
+        if outside:
+            return "did not come from outside, and no rule raised it"
         return "did not occur" if raisers else "did not occur: no rule raises it"
 
     def _raiser(self, name: str, signal: str) -> Raiser:
