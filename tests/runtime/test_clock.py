@@ -140,7 +140,7 @@ def test_steps_lead_from_wave_to_wave_and_over_the_time_between() -> None:
         sim.emit(asked)
         seen: list[tuple[float, str, str]] = []
         for _ in range(4):
-            sim.context.step()
+            assert sim.context.step()
             sim.settle()
             states = {a["rule"]: a["state"] for a in sim.snapshot()["activations"]}
             seen.append((sim.now, states.get("m:think", ""), states.get("m:fallback", "")))
@@ -151,6 +151,9 @@ def test_steps_lead_from_wave_to_wave_and_over_the_time_between() -> None:
             (2.0, "", ""),
         ]
         assert sim.read(said) == "answer at 2"
+        while sim.context.step():  # what is too old is forgotten
+            sim.settle()
+        assert not sim.context.step()
 
 
 def test_what_happens_is_the_same_whether_it_was_paused_or_not() -> None:

@@ -163,10 +163,14 @@ class Context:
         only, as are `step` and `resume`."""
         self._running().pause()
 
-    def step(self) -> None:
+    def step(self) -> bool:
         """While it is paused: do one thing more, which may be that several rules start at once (one wave). If nothing is
-        due, set the clock forward to when something will be."""
-        self._running().step()
+        due, set the clock forward to when something will be.
+
+        Returns:
+            Whether there was anything to do.
+        """
+        return self._running().step()
 
     def resume(self) -> None:
         """Let the clock of a paused context go on from where it stands."""

@@ -230,18 +230,23 @@ class Runner:
         """Halt the clock: events are still taken, but nothing is done about them, and nothing falls due."""
         self.clock.halt()
 
-    def step(self) -> None:
-        """While it is paused: do what is due next, one wave of it; if that lies ahead, set the clock forward to it."""
+    def step(self) -> bool:
+        """While it is paused: do what is due next, one wave of it; if that lies ahead, set the clock forward to it.
+
+        Returns:
+            Whether there was anything to do.
+        """
         if not self.clock.halted or self.closed:
-            return
+            return False
         waiting = list(self.engine.waiting)
         if self._work_off(1) or list(self.engine.waiting) != waiting:
-            return
+            return True
         dues = [due for due in (self.engine.next_deadline(), self.clock.next_waking()) if due is not None]
         if dues:
             self.clock.set(min(dues))
             self._fall_due()
             self._work_off(1)
+        return bool(dues)
 
     def resume(self) -> None:
         """Let the clock go on."""
