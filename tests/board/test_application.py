@@ -8,9 +8,10 @@ from pathlib import Path
 import httpx
 import pytest
 from starlette.applications import Starlette
+from starlette.routing import Mount
 
 from board.looking import Look, board, gossip, in_virtual_time, passing
-from modules.platform.webio.visit import parrot
+from modules.platform.webio.visit import Visit, parrot
 from ravestate.board import application
 from ravestate.board.trace_file import save_trace
 from ravestate.testing import simulate
@@ -105,3 +106,39 @@ async def test_who_goes_away_in_the_middle_leaves_the_way_free() -> None:
         await app(scope, receive, send)
         assert messages == []
         assert (await browser.post("/board/recordings", content=json.dumps([]))).status_code == 422
+
+
+@in_virtual_time
+async def test_a_site_that_may_embed_the_chat_may_not_connect_to_the_board_nor_show_it() -> None:
+    site = "https://museum.example"
+    async with board(origins=(site,)) as app, client(app) as browser:
+        async with Visit(app, origin=site) as visit:
+            assert (await visit.hello())["type"] == "welcome"
+        async with Look(app, origin=site) as look:
+            refused = await look.next()
+            assert (look.accepted, refused["status"]) == (False, 403)
+        async with Look(app, origin=HERE) as look:
+            assert (await look.begin())["type"] == "welcome"
+        assert (
+            await browser.post("/board/recordings", content=b"{}", headers={"origin": site})
+        ).status_code == 403
+        framing = {}
+        for path in ("/", "/board", "/board/", "/board/index.html", "/board/nothing", "/board/recordings"):
+            policy = (await browser.get(path)).headers["content-security-policy"]
+            framing[path] = policy.rpartition("; ")[2]
+        assert framing.pop("/") == f"frame-ancestors 'self' {site}"
+        assert framing.pop("/board") == f"frame-ancestors 'self' {site}"  # it leads there
+        assert set(framing.values()) == {"frame-ancestors 'self'"}
+
+
+@in_virtual_time
+async def test_mounted_in_another_application_too() -> None:
+    site = "https://museum.example"
+    async with board(origins=(site,)) as chat:
+        museum = Starlette(routes=[Mount("/guide", chat)])
+        async with client(museum) as browser:
+            answer = await browser.get("/guide/board/")
+            assert answer.status_code == 200
+            assert answer.headers["content-security-policy"].endswith("frame-ancestors 'self'")
+            answer = await browser.get("/guide/board/", headers={"origin": site})
+            assert answer.status_code == 403

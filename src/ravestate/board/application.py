@@ -6,6 +6,7 @@ import asyncio
 from pathlib import Path
 from typing import Any
 
+from starlette.middleware import Middleware
 from starlette.requests import ClientDisconnect, Request
 from starlette.responses import JSONResponse, PlainTextResponse, RedirectResponse, Response
 from starlette.routing import BaseRoute, Mount, Route, WebSocketRoute
@@ -15,6 +16,7 @@ from ravestate.board.inspector import Inspector
 from ravestate.board.recorder import Recorders
 from ravestate.board.shelf import Shelf
 from ravestate.board.trace_file import Recording, read_trace
+from ravestate.modules.platform.webio.application import Guard
 from ravestate.modules.platform.webio.gate import PAUSE
 from ravestate.modules.platform.webio.pages import Pages
 from ravestate.runtime.agent import Agent
@@ -52,6 +54,7 @@ def routes(
     """The routes below ``/board``, for ``webio.app(agent, routes(), inside=INSIDE)``.
 
     Whoever may see the page may look into every conversation on it, and act on it: this is for those who make an agent.
+    Sites that may embed the chat may not embed the board, nor connect to it.
 
     Args:
         recorders: Those of a `RecordedAgent`; without them, recording begins when somebody looks.
@@ -105,5 +108,6 @@ def routes(
                 Route("/recordings", receive, methods=["POST"]),
                 Mount("/", Pages(PAGE)),
             ],
+            middleware=[Middleware(Guard, inside=True)],
         ),
     ]

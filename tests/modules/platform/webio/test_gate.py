@@ -64,6 +64,28 @@ def test_others_do_not(host: str, origin: str | None) -> None:
     assert "webio.origins" in refusal
 
 
+@pytest.mark.parametrize(
+    ("host", "origin"),
+    [
+        ("127.0.0.1:8420", None),
+        ("127.0.0.1:8420", "http://127.0.0.1:8420"),
+        ("chat.museum.example", "https://chat.museum.example"),
+        ("CHAT.museum.example:444", "https://chat.museum.example:444"),
+    ],
+)
+def test_the_page_itself_looks_inside(host: str, origin: str | None) -> None:
+    gate = Gate(Settings(origins=("https://museum.example",)))
+    assert gate.refusal_inside({"host": host} | ({"origin": origin} if origin else {})) is None
+
+
+@pytest.mark.parametrize("origin", ["https://museum.example", "http://127.0.0.1:9999", "null"])
+def test_who_may_embed_the_page_does_not_look_inside(origin: str) -> None:
+    gate = Gate(Settings(origins=("https://museum.example",)))
+    refusal = gate.refusal_inside({"host": "127.0.0.1:8420", "origin": origin})
+    assert refusal is not None
+    assert f"{origin!r} may not look inside" in refusal
+
+
 EMBEDDED = {"host": "127.0.0.1:8420", "sec-fetch-dest": "iframe"}
 
 

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
     from . import Settings
 
-__all__ = ["PAGE", "make_app"]
+__all__ = ["PAGE", "Guard", "make_app"]
 
 PAGE = Path(__file__).parent / "page"
 """What ``npm run build`` in ``frontend/`` makes."""
@@ -64,7 +64,7 @@ def make_app(agent: Agent, routes: Iterable[BaseRoute] = (), inside: str | None 
 
     app = Starlette(
         routes=[*routes, WebSocketRoute("/ws", connect), Mount("/", Pages(PAGE))],
-        middleware=[Middleware(Guard, gate)],
+        middleware=[Middleware(Guard)],
         lifespan=lifespan,
     )
     app.state.sessions = sessions
@@ -87,40 +87,27 @@ class Guard:
 
     Sites whose pages may not show the chat are named in the log, as it is an empty frame that one sees there.
 
+    One guards the whole application that `make_app` makes. A second one in it guards what looks inside of the agent: sites
+    that may connect to the chat and show it may not do so there.
+
     Args:
         app: What is guarded.
-        gate: The checks.
+        inside: Whether it looks inside of the agent.
     """
 
-    def __init__(self, app: ASGIApp, gate: Gate) -> None:
+    def __init__(self, app: ASGIApp, *, inside: bool = False) -> None:
         self._app = app
-        self._gate = gate
+        self._inside = inside
         self._strangers: set[str] = set()
-        self._headers = {
-            "content-security-policy": "; ".join(
-                (
-                    "default-src 'none'",
-                    "script-src 'self'",
-                    "style-src 'self'",
-                    "img-src 'self' data:",
-                    "font-src 'self'",
-                    "connect-src 'self'",
-                    "base-uri 'none'",
-                    "form-action 'none'",
-                    " ".join(("frame-ancestors 'self'", *gate.origins)),
-                )
-            ),
-            "permissions-policy": "camera=(), geolocation=(), microphone=()",
-            "referrer-policy": "no-referrer",
-            "x-content-type-options": "nosniff",
-        }
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Check a request, and answer it or pass it on."""
         if scope["type"] == "lifespan":
             await self._app(scope, receive, send)
             return
-        refusal = self._gate.refusal(Headers(scope=scope))
+        gate: Gate = scope["app"].state.gate
+        headers = Headers(scope=scope)
+        refusal = gate.refusal_inside(headers) if self._inside else gate.refusal(headers)
         if scope["type"] == "websocket":
             if refusal is not None:
                 await WebSocket(scope, receive, send).send_denial_response(PlainTextResponse(refusal, 403))
@@ -128,11 +115,16 @@ class Guard:
                 await self._app(scope, receive, send)
             return
 
-        self._name_stranger(self._gate.stranger(Headers(scope=scope)))
+        if not self._inside:
+            self._name_stranger(gate.stranger(headers))
 
         async def with_headers(message: Message) -> None:
             if message["type"] == "http.response.start":
-                MutableHeaders(scope=message).update(self._headers)
+                answered = MutableHeaders(scope=message)
+                for name, value in _bounds(() if self._inside else gate.origins).items():
+                    answered.setdefault(
+                        name, value
+                    )  # unless the one for the inside, which is stricter, was here
             await send(message)
 
         answer = self._app if refusal is None else PlainTextResponse(refusal, 403)
@@ -142,3 +134,28 @@ class Guard:
         if origin is not None and origin not in self._strangers and len(self._strangers) < STRANGERS:
             self._strangers.add(origin)
             log.warning("a page of %s wanted to show the chat: add it to the setting webio.origins", origin)
+
+
+def _bounds(framing: Iterable[str]) -> dict[str, str]:
+    """Headers that keep scripts and frames in bounds.
+
+    Args:
+        framing: Origins whose pages may show this one in a frame.
+    """
+    policy = (
+        "default-src 'none'",
+        "script-src 'self'",
+        "style-src 'self'",
+        "img-src 'self' data:",
+        "font-src 'self'",
+        "connect-src 'self'",
+        "base-uri 'none'",
+        "form-action 'none'",
+        " ".join(("frame-ancestors 'self'", *framing)),
+    )
+    return {
+        "content-security-policy": "; ".join(policy),
+        "permissions-policy": "camera=(), geolocation=(), microphone=()",
+        "referrer-policy": "no-referrer",
+        "x-content-type-options": "nosniff",
+    }

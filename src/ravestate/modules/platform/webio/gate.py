@@ -64,6 +64,20 @@ class Gate:
             return f"{origin!r} may not connect: add it to the setting webio.origins"
         return None
 
+    def refusal_inside(self, headers: Mapping[str, str]) -> str | None:
+        """Why a request that `refusal` lets in may not look inside of the agent, as only the page itself may; else None.
+
+        Args:
+            headers: Those of the request, names in small letters.
+        """
+        origin, host = headers.get("origin", "").lower(), headers.get("host", "").lower()
+        if origin and not _is_own(origin, host):
+            return (
+                f"{origin!r} may not look inside of the agent, which only its own page at {host!r} does: open that, "
+                "or let the proxy before it hand on the Host header"
+            )
+        return None
+
     def stranger(self, headers: Mapping[str, str]) -> str | None:
         """The origin of a page that wants to show this one in a frame, which the browser will not let it; else None.
 
@@ -80,7 +94,7 @@ class Gate:
         return found[0]
 
     def _may_show(self, origin: str, host: str) -> bool:
-        return origin.partition("://")[2] == host or origin in self.origins
+        return _is_own(origin, host) or origin in self.origins
 
     def admits(self, token: str | None) -> bool:
         """Whether a token is right, or none is needed. It takes as long whichever character is wrong."""
@@ -98,6 +112,11 @@ class Gate:
             if token:
                 await asyncio.sleep(PAUSE)
             raise ProtocolError("token", "the token is wrong" if token else "a token is needed")
+
+
+def _is_own(origin: str, host: str) -> bool:
+    """Whether a page was served under the name that is asked for."""
+    return origin.partition("://")[2] == host
 
 
 def _name_of(host: str) -> str:
