@@ -1,9 +1,18 @@
 """The recorder: bounded in memory and in what it costs, and it says what it has missed."""
 
+import contextlib
+import gc
+import weakref
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
 import ravestate as rs
 from board.looking import in_virtual_time, passing
-from ravestate.board.recorder import Gap, Recorder, Recorders
-from ravestate.engine.trace import Born
+from ravestate.board.recorder import LUMP, Gap, Recorder, Recorders, _fair  # pyright: ignore[reportPrivateUsage]
+from ravestate.engine.trace import Born, Merged
 
 
 def ticking() -> tuple[rs.Context, rs.Signal[None]]:
@@ -79,13 +88,101 @@ async def test_a_long_pause_earns_a_burst_again() -> None:
 
 
 @in_virtual_time
-async def test_who_listens_no_more_costs_nothing() -> None:
-    context, tick = ticking()
+async def test_a_context_has_one_recorder() -> None:
+    context, _ = ticking()
+    other, _ = ticking()
     recorders = Recorders()
-    async with context:
+    recorder = recorders.of(context)
+    assert recorders.of(context) is recorder is not recorders.of(other)
+
+
+@in_virtual_time
+async def test_a_recorder_goes_with_its_context() -> None:
+    recorders = Recorders()
+    gone: list[weakref.ref[Any]] = []
+    for length in (5, 300):  # the second is at rest when its context ends
+        context, tick = ticking()
         recorder = recorders.of(context)
-        assert recorders.of(context) is recorder
-        recorder.close()
+        recorder._burst = 100  # pyright: ignore[reportPrivateUsage]
+        async with context:
+            for _ in range(length):
+                context.emit(tick)
+            await passing(0.05)
+        gone += [weakref.ref(context), weakref.ref(recorder)]
+        del context, tick, recorder
+    await passing(1)
+    gc.collect()
+    assert [known() for known in gone] == [None] * 4
+
+
+@in_virtual_time
+async def test_all_of_them_together_keep_no_more_than_is_shared_out() -> None:
+    recorders = Recorders(in_all=3000)
+    made = [ticking() for _ in range(20)]
+    kept = [recorders.of(context, whole=True) for context, _ in made]
+    async with contextlib.AsyncExitStack() as stack:
+        for context, _ in made:
+            await stack.enter_async_context(context)
+        for number in range(60):
+            for place, (context, tick) in enumerate(made):
+                if place < 15 or number < 2:  # the last five say little
+                    context.emit(tick)
+            await passing(1)
+            assert sum(len(recorder.records) for recorder in kept) <= 3000 * 1.02 + 20 * LUMP
+        long, short = kept[:15], kept[15:]
+        assert all(recorder.last > 250 and 100 < len(recorder.records) < 250 for recorder in long)
+        assert all(len(recorder.records) == recorder.last for recorder in short)
+        for recorder in kept:
+            assert recorder.first == recorder.last - len(recorder.records) + 1
+            assert recorder.since(recorder.last - 5, 10) == list(recorder.records)[-5:]
+            assert recorder.since(0, 10_000) == list(recorder.records)
+
+
+@in_virtual_time
+async def test_spikes_that_went_unseen_are_counted_although_no_other_is_kept() -> None:
+    context, tick = ticking()
+    recorder = Recorder(context, rate=0, spare=0)
+    async with context:
         context.emit(tick)
         await passing(1)
-        assert recorder.last == 0
+        recorder._take(Merged(1.0, 2, 1))  # pyright: ignore[reportPrivateUsage]
+        recorder.shorten(1)
+        assert (recorder.first, recorder.whole) == (recorder.last, False)
+        recorder._left = 0  # pyright: ignore[reportPrivateUsage]
+        recorder._rest()  # pyright: ignore[reportPrivateUsage]
+        assert isinstance(recorder.records[-1], Gap)
+        await passing(1)
+        context.emit(tick)  # nothing went unseen
+        await passing(1)
+    assert (recorder.missed, recorder.records[1]) == (0, Gap(1.0, 0))
+
+
+@in_virtual_time
+async def test_what_is_taken_up_to_the_first_spike_after_a_gap_is_taken_once() -> None:
+    context, tick = ticking()
+    recorder = Recorder(context, burst=3, rate=0, spare=0)  # a record at a time
+    async with context:
+        for _ in range(30):
+            for _ in range(3):
+                context.emit(tick)
+            await passing(1)
+    born = [record.spike for record in recorder.records if isinstance(record, Born)]
+    assert born == sorted(set(born))
+    assert recorder.missed == born[-1] - len(born) > 0
+
+
+@pytest.mark.parametrize(
+    ("lengths", "in_all", "fair"),
+    [([], 10, 1), ([5, 3], 10, 5), ([5, 3], 6, 3), ([1, 9, 9], 11, 5), ([4] * 100, 50, 1), ([7], 3, 3)],
+)
+def test_the_longest_are_shortened_to_one_length(lengths: list[int], in_all: int, fair: int) -> None:
+    assert _fair(lengths, in_all) == fair
+
+
+@given(st.lists(st.integers(0, 1000), min_size=1), st.integers(0, 5000))
+def test_what_is_kept_is_within_what_is_shared_out_and_nearly_fills_it(
+    lengths: list[int], spare: int
+) -> None:
+    in_all = len(lengths) + spare
+    kept = sum(min(length, _fair(lengths, in_all)) for length in lengths)
+    assert min(sum(lengths), in_all - len(lengths)) <= kept <= in_all

@@ -6,6 +6,8 @@ not read misses what is kept no more; it holds nobody up.
 Making records is dear for an agent that does nothing else. So a recorder takes a burst, then so many a second, more of
 them while the process has time to spare; beyond that it stops listening for a moment, in which the engine makes none,
 and a `Gap` says how many spikes went unseen.
+
+All recorders of an agent share what is kept: when it is too much, the longest are shortened to one length.
 """
 
 from __future__ import annotations
@@ -15,16 +17,22 @@ from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import islice
-from weakref import WeakKeyDictionary
+from weakref import WeakKeyDictionary, ref
 
 from ravestate.board.leisure import Leisure
 from ravestate.engine.trace import Born, Record
 from ravestate.runtime.context import Context
 
-__all__ = ["BURST", "KEPT", "RATE", "Gap", "Recorder", "Recorders"]
+__all__ = ["BURST", "IN_ALL", "KEPT", "RATE", "Gap", "Recorder", "Recorders"]
 
 KEPT = 100_000
-"""Records that are kept."""
+"""Records of one context that are kept."""
+
+IN_ALL = 500_000
+"""Records of all contexts that are kept, as far as they are shared out: some 136 bytes each, and their payloads."""
+
+LUMP = 100
+"""Records after which a recorder tells that it has grown."""
 
 BURST = 20_000
 """Records that are taken at once."""
@@ -62,6 +70,7 @@ class Recorder:
         rate: Records a second to take after that.
         spare: Records a second to take besides, times the share of time that the process has to spare.
         whole: Whether the context has not begun yet, so that nothing is missed.
+        grown: Called after each `LUMP` of records.
     """
 
     def __init__(
@@ -73,15 +82,17 @@ class Recorder:
         rate: float = RATE,
         spare: float = SPARE,
         whole: bool = False,
+        grown: Callable[[], None] = lambda: None,
     ) -> None:
         self._context = context
+        self._grown = grown
         self._burst = burst
         self._rate = rate
         self._spare = spare
         self._leisure = Leisure()
         self._left = 0  # the first record is granted a burst
         self._granted: float | None = None
-        self._spike = 0  # the newest that is known
+        self._spike = 0  # the newest that is known and not kept any more, or before the gap
         self._gap: Gap | None = None
         self._leave: Callable[[], None] = lambda: None
         self.records: deque[Record | Gap] = deque(maxlen=kept)
@@ -109,9 +120,12 @@ class Recorder:
             return tail[:most]
         return list(islice(self.records, skip, skip + most))
 
-    def close(self) -> None:
-        """Listen no more."""
-        self._leave()
+    def shorten(self, length: int) -> None:
+        """Keep the newest records only, so many at most."""
+        while len(self.records) > length:
+            oldest = self.records.popleft()
+            if isinstance(oldest, Born):
+                self._spike = oldest.spike
 
     def _listen(self) -> None:
         self._leave = self._context.observe(self._take if self._gap is None else self._take_after_gap)
@@ -120,18 +134,20 @@ class Recorder:
         self.records.append(record)
         self.last += 1
         self._left -= 1
+        if self.last % LUMP == 0:
+            self._grown()
         if self._left <= 0:
             self._rest()
 
     def _take_after_gap(self, record: Record) -> None:
         """Until the number of a spike tells how many went unseen."""
-        self._take(record)
         if isinstance(record, Born) and self._gap is not None:
             self._gap.spikes = record.spike - self._spike - 1
             self.missed += self._gap.spikes
             self._gap = None
             self._leave()
             self._listen()
+        self._take(record)  # after which it may rest
 
     def _rest(self) -> None:
         """What it may take is used up: go on if there was time enough meanwhile, or else stop listening for a moment."""
@@ -144,7 +160,7 @@ class Recorder:
             return
         self._leave()
         if self._gap is None:
-            self._spike = next((r.spike for r in reversed(self.records) if isinstance(r, Born)), 0)
+            self._spike = next((r.spike for r in reversed(self.records) if isinstance(r, Born)), self._spike)
             self._gap = Gap(self.records[-1].time)
             self.records.append(self._gap)
             self.last += 1
@@ -161,14 +177,49 @@ class Recorder:
 
 
 class Recorders:
-    """The recorder of each context that is, or was, looked into; it goes with the context."""
+    """The recorder of each context that is, or was, looked into; it goes with the context.
 
-    def __init__(self) -> None:
-        self._of: WeakKeyDictionary[Context, Recorder] = WeakKeyDictionary()
+    Args:
+        in_all: Records to keep of all contexts together. At times it is a little more: a fiftieth, and a lump of each.
+    """
+
+    def __init__(self, in_all: int = IN_ALL) -> None:
+        self._in_all = in_all
+        self._grown = 0
+        self._of: WeakKeyDictionary[Context, ref[Recorder]] = (
+            WeakKeyDictionary()
+        )  # it is held by what it listens to
 
     def of(self, context: Context, *, whole: bool = False) -> Recorder:
         """The recorder of a context: made when it is first asked for; `whole` as for `Recorder`."""
-        found = self._of.get(context)
+        known = self._of.get(context)
+        found = None if known is None else known()
         if found is None:
-            found = self._of[context] = Recorder(context, whole=whole)
+            found = Recorder(context, whole=whole, grown=self._grow)
+            self._of[context] = ref(found)
         return found
+
+    def _grow(self) -> None:
+        self._grown += LUMP
+        if self._grown * 50 >= self._in_all:  # seldom, so that it costs each record next to nothing
+            self._grown = 0
+            recorders = [found for known in self._of.values() if (found := known()) is not None]
+            length = _fair([len(recorder.records) for recorder in recorders], self._in_all)
+            for recorder in recorders:
+                recorder.shorten(length)
+
+
+def _fair(lengths: list[int], in_all: int) -> int:
+    """The length to which the longest are shortened, so that all have no more than so much together.
+
+    Example:
+        >>> _fair([10, 500, 700], 610)
+        300
+    """
+    left = in_all
+    for number, length in enumerate(sorted(lengths)):
+        share = left // (len(lengths) - number)
+        if length > share:
+            return max(1, share)
+        left -= length
+    return max(lengths, default=1)
