@@ -12,6 +12,7 @@ from ravestate.board import inspector
 from ravestate.board.description import describe
 from ravestate.board.trace_file import Recording
 from ravestate.modules import interloc, rawio
+from ravestate.modules.platform.webio import channel
 
 
 @in_virtual_time
@@ -281,6 +282,22 @@ def test_what_cannot_be_looked_at_closes_the_connection(first: dict[str, Any], c
             assert look.closed == code
 
     test()
+
+
+@in_virtual_time
+async def test_what_is_too_large_closes_the_connection_first_or_later() -> None:
+    async with board() as app:
+        async with Look(app) as look:
+            look.tell("hello", v=1, token="x" * channel.LONGEST)
+            assert (await look.answer("error"))["code"] == "too-large"
+            await look.next()
+            assert look.closed == 1009
+        async with Look(app) as look:
+            await look.begin()
+            look.tell("say", text="x" * channel.LONGEST)
+            assert (await look.answer("error"))["code"] == "too-large"
+            await look.next()
+            assert look.closed == 1009
 
 
 @in_virtual_time

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import asyncio
 import json
-from collections import deque
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
-from starlette.websockets import WebSocket, WebSocketDisconnect
+from starlette.websockets import WebSocket
 
 from ravestate.board import picture
 from ravestate.board.commands import Command, Diagram, Explain, Hello, Look, Ping, Why, parse
@@ -20,6 +19,7 @@ from ravestate.board.why_not import why_not
 from ravestate.board.wire import VERSION, data_of, whole_data
 from ravestate.errors import RavestateError
 from ravestate.modules.platform.webio.bucket import Bucket
+from ravestate.modules.platform.webio.channel import Channel
 from ravestate.modules.platform.webio.protocol import ProtocolError
 
 if TYPE_CHECKING:
@@ -47,9 +47,6 @@ BACKLOG = 20_000
 LAG = 25_000
 """Records by which an inspector may be behind; more are left out, so that it sees what happens now."""
 
-SILENT = 10.0
-"""Seconds within which a client says hello."""
-
 BURST, SPEED = 60, 30.0
 """Commands that are taken at once, and each second after that. Who sends more has to wait."""
 
@@ -63,18 +60,9 @@ WORDS = 48
 """Characters of a visitor's last words, by which a conversation is known."""
 
 REPLIES = 64
-"""Answers that may wait for a client. Who asks on and on, and does not read, is dropped."""
+"""Answers that may wait for a client."""
 
-CODES = {
-    "malformed": 4400,
-    "version": 4400,
-    "token": 4401,
-    "silent": 4408,
-    "gone": 4404,
-    "full": 1013,
-    "closing": 1001,
-}
-"""With which code a connection is closed. What is not listed leaves it open."""
+HELLO = f'{{"type": "hello", "v": {VERSION}}}'
 
 
 class Inspector:
@@ -98,29 +86,19 @@ class Inspector:
         shelf: Shelf,
         title: str | None,
     ) -> None:
-        self._socket = socket
+        self._channel = Channel(socket, REPLIES)
         self._gate = gate
         self._sessions = sessions
         self._recorders = recorders
         self._shelf = shelf
         self._title = title
-        self._replies: deque[dict[str, Any]] = deque()
-        self._news = asyncio.Event()
 
     def wake(self) -> None:
         """As an onlooker of a conversation: what it has to tell stands in the records."""
 
     async def run(self) -> None:
         """Serve the browser until either side closes."""
-        try:
-            await self._socket.accept()
-            try:
-                await self._serve()
-            except ProtocolError as error:
-                await self._send({"type": "error", "code": error.code, "text": str(error)})
-                await self._socket.close(CODES.get(error.code, 1011), error.code)
-        except WebSocketDisconnect:
-            pass
+        await self._channel.carry(self._serve)
 
     async def _serve(self) -> None:
         hello = await self._hello()
@@ -151,40 +129,23 @@ class Inspector:
                 }
             )
             await self._send({"type": "state", **subject.look(), **subject.clock()})
-            await self._until_over(subject, session, seen, title)
+            await self._channel.both(self._read(subject), self._write(subject, session, seen, title))
         finally:
             if session is not None:
                 self._sessions.exit(session, self)
                 if isinstance(subject, Live) and not any(isinstance(o, Inspector) for o in session.onlookers):
                     subject.leave()
 
-    async def _until_over(self, subject: Subject, session: Session | None, seen: int, title: str) -> None:
-        tasks = [
-            asyncio.create_task(self._read(subject)),
-            asyncio.create_task(self._write(subject, session, seen, title)),
-        ]
-        try:
-            await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
-        finally:
-            for task in tasks:
-                task.cancel()
-        for end in await asyncio.gather(*tasks, return_exceptions=True):
-            if isinstance(end, Exception):
-                raise end
-
     # ------------------------------------------------------------------------------------ what is looked at
 
     async def _hello(self) -> Hello:
-        example = f'begin with {{"type": "hello", "v": {VERSION}}}'
+        text = await self._channel.first(HELLO)
         try:
-            async with asyncio.timeout(SILENT):
-                command = parse(await self._receive())
-        except TimeoutError:
-            raise ProtocolError("silent", f"no hello within {SILENT:g} s: {example}") from None
+            command = parse(text)
         except ValueError as error:
             raise ProtocolError("malformed", str(error)) from None
         if not isinstance(command, Hello):
-            raise ProtocolError("malformed", example)
+            raise ProtocolError("malformed", f"begin with {HELLO}")
         if command.v != VERSION:
             raise ProtocolError("version", f'"v": {command.v}: this side speaks version {VERSION} only')
         await self._gate.check_token(command.token)
@@ -212,17 +173,11 @@ class Inspector:
 
     # ------------------------------------------------------------------------------------ from the browser
 
-    async def _receive(self) -> str | bytes:
-        message = await self._socket.receive()
-        if message["type"] == "websocket.disconnect":
-            raise WebSocketDisconnect(message.get("code", 1006))
-        return message.get("text") or message.get("bytes") or ""
-
     async def _read(self, subject: Subject) -> None:
         now = asyncio.get_running_loop().time
         bucket = Bucket(burst=BURST, rate=SPEED, now=now())
         while True:
-            text = await self._receive()
+            text = await self._channel.receive()
             wait = bucket.wait(now())
             if wait:
                 await asyncio.sleep(wait)
@@ -267,10 +222,7 @@ class Inspector:
                 subject.act(command)
 
     def _reply(self, frame: dict[str, Any]) -> None:
-        if len(self._replies) >= REPLIES:
-            raise WebSocketDisconnect(1008, "it does not read")
-        self._replies.append(frame)
-        self._news.set()
+        self._channel.reply(_json(frame))
 
     # ------------------------------------------------------------------------------------ to the browser
 
@@ -282,9 +234,8 @@ class Inspector:
         now, looked = asyncio.get_running_loop().time, -LISTED
         while True:
             began = perf_counter()
-            self._news.clear()
-            while self._replies:
-                await self._send(self._replies.popleft())
+            self._channel.woken.clear()
+            await self._channel.send_replies()
             if isinstance(subject, Live) and subject.renewed():
                 await self._send({"type": "policy", "policy": whole_data(subject.description)})
             if session is not None and self._title_of(session) != title:
@@ -318,12 +269,12 @@ class Inspector:
                 )
             took = perf_counter() - began
             if text:
-                await self._socket.send_text(text)
+                await self._channel.send(text)
             if gap and subject.live:
                 await self._send({"type": "state", **subject.look(), **subject.clock()})
             if session is not None and session.ended is not None and seen >= subject.last:
                 await self._send({"type": "ended", "text": session.ended})
-                await self._socket.close(1000, "ended")
+                await self._channel.end()
                 return
             share = SHARE + OF_SPARE * leisure.share()
             await self._pause(max(FRAME, took / share) if subject.live else 0.0, seen < subject.last)
@@ -331,11 +282,11 @@ class Inspector:
     async def _pause(self, seconds: float, more: bool) -> None:
         """Until the next frame; answers need not wait so long."""
         if seconds == 0.0 and not more:
-            await self._news.wait()
+            await self._channel.woken.wait()
             return
         try:
             async with asyncio.timeout(seconds):
-                await self._news.wait()
+                await self._channel.woken.wait()
         except TimeoutError:
             pass
 
@@ -354,7 +305,7 @@ class Inspector:
         }
 
     async def _send(self, frame: dict[str, Any]) -> None:
-        await self._socket.send_text(_json(frame))
+        await self._channel.send(_json(frame))
 
 
 def _conversation(session: Session) -> dict[str, Any]:

@@ -100,9 +100,9 @@ if __name__ == "__main__":
     import ravestate as rs
     from modules.platform.webio.visit import parrot
     from ravestate.modules import webio
-    from ravestate.modules.platform.webio import connection, door
+    from ravestate.modules.platform.webio import channel, door
 
     patience, settings = json.loads(sys.argv[1])
     if patience is not None:
-        connection.SILENT = door.PATIENCE = door.STALLED = patience
+        channel.SILENT = door.PATIENCE = door.STALLED = patience
     rs.run(parrot, webio, settings={"webio": settings})

@@ -8,7 +8,7 @@ import pytest
 import ravestate as rs
 from modules.platform.webio.visit import Visit, in_virtual_time, page, past
 from ravestate.modules import rawio, webio
-from ravestate.modules.platform.webio import connection, history
+from ravestate.modules.platform.webio import channel, connection, history
 from ravestate.runtime.agent import Agent
 
 TOKEN = "open sesame, please"
@@ -101,7 +101,7 @@ async def test_a_frame_that_is_too_long_ends_it() -> None:
     async with page() as app, Visit(app) as visit:
         await visit.hello()
         await visit.messages(1)
-        visit.say("x" * connection.LONGEST)
+        visit.say("x" * channel.LONGEST)
         assert (await visit.next())["code"] == "too-large"
         await visit.next()
         assert visit.closed == 1009

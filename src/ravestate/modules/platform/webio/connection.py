@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import asyncio
-from collections import deque
 from typing import TYPE_CHECKING
 
-from starlette.websockets import WebSocket, WebSocketDisconnect
+from starlette.websockets import WebSocket
 
 from .bucket import Bucket
+from .channel import Channel
 from .protocol import (
     CLIENT,
     VERSION,
@@ -36,32 +36,16 @@ if TYPE_CHECKING:
     from .gate import Gate
     from .sessions import Sessions
 
-__all__ = ["LONGEST", "Connection"]
-
-LONGEST = 128 * 1024
-"""Bytes that a frame may have: JSON may write a character with twelve, and the longest text has 10,000."""
-
-SILENT = 10.0
-"""Seconds within which a client says hello."""
+__all__ = ["Connection"]
 
 BURST, RATE = 20, 5.0
 """Frames that are taken at once, and each second after that. Who sends more has to wait, and nothing is lost; but as many
 `Writing` are taken beside them, and more of those are left aside."""
 
 REPLIES = 32
-"""Replies that may wait for a client. Who asks on and on, and does not read, is dropped."""
+"""Replies that may wait for a client."""
 
-CODES = {
-    "malformed": 4400,
-    "version": 4400,
-    "token": 4401,
-    "silent": 4408,
-    "behind": 4409,
-    "full": 1013,
-    "closing": 1001,
-    "too-large": 1009,
-}
-"""With which code a connection is closed. What is not listed leaves it open."""
+HELLO = f'{{"type": "hello", "v": {VERSION}}}'
 
 
 class Connection:
@@ -88,24 +72,15 @@ class Connection:
         self._gate = gate
         self._title = title
         self._inside = inside
-        self._woken = asyncio.Event()
-        self._replies: deque[Frame] = deque()
+        self._channel = Channel(socket, REPLIES)
 
     async def run(self) -> None:
         """Serve the client until either side closes."""
-        try:
-            await self._socket.accept()
-            try:
-                await self._serve()
-            except ProtocolError as error:
-                await self._send(Error(error.code, str(error)))
-                await self._socket.close(CODES.get(error.code, 4400), error.code)
-        except WebSocketDisconnect:
-            pass
+        await self._channel.carry(self._serve)
 
     def wake(self) -> None:
         """Something has changed in the conversation."""
-        self._woken.set()
+        self._channel.woken.set()
 
     async def _serve(self) -> None:
         hello = await self._hello()
@@ -121,44 +96,17 @@ class Connection:
             await self._send(
                 Welcome(VERSION, session.id, resumed, first, agent, self._inside, newest, writing=True)
             )
-            tasks = [
-                asyncio.create_task(self._read(session)),
-                asyncio.create_task(self._write(session, max(last, first - 1), agent)),
-            ]
-            try:
-                await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
-            finally:
-                for task in tasks:
-                    task.cancel()
-            ends = await asyncio.gather(*tasks, return_exceptions=True)
-            for end in ends:
-                if isinstance(end, Exception):
-                    raise end
+            await self._channel.both(self._read(session), self._write(session, max(last, first - 1), agent))
         finally:
             self._sessions.exit(session, self)
 
     async def _hello(self) -> Hello:
-        try:
-            async with asyncio.timeout(SILENT):
-                frame = parse(await self._receive(), CLIENT)
-        except TimeoutError:
-            raise ProtocolError(
-                "silent", f'no hello within {SILENT:g} s: begin with {{"type": "hello", "v": {VERSION}}}'
-            ) from None
+        frame = parse(await self._channel.first(HELLO), CLIENT)
         if not isinstance(frame, Hello):
-            raise ProtocolError("malformed", f'begin with {{"type": "hello", "v": {VERSION}}}')
+            raise ProtocolError("malformed", f"begin with {HELLO}")
         bearer = self._socket.headers.get("authorization", "").removeprefix("Bearer ")
         await self._gate.check_token(frame.token or bearer)
         return frame
-
-    async def _receive(self) -> str | bytes:
-        message = await self._socket.receive()
-        if message["type"] == "websocket.disconnect":
-            raise WebSocketDisconnect(message.get("code", 1006))
-        text: str | bytes = message.get("text") or message.get("bytes") or ""
-        if len(text) > LONGEST:  # most servers refuse it themselves
-            raise ProtocolError("too-large", f"a frame has at most {LONGEST:,} bytes, not {len(text):,}")
-        return text
 
     # ------------------------------------------------------------------------------------ from the client
 
@@ -166,7 +114,7 @@ class Connection:
         now = asyncio.get_running_loop().time
         writing, others = (Bucket(burst=BURST, rate=RATE, now=now()) for _ in range(2))
         while True:
-            text = await self._receive()
+            text = await self._channel.receive()
             try:
                 frame = parse(text, CLIENT)
                 if isinstance(frame, Writing):
@@ -191,10 +139,7 @@ class Connection:
             raise ProtocolError("malformed", "hello is said once, at the beginning")
 
     def _reply(self, frame: Frame) -> None:
-        if len(self._replies) >= REPLIES:
-            raise WebSocketDisconnect(1008, "it does not read")
-        self._replies.append(frame)
-        self._woken.set()
+        self._channel.reply(serialise(frame))
 
     # ------------------------------------------------------------------------------------ to the client
 
@@ -202,10 +147,10 @@ class Connection:
         """Tell the client what it has not seen: another name than `agent`, messages after number `last`, and what is
         being said."""
         shown, typing = "", False
+        woken = self._channel.woken
         while True:
-            self._woken.clear()
-            while self._replies:
-                await self._send(self._replies.popleft())
+            woken.clear()
+            await self._channel.send_replies()
             if (name := self._name_of(session)) != agent:
                 agent = name
                 await self._send(Renamed(agent))
@@ -224,17 +169,16 @@ class Connection:
                 await self._send(Typing(typing))
             if session.ended is not None and last == session.history.last:
                 await self._send(Ended(session.ended.for_visitor))
-                await self._socket.close(1000, "ended")
+                await self._channel.end()
                 return
-            if not self._woken.is_set():
-                await self._woken.wait()
+            await woken.wait()
 
     def _name_of(self, session: Session) -> str:
         """What the agent is called on the page."""
         return session.agent if self._title is None else self._title
 
     async def _send(self, frame: Frame | Message) -> None:
-        await self._socket.send_text(serialise(frame))
+        await self._channel.send(serialise(frame))
 
 
 def _common(one: str, other: str) -> int:

@@ -18,7 +18,7 @@ import uvicorn
 from ravestate.errors import PlatformError
 
 from .application import make_app
-from .connection import LONGEST
+from .channel import LONGEST
 from .door import Door, Line
 from .gate import is_local
 from .pace import at_pace
