@@ -276,8 +276,8 @@ class Inspector:
                 await self._send({"type": "ended", "text": session.ended})
                 await self._channel.end()
                 return
-            share = SHARE + OF_SPARE * leisure.share()
-            await self._pause(max(FRAME, took / share) if subject.live else 0.0, seen < subject.last)
+            seconds = max(FRAME, took / (SHARE + OF_SPARE * leisure.share())) if text else FRAME
+            await self._pause(seconds if subject.live else 0.0, seen < subject.last)
 
     async def _pause(self, seconds: float, more: bool) -> None:
         """Until the next frame; answers need not wait so long."""
