@@ -36,6 +36,9 @@ TOPICS = [
     "distress",
     "grief",
     "insult",
+    "thanks",
+    "acknowledgement",
+    "contradiction",
 ]
 
 
@@ -59,6 +62,14 @@ def test_remarks_are_added_and_may_be_a_topic_of_their_own(tmp_path: Path) -> No
     )
     assert life.topics["grief"].remarks == (*read_life().topics["grief"].remarks, "rain again")
     assert life.topics["praise"].remarks == ("well done",)
+
+
+def test_asides_are_added_and_may_be_a_topic_of_their_own(tmp_path: Path) -> None:
+    life = life_of("topics: {thanks: {asides: merci}, hm: {asides: ['h?m+'], phrases: Well.}}", tmp_path)
+    assert life.topics["thanks"].asides == (*read_life().topics["thanks"].asides, "merci")
+    assert life.topics["hm"].asides == ("h?m+",)
+    with pytest.raises(rs.DeclarationError, match=r"'\(hm' is no regular expression"):
+        life_of("topics: {hm: {asides: ['(hm'], phrases: Well.}}", tmp_path)
 
 
 def test_a_fact_is_replaced_added_or_taken_away_and_the_rest_stays(tmp_path: Path) -> None:

@@ -91,6 +91,47 @@ def test_what_only_sounds_like_it_is_left_alone(text: str) -> None:
     assert remark_in(text, read_life()) is None
 
 
+ASIDES = {
+    "thanks": (
+        "Thanks!",
+        "thank you very much",
+        "ok thx",
+        "Great, thank you for the help.",
+        "That's very kind of you.",
+    ),
+    "acknowledgement": ("ok", "I see.", "Oh, okay", "That makes sense.", "hmm", "got it"),
+    "contradiction": ("No, that is wrong.", "that's not true", "You're mistaken.", "wrong"),
+}
+
+
+@pytest.mark.parametrize(
+    ("topic", "text"), [(topic, text) for topic, texts in ASIDES.items() for text in texts]
+)
+def test_what_is_said_by_the_way_is_heard_unless_something_was_asked(topic: str, text: str) -> None:
+    found = remark_in(text, read_life())
+    assert found is not None and found.topic == topic
+    assert remark_in(text, read_life(), asked=True) is None
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "Thanks! What is the capital of Peru?",
+        "thanks, bye",
+        "Thank you. Goodbye!",
+        "okay, tell me a story",
+        "I see a ship",
+        "fine weather today",
+        "is that wrong?",
+        "my answer was wrong",
+        "no",
+        "yes",
+    ],
+)
+def test_what_goes_on_is_no_aside(text: str) -> None:
+    assert remark_in(text, read_life()) is None
+
+
 def test_of_several_the_gravest_counts() -> None:
     found = remark_in("You are stupid. My cat died. I want to die.", read_life())
     assert found is not None and (found.topic, found.text) == ("distress", "i want to die")

@@ -339,9 +339,19 @@ def test_without_the_sentence_model_others_answer_and_it_says_what_to_install(
         assert "model.onnx" in str(sim.failures)
 
 
+def test_what_is_said_by_the_way_is_answered_but_where_something_was_asked_it_is_left_alone(
+    tmp_path: Path,
+) -> None:
+    with start(tmp_path, chatter, bored=5.0, prompt_every=100.0) as sim:
+        sim.put(idle.asked, "")
+        assert say(sim, "thanks a lot!") in ("You're welcome.", "My pleasure.", "Any time.")
+        sim.put(idle.asked, "Do you like chess?")
+        assert say(sim, "okay") == "chatter"
+
+
 def test_silence_makes_it_offer_to_be_asked_now_and_then(tmp_path: Path) -> None:
     with start(tmp_path, chatter, bored=5.0, prompt_every=100.0) as sim:
-        sim.say("hm")
+        sim.say("it rains")
         sim.advance(90.0)
         assert len(sim.said) == 2  # chatter, and one offer
         sim.advance(20.0)

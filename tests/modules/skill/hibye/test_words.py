@@ -27,6 +27,10 @@ def test_a_greeting_greets_and_does_not_take_leave(text: str) -> None:
         "i need to go now",
         "take care!",
         "Tschüss",
+        "thanks, bye",
+        "ok bye",
+        "Thanks. Bye!",
+        "Okay, thank you very much for your help, goodbye!",
     ],
 )
 def test_a_farewell_takes_leave_and_does_not_greet(text: str) -> None:
@@ -49,6 +53,8 @@ def test_a_farewell_takes_leave_and_does_not_greet(text: str) -> None:
         "I have to go to work",
         "i must go shopping",
         "farewell party tonight",
+        "thanks for the good bye-laws of the club, which I read",
+        "ok, I said goodbye to her",
         "🙂",
         "شكرا",
     ],

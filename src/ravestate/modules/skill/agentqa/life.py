@@ -29,6 +29,8 @@ class Topic:
     """What it says when it is asked about something in particular (*can you dance*) that is no value of a fact."""
     remarks: tuple[str, ...] = ()
     """Regular expressions of whole words for what is said rather than asked, and is not to be left to anybody else."""
+    asides: tuple[str, ...] = ()
+    """Regular expressions of all that is said at once (*thanks a lot*); only if the agent has not asked anything."""
 
 
 @dataclass(frozen=True, slots=True)

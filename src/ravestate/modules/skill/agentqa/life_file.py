@@ -29,7 +29,7 @@ NAMED = ("it", "that")
 """Parameters of phrases about what a question names."""
 
 _PARTS = ("facts", "topics", "others")
-_PARTS_OF_TOPIC = ("questions", "remarks", "phrases", "otherwise", "named", "unnamed")
+_PARTS_OF_TOPIC = ("questions", "remarks", "asides", "phrases", "otherwise", "named", "unnamed")
 
 
 def read_life(own: Path | None = None) -> Life:
@@ -135,7 +135,9 @@ def _topic(key: str, node: yaml.Node, before: Topic | None, known: _Known) -> To
             topic, questions=(*topic.questions, *_texts(known.file, parts["questions"], "questions"))
         )
     if "remarks" in parts:
-        topic = replace(topic, remarks=(*topic.remarks, *_expressions(known.file, parts["remarks"])))
+        topic = replace(topic, remarks=(*topic.remarks, *_expressions(known.file, parts["remarks"], "remarks")))
+    if "asides" in parts:
+        topic = replace(topic, asides=(*topic.asides, *_expressions(known.file, parts["asides"], "asides")))
     if "phrases" in parts:
         topic = replace(topic, phrases=known.check(parts["phrases"]), otherwise=(), named=(), unnamed=())
     if "otherwise" in parts:
@@ -149,14 +151,14 @@ def _topic(key: str, node: yaml.Node, before: Topic | None, known: _Known) -> To
         topic = replace(topic, named=tuple(named))
     if "unnamed" in parts:
         topic = replace(topic, unnamed=known.check(parts["unnamed"]))
-    for part, there in (("questions", topic.questions or topic.remarks), ("phrases", topic.phrases)):
+    for part, there in (("questions", topic.questions or topic.remarks or topic.asides), ("phrases", topic.phrases)):
         if not there:
             raise _fault(known.file, node, f"the topic {key} has no {part}: write\n{key}:\n  {part}: [...]")
     return topic
 
 
-def _expressions(file: str, node: yaml.Node) -> tuple[str, ...]:
-    found = _texts(file, node, "remarks")
+def _expressions(file: str, node: yaml.Node, part: str) -> tuple[str, ...]:
+    found = _texts(file, node, part)
     items: list[yaml.Node] = node.value if _kind(node) == "sequence" else [node]
     for item, expression in zip(items, found, strict=True):
         try:

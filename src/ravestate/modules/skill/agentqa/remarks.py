@@ -1,4 +1,4 @@
-"""What is not asked but remarked, and wants an answer before all else: distress, grief, an insult."""
+"""What is not asked but remarked: distress, grief, an insult, which want an answer before all else; thanks and such."""
 
 from __future__ import annotations
 
@@ -13,6 +13,10 @@ from .life import Life
 __all__ = ["Remark", "remark_in"]
 
 
+ASIDE = 80
+"""Characters that something said by the way has at most."""
+
+
 @dataclass(frozen=True, slots=True)
 class Remark:
     """Something that was said, and belongs to a topic."""
@@ -22,13 +26,14 @@ class Remark:
     """The sentence, in the plain form."""
 
 
-def remark_in(utterance: str, life: Life, names: Collection[str] = ()) -> Remark | None:
+def remark_in(utterance: str, life: Life, names: Collection[str] = (), asked: bool = False) -> Remark | None:
     """Return what is remarked; of several topics the one that stands first in the life.
 
     Args:
         utterance: What the user said.
         life: Its topics; those that have remarks count.
         names: What else the agent is called.
+        asked: Whether the agent has asked something: then *okay* is an answer, and no aside.
 
     Example:
         >>> from ravestate.modules.skill.agentqa.life_file import read_life
@@ -42,6 +47,11 @@ def remark_in(utterance: str, life: Life, names: Collection[str] = ()) -> Remark
             for text in said:
                 if expression.search(text):
                     return Remark(name, text)
+    if not asked and len(utterance) < ASIDE:
+        text = " ".join(re.findall(r"[\w']+", utterance.lower().replace("’", "'")))
+        for name, topic in life.topics.items():
+            if topic.asides and _whole_words(topic.asides).fullmatch(text):
+                return Remark(name, text)
     return None
 
 

@@ -83,11 +83,12 @@ async def understand(ctx: rs.RuleContext) -> rs.Resign | None:
     return None
 
 
-@module.rule(when=rawio.input.changed, reads=life, emits=remarked)
+@module.rule(when=rawio.input.changed, reads=(life, idle.asked), emits=remarked)
 async def heed(ctx: rs.RuleContext) -> rs.Resign | None:
     """Notice that the user says something that nobody should take for small talk."""
     told = ctx[life]
-    found = None if told is None else remark_in(ctx.payload(rawio.input.changed), told)
+    said = ctx.payload(rawio.input.changed)
+    found = None if told is None else remark_in(said, told, asked=bool(ctx[idle.asked]))
     if found is None:
         return rs.Resign("nothing of the kind was said")
     ctx.emit(remarked, found)

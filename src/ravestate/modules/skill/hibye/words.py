@@ -11,6 +11,8 @@ GREETING = re.compile(
     re.IGNORECASE,
 )
 FAREWELL = re.compile(
+    r"(?:(?:ok|okay|well|alright|all right|right|so|then|oh|great|fine|thanks|thank you|many thanks|anyway)\b"
+    r"(?: (?:so|very|much|a lot|again|for (?:the |your )?\w+))*[\s,.!;:-]*)*"  # which may stand before it
     r"(bye+([ -]bye+)?|goodbye|good bye|good night|see (you|ya)( later| soon| tomorrow)?|farewell(?! \w)|cheerio|ciao|"
     r"take care(?! (of|that|not|to)\b)|tschüss|auf wiedersehen|gute nacht|"
     r"i (have to|must|need to|gotta) go(?! (to (?!bed|sleep)|\w+ing\b|on\b|through\b)))\b",
