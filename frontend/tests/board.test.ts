@@ -577,6 +577,7 @@ test("conversations are known by when they began, with whom, and their last word
   const began = new Date(2026, 4, 1, 11, 32).getTime();
   server.tell({
     type: "conversations",
+    more: 130,
     conversations: [
       { visitor: "v", name: null, began, said: "my name is Ada" },
       { visitor: "w", name: "Hugo", began, said: null },
@@ -594,5 +595,6 @@ test("conversations are known by when they began, with whom, and their last word
   expect([...container.querySelectorAll("option")].map((option) => option.textContent)).toEqual([
     `${time}, “my name is Ada”, ended`,
     `${time}, Hugo, nothing said yet`,
+    "and 130 older ones",
   ]);
 });

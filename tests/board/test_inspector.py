@@ -207,6 +207,22 @@ async def test_the_clock_is_paused_stepped_and_continued() -> None:
 
 
 @in_virtual_time
+async def test_a_step_that_does_nothing_says_why() -> None:
+    async with board(gossip) as app, Look(app) as look:
+        await look.begin()
+        look.tell("step")
+        assert "pause it first" in (await look.answer("error"))["text"]
+        look.tell("pause")
+        look.tell("emit", signal="gossip:cheered", payload={})
+        look.tell("step")
+        await look.until("started", rule="gossip:bow")
+        for _ in range(40):
+            look.tell("step")
+            await passing(0.1)
+        assert (await look.answer("error"))["text"].startswith("nothing is due")
+
+
+@in_virtual_time
 async def test_slots_are_written_and_signals_raised_by_hand() -> None:
     async with board() as app, Look(app) as look:
         await look.begin()

@@ -23,6 +23,8 @@ export class Board {
   live = $state(true);
   visitor: string | null = $state(null);
   conversations: Conversation[] = $state.raw([]);
+  /** How many more there are. */
+  unlisted = $state(0);
   /** The file of the recording that is looked at. */
   recording: string | null = $state(null);
   policy: Policy = $state.raw(EMPTY);
@@ -307,6 +309,7 @@ export class Board {
       }
       case "conversations":
         this.conversations = frame.conversations;
+        this.unlisted = frame.more;
         break;
       case "why":
         if (frame.rule === this.rule && frame.spike === this.#asked) {

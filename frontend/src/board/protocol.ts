@@ -196,6 +196,7 @@ export type ServerFrame =
   | {
       type: "conversations";
       conversations: { visitor: string; name: string | null; began: number; said: string | null }[];
+      more: number;
     }
   | ({ type: "why" } & Why)
   | ({ type: "explained" } & Explained)

@@ -219,7 +219,7 @@ class Inspector:
             case Hello():
                 raise ValueError("hello is said once, at the beginning")
             case _:
-                subject.act(command)
+                await subject.act(command)
 
     def _reply(self, frame: dict[str, Any]) -> None:
         self._channel.reply(_json(frame))

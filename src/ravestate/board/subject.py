@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import asyncio
 import secrets
-from typing import TYPE_CHECKING, Any, Protocol
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 from ravestate.board.by_hand import check_payload, check_value
 from ravestate.board.commands import Command, Emit, Pause, Put, Resume, Say, Step
@@ -23,6 +24,8 @@ if TYPE_CHECKING:
     from ravestate.modules.platform.webio.session import Session
 
 __all__ = ["Live", "Recorded", "Subject"]
+
+T = TypeVar("T")
 
 
 class Subject(Protocol):
@@ -67,7 +70,7 @@ class Subject(Protocol):
         """What a rule holds, lacks and waits for."""
         ...
 
-    def act(self, command: Command) -> None:
+    async def act(self, command: Command) -> None:
         """Do something.
 
         Raises:
@@ -158,7 +161,7 @@ class Live:
             "activations": [whole_data(state) for state in found.activations],
         }
 
-    def act(self, command: Command) -> None:
+    async def act(self, command: Command) -> None:
         """Do something.
 
         Raises:
@@ -174,7 +177,12 @@ class Live:
             case Pause():
                 context.pause()
             case Step():
-                asyncio.get_running_loop().call_soon(context.step)  # rules are started outside of any task
+                if not await _outside_of_any_task(context.step):
+                    raise RavestateError(
+                        "nothing is due: the agent waits for something to come, or for what takes its own time"
+                        if context.paused
+                        else "the clock is not halted: pause it first"
+                    )
             case Resume():
                 context.resume()
             case Put():
@@ -210,6 +218,21 @@ class Live:
         if name not in things:
             raise UndeclaredError(f"this agent has no {what} {name!r}{nearest(name, things)}")
         return things[name]
+
+
+async def _outside_of_any_task(function: Callable[[], T]) -> T:
+    """Call a function on the loop, but not within this task: what starts rules must not."""
+    loop = asyncio.get_running_loop()
+    called: asyncio.Future[T] = loop.create_future()
+
+    def call() -> None:
+        try:
+            called.set_result(function())
+        except Exception as error:
+            called.set_exception(error)
+
+    loop.call_soon(call)
+    return await called
 
 
 class Recorded:
@@ -249,6 +272,6 @@ class Recorded:
         """Nothing is known of a moment that nobody asked about."""
         raise RavestateError("this is a recording: there is no agent that could be asked")
 
-    def act(self, command: Command) -> None:
+    async def act(self, command: Command) -> None:
         """Nothing can be done."""
         raise RavestateError(f"this is a recording: there is no agent that could take {command.type!r}")

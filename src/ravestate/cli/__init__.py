@@ -100,7 +100,9 @@ class CommandParser(argparse.ArgumentParser):
         """Refuse here what is not known: else it would be left to the parser above, and that one's usage told."""
         options, unknown = super().parse_known_args(args, namespace)
         many = [action.dest for action in self._get_positional_actions() if action.nargs in ("+", "*")]
-        if many and unknown and all(not word.startswith("-") for word in unknown):  # some stood behind an option
+        if (
+            many and unknown and all(not word.startswith("-") for word in unknown)
+        ):  # some stood behind an option
             setattr(options, many[0], [*getattr(options, many[0]), *unknown])
             return options, []
         if unknown:

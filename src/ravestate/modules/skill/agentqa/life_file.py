@@ -135,7 +135,9 @@ def _topic(key: str, node: yaml.Node, before: Topic | None, known: _Known) -> To
             topic, questions=(*topic.questions, *_texts(known.file, parts["questions"], "questions"))
         )
     if "remarks" in parts:
-        topic = replace(topic, remarks=(*topic.remarks, *_expressions(known.file, parts["remarks"], "remarks")))
+        topic = replace(
+            topic, remarks=(*topic.remarks, *_expressions(known.file, parts["remarks"], "remarks"))
+        )
     if "asides" in parts:
         topic = replace(topic, asides=(*topic.asides, *_expressions(known.file, parts["asides"], "asides")))
     if "phrases" in parts:
@@ -151,7 +153,10 @@ def _topic(key: str, node: yaml.Node, before: Topic | None, known: _Known) -> To
         topic = replace(topic, named=tuple(named))
     if "unnamed" in parts:
         topic = replace(topic, unnamed=known.check(parts["unnamed"]))
-    for part, there in (("questions", topic.questions or topic.remarks or topic.asides), ("phrases", topic.phrases)):
+    for part, there in (
+        ("questions", topic.questions or topic.remarks or topic.asides),
+        ("phrases", topic.phrases),
+    ):
         if not there:
             raise _fault(known.file, node, f"the topic {key} has no {part}: write\n{key}:\n  {part}: [...]")
     return topic
