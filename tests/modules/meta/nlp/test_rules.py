@@ -2,14 +2,17 @@
 
 import subprocess
 import sys
+import threading
 from collections.abc import Iterator
 from typing import Any
 
 import pytest
 
 import ravestate as rs
+from ravestate.engine.trace import Set
 from ravestate.modules import nlp, rawio
 from ravestate.modules.meta.nlp import rules
+from ravestate.modules.meta.nlp.analysis import analyse
 from ravestate.modules.meta.nlp.pipeline import Pipeline
 from ravestate.testing import simulate
 
@@ -46,6 +49,31 @@ def test_all_slots_are_written() -> None:
         assert sim.read(nlp.question) is None
         assert sim.read(nlp.yesno).no == 2
         assert [entity.text for entity in sim.read(nlp.entities)] == ["Berlin"]
+
+
+def test_what_is_said_at_once_is_read_in_its_order_however_long_each_takes(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    later = threading.Event()
+
+    def read(text: str, *rest: Any) -> Any:
+        if text == "I live in Ulm.":
+            later.wait(
+                0.2
+            )  # for the other one, which would be through by now if it did not wait for its turn
+        else:
+            later.set()
+        return analyse(text, *rest)
+
+    monkeypatch.setattr(rules, "analyse", read)
+    with simulate(nlp) as sim:
+        sim.context.put(rawio.input, "I live in Ulm.")
+        sim.context.put(rawio.input, "No, in Bremen.")
+        sim.settle()
+        written = [
+            record.value for record in sim.trace if isinstance(record, Set) and record.slot == nlp.text.name
+        ]
+    assert written == ["I live in Ulm.", "No, in Bremen."]
 
 
 def test_every_utterance_signals_every_slot() -> None:

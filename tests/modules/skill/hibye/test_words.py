@@ -2,6 +2,7 @@
 
 import pytest
 
+from ravestate.modules.meta.idle.words import takes_leave
 from ravestate.modules.skill.hibye.words import is_farewell, is_greeting
 
 
@@ -31,6 +32,10 @@ def test_a_greeting_greets_and_does_not_take_leave(text: str) -> None:
         "ok bye",
         "Thanks. Bye!",
         "Okay, thank you very much for your help, goodbye!",
+        "Thank you so much, bye",
+        "Thanks a lot bye",
+        "Great, goodbye",
+        "Anyway, I have to go",
     ],
 )
 def test_a_farewell_takes_leave_and_does_not_greet(text: str) -> None:
@@ -55,6 +60,10 @@ def test_a_farewell_takes_leave_and_does_not_greet(text: str) -> None:
         "farewell party tonight",
         "thanks for the good bye-laws of the club, which I read",
         "ok, I said goodbye to her",
+        "Thanks for the goodbye card",
+        "thank you for the good night kiss",
+        "thanks" + " so" * 3000 + " x",
+        "thank you for " * 3000,
         "🙂",
         "شكرا",
     ],
@@ -62,3 +71,11 @@ def test_a_farewell_takes_leave_and_does_not_greet(text: str) -> None:
 def test_what_says_more_is_left_to_others(text: str) -> None:
     assert not is_greeting(text)
     assert not is_farewell(text)
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["Thank you so much goodbye", "Thanks a lot bye", "Great goodbye", "Anyway I have to go", "ok, so long"],
+)
+def test_whoever_takes_leave_is_left_in_peace(text: str) -> None:
+    assert takes_leave(text)  # or the agent would be bored of a user who is gone

@@ -419,19 +419,17 @@ def test_what_is_said_in_one_breath_is_all_learnt_and_kept(file: Path, look: Loo
 def test_what_takes_long_to_read_is_learnt_all_the_same(
     file: Path, look: Look, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    loading: list[asyncio.Future[None]] = []
+    loaded = asyncio.Event()
 
     async def when_loaded(function: Any, *arguments: Any) -> Any:
-        loading.append(asyncio.get_running_loop().create_future())
-        await loading[-1]
+        await loaded.wait()
         return function(*arguments)
 
     monkeypatch.setattr("ravestate.modules.meta.nlp.rules.asyncio.to_thread", when_loaded)
     with simulate(persqa, settings={"ontology": {"path": file}}) as sim:
         at_once(sim, "my name is ada", "i live in ulm")
         sim.advance(30.0)
-        for reading in loading:
-            reading.set_result(None)
+        loaded.set()
         sim.settle()
         assert meant(sim.said[0], "learned_name")
     assert look() == {"Ada": {"lives_in": ["Ulm"]}}

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import re
 
+from ravestate.modules._courtesy import COURTESY
+
 __all__ = ["asks_for_quiet", "last_question", "takes_leave"]
 
 LONGEST = 1000
@@ -26,7 +28,7 @@ _QUIET = re.compile(
     re.IGNORECASE,
 )
 _LEAVE = re.compile(
-    r"(?:(?:ok|okay|well|thanks|thank you|so|then)\s+)*(?:(?:good ?)?bye+(?:[ -]bye+)?|good night|see (?:you|ya)|farewell|"
+    rf"{COURTESY}(?:(?:good ?)?bye+(?:[ -]bye+)?|good night|see (?:you|ya)|farewell|"
     r"cheerio|ciao|take care|so long|until (?:next time|tomorrow)|i(?:'m| am) (?:off|leaving)|"
     r"(?:i (?:have to|must|need to|gotta|should)|i've got to) (?:go|leave)(?! to)|"
     r"tschüss?|auf wiedersehen|gute nacht|bis (?:bald|morgen|später))\b(?:\W+\w+){0,4}\W*",

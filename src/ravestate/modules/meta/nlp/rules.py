@@ -26,6 +26,7 @@ from . import (
     text,
     tokens,
     triples,
+    turn,
     yesno,
 )
 from .analysis import analyse
@@ -43,7 +44,7 @@ def load(ctx: rs.RuleContext) -> None:
 
 @module.rule(
     when=rawio.input.changed,
-    reads=interloc.agent,
+    reads=(interloc.agent, turn),
     writes=(text, tokens, lemmas, pos, tags, entities, triples, question, yesno),
     emits=(is_question, about_agent, intent_play, intent_hi, intent_bye),
 )
@@ -53,7 +54,8 @@ async def understand(ctx: rs.RuleContext) -> None:
     heard = ctx.payload(rawio.input.changed)
     named = "agent_names" in settings.model_fields_set
     names = settings.agent_names if named else (ctx[interloc.agent],)
-    seen = await asyncio.to_thread(analyse, heard, pipeline(settings.pipeline), names)
+    async with ctx[turn]:
+        seen = await asyncio.to_thread(analyse, heard, pipeline(settings.pipeline), names)
     words = seen.tree.words
     ctx[text] = heard
     ctx[tokens] = tuple(word.text for word in words)

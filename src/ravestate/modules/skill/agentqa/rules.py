@@ -24,7 +24,7 @@ from .telling import telling, without_question
 
 
 @module.rule(when=rs.startup.detached(), writes=(life, interloc.agent), detached=True)
-def be_born(ctx: rs.RuleContext) -> None:
+async def be_born(ctx: rs.RuleContext) -> None:
     """Read who the agent is; tell its name to whoever calls it by that."""
     settings: Settings = ctx.settings
     told = read_life(settings.life)

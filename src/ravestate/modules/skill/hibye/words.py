@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import re
 
+from ravestate.modules._courtesy import COURTESY
+
 __all__ = ["is_farewell", "is_greeting"]
 
 GREETING = re.compile(
@@ -11,9 +13,7 @@ GREETING = re.compile(
     re.IGNORECASE,
 )
 FAREWELL = re.compile(
-    r"(?:(?:ok|okay|well|alright|all right|right|so|then|oh|great|fine|thanks|thank you|many thanks|anyway)\b"
-    r"(?: (?:so|very|much|a lot|again|for (?:the |your )?\w+))*[\s,.!;:-]*)*"  # which may stand before it
-    r"(bye+([ -]bye+)?|goodbye|good bye|good night|see (you|ya)( later| soon| tomorrow)?|farewell(?! \w)|cheerio|ciao|"
+    rf"{COURTESY}(bye+([ -]bye+)?|goodbye|good bye|good night|see (you|ya)( later| soon| tomorrow)?|farewell(?! \w)|cheerio|ciao|"
     r"take care(?! (of|that|not|to)\b)|tschüss|auf wiedersehen|gute nacht|"
     r"i (have to|must|need to|gotta) go(?! (to (?!bed|sleep)|\w+ing\b|on\b|through\b)))\b",
     re.IGNORECASE,
