@@ -71,10 +71,14 @@ def test_the_first_that_answered_is_the_one_that_ended_first_and_not_one_of_anot
         Settled(3.0, 1, "m:slow", "done", "", True),
     ]
     history = History(records, 1)
-    first = history.answered({"m:slow", "m:quick"})
+    hears = {"m:slow": [{"m:s"}], "m:quick": [{"m:s"}]}
+    first = history.answered(hears)
     assert first is not None
     assert (first.id, first.end) == (3, 2.0)
-    assert history.answered({"m:other"}) is None
+    last = history.answered({**hears, "m:quick": [{"m:t"}]})  # at m:s it only looks
+    assert last is not None
+    assert last.id == 1
+    assert history.answered({"m:other": [{"m:s"}]}) is None
 
 
 def test_the_value_of_a_slot_is_the_last_that_was_written_by_then() -> None:

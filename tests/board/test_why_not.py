@@ -18,7 +18,7 @@ from ravestate.board.recorder import Gap
 from ravestate.board.why_not import MOST, WhyNot, why_not
 from ravestate.board.wire import data_of, record_of
 from ravestate.engine.explain import GAVE_UP
-from ravestate.engine.trace import Born, GaveUp, Settled, Started
+from ravestate.engine.trace import Born, GaveUp, Passed, Settled, Started
 from ravestate.testing import Simulation, simulate
 
 
@@ -179,6 +179,76 @@ def test_it_never_took_the_spike_as_its_cause_was_answered(stage: Stage) -> None
         found = ask(sim, "again")
     assert found.verdict in ("passed", "outrun")
     assert "demo:quick" in found.words
+
+
+@pytest.mark.parametrize("told", [True, False], ids=["as it is told", "as far as an older trace tells"])
+def test_who_only_looks_at_a_cause_is_not_who_had_answered_it(stage: Stage, told: bool) -> None:
+    later = stage.module.signal("later")
+
+    @stage.module.rule(when=stage.input.changed.detached(), writes=stage.output)
+    async def echo(ctx: rs.RuleContext) -> None:
+        ctx[stage.output] = "hm"
+
+    @stage.module.rule(when=stage.input.changed, emits=later, background=True)
+    async def slow(ctx: rs.RuleContext) -> None:
+        await ctx.sleep(1)
+        ctx.emit(later)
+
+    @stage.module.rule(when=stage.input.changed.where(bool), writes=stage.output, weight=5)
+    async def answer(ctx: rs.RuleContext) -> None:
+        ctx[stage.output] = "answer"
+
+    @stage.module.rule(when=later, writes=stage.output, weight=0.001)
+    async def too_late(ctx: rs.RuleContext) -> None: ...
+
+    with stage.run() as sim:
+        sim.put(stage.input, "x")
+        sim.advance(5)
+        assert sim.fired == ["demo:echo", "demo:answer", "demo:slow"]
+        run = next(r.run for r in sim.trace if isinstance(r, Started) and r.rule == "demo:answer")
+        passed = [r for r in sim.trace if isinstance(r, Passed) and r.rule == "demo:too_late"]
+        assert [(p.reason, p.by, p.run) for p in passed] == [("consumed", "demo:answer", run)]
+        kept = [data_of(record) for record in sim.trace]
+        for record in kept:
+            if record["kind"] == "passed" and not told:
+                del record["by"], record["run"]  # as it was before these were told
+        records = [record for record in map(record_of, kept) if not isinstance(record, Gap)]
+        spike = spike_of(sim, "demo:input:changed")
+        found = why_not(records, describe(sim.context.policy), "demo:too_late", spike)
+    assert found.verdict == "passed"
+    assert found.words == "it did not take demo:later: demo:answer had answered this cause already"
+
+
+def test_of_causes_that_merge_later_the_one_that_was_answered_is_told(stage: Stage) -> None:
+    other, late = stage.module.slot("other", ""), stage.module.signal("late")
+
+    @stage.module.rule(when=stage.touch, writes=stage.output)
+    async def first(ctx: rs.RuleContext) -> None:
+        ctx[stage.output] = "first"
+
+    @stage.module.rule(when=stage.input.changed, writes=stage.output)
+    async def second(ctx: rs.RuleContext) -> None:
+        ctx[stage.output] = "second"
+
+    @stage.module.rule(when=stage.input.changed, emits=late, background=True)
+    async def slow(ctx: rs.RuleContext) -> None:
+        await ctx.sleep(1)
+        ctx.emit(late)
+
+    @stage.module.rule(when=late, writes=stage.output, weight=0.001)
+    async def too_late(ctx: rs.RuleContext) -> None: ...
+
+    @stage.module.rule(when=stage.touch & late, writes=other)
+    async def both(ctx: rs.RuleContext) -> None:
+        ctx[other] = "both"
+
+    with stage.run() as sim:
+        sim.emit(stage.touch)
+        sim.put(stage.input, "x")
+        sim.advance(5)
+        assert "demo:both" in sim.fired
+        found = ask(sim, "too_late")
+    assert found.words == "it did not take demo:late: demo:second had answered this cause already"
 
 
 def test_it_was_among_its_own_causes(stage: Stage) -> None:

@@ -6,7 +6,7 @@ Built once for a question, from the records alone.
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Collection, Iterable
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import accumulate
 from operator import attrgetter
@@ -172,9 +172,22 @@ class History:
         begun = bisect_right(starts, time)
         return begun > 0 and ends[begun - 1] >= time
 
-    def answered(self, rules: Collection[str]) -> Attempt | None:
-        """The first run for the group in which one of these rules answered."""
-        return next((a for a in self._answers if a.rule in rules and self._is_ours(a)), None)
+    def answered(self, hears: Mapping[str, Sequence[Collection[str]]]) -> Attempt | None:
+        """The first run that answered for the group.
+
+        Args:
+            hears: The rules of which it may be one; for each of their clauses, the signals that it takes from others.
+                What a rule only looks at (a detached constraint) it answers to nobody (L19).
+        """
+        return next(
+            (a for a in self._answers if a.rule in hears and self._is_taken(a, hears[a.rule][a.clause])), None
+        )
+
+    def _is_taken(self, attempt: Attempt, signals: Collection[str]) -> bool:
+        """Whether an attempt took a spike of one of these signals in the group."""
+        started = attempt.started
+        spikes = [held.spike for held in attempt.held] if started is None else started.spikes
+        return any(spike in self.group and self.born[spike].signal in signals for spike in spikes)
 
     def before(self, run: int) -> str:
         """The rule that raised what a run of another one took of this group; empty: none, or not known."""

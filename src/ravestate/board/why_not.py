@@ -14,7 +14,7 @@ from typing import Any, Literal
 from ravestate.board.description import ClauseView, Description, RuleView
 from ravestate.board.history import Attempt, History
 from ravestate.engine.explain import PASSED, how_ended, why_given_up
-from ravestate.engine.trace import GaveUp, Record, Settled, Waits
+from ravestate.engine.trace import GaveUp, Passed, Record, Settled, Waits
 
 __all__ = ["Missing", "Moment", "Raiser", "Verdict", "WhyNot", "why_not"]
 
@@ -229,7 +229,7 @@ class _Inquiry:
             first = passed[0]
             reason = PASSED.get(first.reason, first.reason)
             if first.reason == "consumed":
-                reason = f"{self._path(*self._answered(rule, first.time))} had answered this cause already"
+                reason = f"{self._path(*self._answerer(rule, first))} had answered this cause already"
             elif first.reason == "caused":
                 reason += ", and no rule is its own cause"
             return "passed", f"it did not take {first.signal}: {reason}", first.time, None
@@ -421,16 +421,23 @@ class _Inquiry:
         before = self.history.before(run)
         return f"{before} → {by}" if before else by
 
-    def _answerer(self, rule: RuleView, lost: GaveUp) -> tuple[str, int]:
-        """Who answered what an attempt lost: the rule, and the number of its run (0: not known)."""
+    def _answerer(self, rule: RuleView, lost: GaveUp | Passed) -> tuple[str, int]:
+        """Who answered what an attempt lost, or never took: the rule, and the number of its run (0: not known)."""
         return (lost.by, lost.run) if lost.by else self._answered(rule, lost.time)
 
     def _answered(self, rule: RuleView, time: float) -> tuple[str, int]:
         """Who had taken one of the rule's slots in this group by a time, if the trace tells."""
         if rule.name not in self._first:
             slots = set(rule.writes)
-            others = {o.name for o in self.description.rules if o.name != rule.name and slots & set(o.writes)}
-            self._first[rule.name] = self.history.answered(others)
+            self._first[rule.name] = self.history.answered(
+                {
+                    other.name: [
+                        {c.signal for c in clause.constraints if not c.detached} for clause in other.clauses
+                    ]
+                    for other in self.description.rules
+                    if other.name != rule.name and slots & set(other.writes)
+                }
+            )
         first = self._first[rule.name]
         if first is None or first.end is None or first.end > time:
             return "another rule", 0

@@ -283,6 +283,8 @@ class Engine(Waves):
         if rule.slots:
             groups = _roots(run)
             for group in groups:
+                if self.tracer is not None:
+                    group.note(rule.slots, rule.name, run.id)
                 for slot in rule.slots:
                     group.take(slot, None)
             for group in groups:

@@ -23,9 +23,11 @@ class Group:
         interested: The waiting activations to be asked again when something ends in it.
         pressed: Stand-by rivals (numbers of clauses) under pressure: until when they have patience (seconds).
         eliminated: Stand-by rivals whose patience has run out.
+        answers: For slots that are taken for good: the rule that finished first and the number of its run, as far as
+            somebody listened. It is only told.
     """
 
-    __slots__ = ("eliminated", "id", "interested", "into", "members", "pressed", "taken")
+    __slots__ = ("answers", "eliminated", "id", "interested", "into", "members", "pressed", "taken")
 
     def __init__(self, id: int) -> None:
         self.id = id
@@ -36,6 +38,7 @@ class Group:
         self.interested: Mapping[Activation, None] = NOTHING
         self.pressed: dict[int, float] | None = None
         self.eliminated: set[int] | None = None
+        self.answers: Mapping[int, tuple[str, int]] = NOTHING
 
     def root(self) -> Group:
         """The group that this one belongs to now."""
@@ -64,6 +67,14 @@ class Group:
         """Whether one of the slots is taken for good."""
         taken = self.taken
         return bool(taken) and any(slot in taken and taken[slot] is None for slot in slots)
+
+    def note(self, slots: tuple[int, ...], rule: str, run: int) -> None:
+        """A run of a rule finishes on slots; what finished on them before stays noted."""
+        self.answers = {**dict.fromkeys(slots, (rule, run)), **self.answers}
+
+    def answer(self, slots: tuple[int, ...]) -> tuple[str, int]:
+        """The rule, and the number of its run, that finished on one of the slots; nobody (``""``, 0) if it is not noted."""
+        return next((self.answers[slot] for slot in slots if slot in self.answers), ("", 0))
 
     def concern(self, activation: Activation) -> None:
         """Ask a waiting activation again when something ends here."""
@@ -97,8 +108,10 @@ class Group:
             self.pressed = {**other.pressed, **(self.pressed or {})}
         if other.eliminated:
             self.eliminated = other.eliminated | (self.eliminated or set())
+        if other.answers:
+            self.answers = {**other.answers, **self.answers}
         other.members = {}
-        other.taken = other.interested = NOTHING
+        other.taken = other.interested = other.answers = NOTHING
 
     def __repr__(self) -> str:
         return f"group {self.id}"

@@ -263,8 +263,10 @@ class Holdings:
     def _pass_by(self, clause: Clause, spike: Spike, reason: str) -> None:
         """A rule that hears the signal does not take the spike; this is only told."""
         if self.tracer is not None:
+            rule = clause.rule
+            by, run = spike.group.root().answer(rule.slots) if reason == "consumed" else ("", 0)
             self.tracer(
-                trace.Passed(self.now, clause.rule.name, clause.number, spike.id, spike.signal.name, reason)
+                trace.Passed(self.now, rule.name, clause.number, spike.id, spike.signal.name, reason, by, run)
             )
 
     def _update(self, activation: Activation) -> None:

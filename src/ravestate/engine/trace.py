@@ -106,6 +106,8 @@ class Passed:
     spike: int
     signal: str
     reason: str
+    by: str = ""  # the rule that had consumed its cause, if that is known
+    run: int = 0  # the number of its run; 0: of none, or not known
 
 
 @dataclass(frozen=True, slots=True)
