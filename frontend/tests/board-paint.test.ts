@@ -100,3 +100,25 @@ test("what is pointed at is what was said, and what the context raises where tha
   expect(at(both, 100, AXIS + 22).spike?.id).toBe(2);
   expect(at(both, 300, AXIS + 13)).toEqual({});
 });
+
+test("of a crowd of spikes the first and the last have a line, and whichever is pointed at", () => {
+  const piece = (spike: number) =>
+    ({ ...born(spike, spike / 10, "null", "m:piece"), parents: [1] }) as TraceRecord;
+  const lines = (pieces: number, kin: number[]) => {
+    const numbers = Array.from({ length: pieces }, (_, i) => i + 2);
+    const all = scene([born(1, 0, "null"), ...numbers.map(piece)], {
+      kin: new Set(kin.length > 0 ? kin : [1, ...numbers]),
+    });
+    let curves = 0;
+    const context = new Proxy({} as Record<string, unknown>, {
+      get: (_, name: string) => {
+        if (name === "measureText") return () => ({ width: 6 });
+        return name === "bezierCurveTo" ? () => curves++ : () => {};
+      },
+      set: () => true,
+    });
+    paint(context as unknown as CanvasRenderingContext2D, all);
+    return curves;
+  };
+  expect([lines(6, []), lines(7, []), lines(37, []), lines(37, [1, 20])]).toEqual([6, 2, 2, 1]);
+});

@@ -338,6 +338,20 @@ test("what only background rules hear does not take the place of what was said",
   expect(board.cause?.id).toBe(5);
 });
 
+test("however long somebody writes, what was said before stays the cause", () => {
+  const [server, board] = Server.open();
+  const signals = [
+    { ...POLICY.signals[0], name: "m:typing", slot: null, hearers: ["m:watch"] },
+    { ...POLICY.signals[0], name: "m:said", slot: null, hearers: ["m:talk"] },
+  ];
+  const rules = [rule("m:talk"), { ...rule("m:watch"), background: true }];
+  server.tell({ type: "policy", policy: { ...POLICY, rules, signals } as Policy });
+  const records = [{ ...input(1, 1, "1"), signal: "m:said" }] as TraceRecord[];
+  for (let n = 2; n < 200; n++) records.push({ ...input(n, n, "null"), signal: "m:typing" } as TraceRecord);
+  server.tell({ type: "records", records, missed: 0, behind: 0, now: 300, paused: false });
+  expect(board.causes.map(({ id }) => id)).toEqual([1]);
+});
+
 test("a write counts as heard if any of its signals is", () => {
   const [server, board] = Server.open();
   const signals = [
@@ -472,12 +486,37 @@ test("what is refused can be mended: the field is there again, and has what was 
   await fireEvent.input(screen.getByLabelText(label), { target: { value: "banana" } });
   await fireEvent.click(screen.getByRole("button", { name: "Write" }));
   expect(screen.queryByLabelText(label)).toBeNull();
-  server.tell({ type: "error", code: "refused", text: "true or false" });
+  server.tell({ type: "error", code: "refused", text: "true or false", of: "put" });
   flushSync();
   expect(screen.getByLabelText(label)).toHaveProperty("value", "banana");
   expect(board.trouble).toBe("true or false");
   await fireEvent.click(screen.getByRole("button", { name: "Cancel" }));
   expect(screen.queryByLabelText(label)).toBeNull();
+});
+
+test("what is refused is there again after a change of panels, with what was typed, and only once", () => {
+  const [server, board] = Server.open();
+  board.send({ type: "put", slot: "m:secret", value: "7" });
+  server.tell({ type: "error", code: "refused", text: "no", of: "put" });
+  const label = "New value of m:secret, as JSON or as text";
+  const first = render(Slots, { board });
+  flushSync();
+  expect(screen.getByLabelText(label)).toHaveProperty("value", '"7"');
+  first.unmount();
+  render(Slots, { board });
+  flushSync();
+  expect(screen.queryByLabelText(label)).toBeNull();
+});
+
+test("what was taken does not come back because something else is refused, or somebody else is looked at", () => {
+  const [server, board] = Server.open();
+  board.send({ type: "say", text: "Hello" });
+  server.tell({ type: "error", code: "refused", text: "the spike is forgotten", of: "why" });
+  expect([board.trouble, board.refused]).toEqual(["the spike is forgotten", null]);
+  board.turnTo({ visitor: "w" });
+  server.socket.onopen?.();
+  server.tell({ type: "error", code: "refused", text: "", of: "say" });
+  expect(board.refused).toBeNull();
 });
 
 test("a field gives the focus back to the button that opened it", async () => {

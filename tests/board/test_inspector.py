@@ -262,7 +262,9 @@ def test_what_it_says_wrongly_is_told_and_harms_nobody(frame: Any, words: str) -
         async with board() as app, Look(app) as look:
             await look.begin()
             look.send(json.dumps(frame))
-            assert words in (await look.answer("error"))["text"]
+            error = await look.answer("error")
+            assert words in error["text"]
+            assert error.get("of") == (None if error["code"] == "malformed" else frame["type"])
             look.tell("ping")
             await look.answer("pong")
 

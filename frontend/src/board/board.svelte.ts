@@ -35,7 +35,7 @@ export class Board {
   behind = $state(0);
   whole = $state(true);
   trouble = $state("");
-  /** What was to be done and was refused. */
+  /** What was to be done and was refused, until somebody takes it up to mend it. */
   refused: Command | null = $state.raw(null);
   ending = $state("");
   /** Counts the batches of records: whoever shows something of the trace looks at it. */
@@ -58,11 +58,10 @@ export class Board {
   });
   #causes = $derived.by(() => {
     void this.version;
-    const all = this.trace.inputs(RECENT);
-    const heard = all.filter((spike) =>
+    const heard = this.trace.inputs(RECENT, (spike) =>
       this.trace.siblings(spike).some(({ signal }) => !this.#aside.has(signal)),
     );
-    const inputs = heard.length > 0 ? heard : all;
+    const inputs = heard.length > 0 ? heard : this.trace.inputs(RECENT);
     const pointed = this.spike === null ? undefined : this.trace.spike(this.spike);
     if (pointed === undefined || inputs.includes(pointed)) return inputs;
     const same = inputs.findIndex(({ group }) => group === pointed.group);
@@ -121,6 +120,7 @@ export class Board {
     const { token } = this.#address;
     this.#address = { ...(token === undefined ? {} : { token }), ...address };
     this.rule = this.spike = this.recording = null;
+    this.refused = this.#sent = null;
     this.ending = this.trouble = "";
     this.view = new View();
     this.follows = true;
@@ -271,6 +271,7 @@ export class Board {
     }
     switch (frame.type) {
       case "welcome":
+        this.refused = this.#sent = null;
         this.trace = new Trace();
         this.missed = this.behind = 0;
         this.title = frame.title;
@@ -328,7 +329,7 @@ export class Board {
         break;
       case "error":
         this.trouble = frame.text;
-        this.refused = this.#sent;
+        if (frame.of !== undefined && frame.of === this.#sent?.type) this.refused = this.#sent;
         this.asking = false;
         break;
     }

@@ -411,6 +411,7 @@ function crowds(trace: Trace, kin: ReadonlySet<number>): Set<number> {
   for (const id of kin) {
     const signals = new Map<string, number[]>();
     for (const child of trace.spike(id)?.children ?? []) {
+      if (!kin.has(child)) continue;
       const signal = trace.spike(child)?.signal ?? "";
       const those = signals.get(signal);
       if (those === undefined) signals.set(signal, [child]);

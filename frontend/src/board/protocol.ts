@@ -202,7 +202,7 @@ export type ServerFrame =
   | ({ type: "explained" } & Explained)
   | ({ type: "diagram" } & Diagram)
   | { type: "ended"; text: string }
-  | { type: "error"; code: string; text: string }
+  | { type: "error"; code: string; text: string; of?: string }
   | { type: "pong" };
 
 export type Command =

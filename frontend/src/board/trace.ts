@@ -170,11 +170,14 @@ export class Trace {
    * What came from outside, the newest first: what one may ask "why not" about. Writing a slot raises several signals
    * of one causal group: the last one stands for them.
    */
-  inputs(most: number): Spike[] {
+  inputs(most: number, counts: (spike: Spike) => boolean = () => true): Spike[] {
     const found: Spike[] = [];
+    let group = 0;
     for (let i = this.spikes.length - 1; i >= 0 && found.length < most; i--) {
       const spike = this.spikes[i] as Spike;
-      if (spike.outside && found.at(-1)?.group !== spike.group) found.push(spike);
+      if (!spike.outside || spike.group === group) continue;
+      group = spike.group;
+      if (counts(spike)) found.push(spike);
     }
     return found;
   }

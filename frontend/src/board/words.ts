@@ -47,6 +47,11 @@ const REASONS: Record<string, string> = {
   retired: "the rule retired",
 };
 
+/** What one would type for a value: the inverse of `typed`. */
+export function untyped(value: unknown): string {
+  return typeof value === "string" && typed(value) === value ? value : JSON.stringify(value);
+}
+
 export function nats(value: number): string {
   return value.toFixed(3);
 }

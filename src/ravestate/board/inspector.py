@@ -182,12 +182,15 @@ class Inspector:
             if wait:
                 await asyncio.sleep(wait)
             try:
-                await self._take(parse(text), subject)
+                command = parse(text)
             except ValueError as error:
                 self._reply({"type": "error", "code": "malformed", "text": str(error)})
-            except (RavestateError, LookupError) as error:
+                continue
+            try:
+                await self._take(command, subject)
+            except (RavestateError, LookupError, ValueError) as error:
                 words = str(error.args[0]) if isinstance(error, LookupError) and error.args else str(error)
-                self._reply({"type": "error", "code": "refused", "text": words})
+                self._reply({"type": "error", "code": "refused", "text": words, "of": command.type})
 
     async def _take(self, command: Command, subject: Subject) -> None:
         match command:
