@@ -171,6 +171,57 @@ async def test_what_is_taken_up_to_the_first_spike_after_a_gap_is_taken_once() -
     assert recorder.missed == born[-1] - len(born) > 0
 
 
+@in_virtual_time
+async def test_what_is_shortened_while_it_does_not_listen_misses_no_more_for_that() -> None:
+    context, tick = ticking()
+    recorder = Recorder(context, burst=60, rate=0, spare=0)
+    async with context:
+        for _ in range(100):
+            context.emit(tick)
+        await passing(0.01)
+        assert isinstance(recorder.records[-1], Gap)
+        before = max(record.spike for record in recorder.records if isinstance(record, Born))
+        recorder.shorten(20)  # another conversation needs the room
+        await passing(1)
+        context.emit(tick)
+        await passing(1)
+    after = [
+        record.spike for record in recorder.records if isinstance(record, Born) and record.spike > before
+    ]
+    assert recorder.missed == after[0] - before - 1 > 30
+
+
+@in_virtual_time
+async def test_a_spike_that_there_was_no_room_to_keep_was_seen() -> None:
+    context, tick = ticking()
+    recorder = Recorder(context, kept=5, rate=0, spare=0)
+    async with context:
+        context.emit(tick)
+        await passing(1)
+        for _ in range(5):
+            recorder._take(Merged(1.0, 2, 1))  # pyright: ignore[reportPrivateUsage]
+        recorder._left = 0  # pyright: ignore[reportPrivateUsage]
+        recorder._rest()  # pyright: ignore[reportPrivateUsage]
+        await passing(1)
+        context.emit(tick)
+        await passing(1)
+    assert recorder.missed == 0
+
+
+@in_virtual_time
+async def test_a_gap_counts_as_a_record_for_who_watches_how_much_there_is() -> None:
+    context, _ = ticking()
+    grown: list[int] = []
+    recorder = Recorder(context, rate=0, spare=0, grown=lambda: grown.append(recorder.last))
+    recorder._left = LUMP - 1  # pyright: ignore[reportPrivateUsage]
+    recorder._granted = 0.0  # pyright: ignore[reportPrivateUsage]
+    async with context:
+        while recorder.last < LUMP:
+            recorder._take(Merged(1.0, 2, 1))  # pyright: ignore[reportPrivateUsage]
+    assert isinstance(recorder.records[-1], Gap)
+    assert grown == [LUMP]
+
+
 @pytest.mark.parametrize(
     ("lengths", "in_all", "fair"),
     [([], 10, 1), ([5, 3], 10, 5), ([5, 3], 6, 3), ([1, 9, 9], 11, 5), ([4] * 100, 50, 1), ([7], 3, 3)],

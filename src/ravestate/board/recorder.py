@@ -92,7 +92,7 @@ class Recorder:
         self._leisure = Leisure()
         self._left = 0  # the first record is granted a burst
         self._granted: float | None = None
-        self._spike = 0  # the newest that is known and not kept any more, or before the gap
+        self._spike = 0  # the newest that was seen, whether it is still kept or not
         self._gap: Gap | None = None
         self._leave: Callable[[], None] = lambda: None
         self.records: deque[Record | Gap] = deque(maxlen=kept)
@@ -123,21 +123,24 @@ class Recorder:
     def shorten(self, length: int) -> None:
         """Keep the newest records only, so many at most."""
         while len(self.records) > length:
-            oldest = self.records.popleft()
-            if isinstance(oldest, Born):
-                self._spike = oldest.spike
+            self.records.popleft()
 
     def _listen(self) -> None:
         self._leave = self._context.observe(self._take if self._gap is None else self._take_after_gap)
 
     def _take(self, record: Record) -> None:
-        self.records.append(record)
-        self.last += 1
+        self._keep(record)
+        if type(record) is Born:
+            self._spike = record.spike
         self._left -= 1
-        if self.last % LUMP == 0:
-            self._grown()
         if self._left <= 0:
             self._rest()
+
+    def _keep(self, record: Record | Gap) -> None:
+        self.records.append(record)
+        self.last += 1
+        if self.last % LUMP == 0:
+            self._grown()
 
     def _take_after_gap(self, record: Record) -> None:
         """Until the number of a spike tells how many went unseen."""
@@ -160,10 +163,8 @@ class Recorder:
             return
         self._leave()
         if self._gap is None:
-            self._spike = next((r.spike for r in reversed(self.records) if isinstance(r, Born)), self._spike)
             self._gap = Gap(self.records[-1].time)
-            self.records.append(self._gap)
-            self.last += 1
+            self._keep(self._gap)
         loop.call_later(PAUSE, self._listen_again)
 
     def _listen_again(self) -> None:
