@@ -88,6 +88,12 @@ def test_what_is_too_large_is_refused_and_the_next_one_is_taken(
     test()
 
 
+def test_what_the_page_exports_at_most_can_be_sent_back(trace: bytes) -> None:
+    records = json.loads(trace)["records"]
+    a_record = len(json.dumps(records)) / len(records)
+    assert 1.5 * a_record * 125_000 < application.LARGEST  # names and payloads are longer elsewhere
+
+
 @in_virtual_time
 async def test_who_goes_away_in_the_middle_leaves_the_way_free() -> None:
     async with board() as app, client(app) as browser:

@@ -30,8 +30,9 @@ PAGE = Path(__file__).parent / "page"
 INSIDE = "board/"
 """Where the board is, seen from the chat page."""
 
-LARGEST = 16 * 1024 * 1024
-"""Bytes that a recording may have that is sent to be looked at."""
+LARGEST = 64 * 1024 * 1024
+"""Bytes that a recording may have that is sent to be looked at: twice as many as the page exports at most, some 125,000
+records of 270 bytes."""
 
 
 class RecordedAgent(Agent):
