@@ -2,8 +2,9 @@
 
 import asyncio
 import json
-from collections.abc import AsyncGenerator
+from collections.abc import AsyncGenerator, Callable
 from pathlib import Path
+from typing import Any
 
 import httpx
 import pytest
@@ -50,23 +51,86 @@ def test_of_recordings_that_come_together_one_is_read_at_a_time(
 ) -> None:
     taken: list[str] = []
 
+    async def slowly(work: Callable[..., Any], *arguments: Any) -> Any:
+        taken.append("begins")
+        await passing(5)
+        taken.append("ends")
+        return work(*arguments)
+
     @in_virtual_time
     async def test() -> None:
-        async def slowly(name: str) -> AsyncGenerator[bytes]:
-            taken.append(f"{name} begins")
-            yield trace[:100]
-            await passing(5)
-            yield trace[100:]
-            taken.append(f"{name} ends")
-
         async with board() as app, client(app) as browser:
-            answers = await asyncio.gather(
-                *(browser.post("/board/recordings", content=slowly(name)) for name in ("one", "other"))
-            )
+            with monkeypatch.context() as patch:
+                patch.setattr(asyncio, "to_thread", slowly)
+                answers = await asyncio.gather(
+                    *(browser.post("/board/recordings", content=trace) for _ in range(2))
+                )
             assert [answer.status_code for answer in answers] == [201, 201]
 
     test()
-    assert taken == ["one begins", "one ends", "other begins", "other ends"]
+    assert taken == ["begins", "ends"] * 2
+
+
+async def drops(data: bytes, every: float, each: int) -> AsyncGenerator[bytes]:
+    """Data in pieces, with seconds between them."""
+    for start in range(0, len(data), each):
+        yield data[start : start + each]
+        await passing(every)
+
+
+def test_who_sends_slowly_holds_nobody_up(trace: bytes) -> None:
+    @in_virtual_time
+    async def test() -> None:
+        clock = asyncio.get_running_loop().time
+        async with board() as app, client(app) as browser:
+            slow = asyncio.create_task(
+                browser.post("/board/recordings", content=drops(trace, 60.0, 1 + len(trace) // 3))
+            )
+            await passing(1)
+            before = clock()
+            assert (await browser.post("/board/recordings", content=trace)).status_code == 201
+            assert clock() - before < 1
+            assert (await slow).status_code == 201
+
+    test()
+
+
+def test_more_than_a_few_at_once_are_told_to_try_again(trace: bytes) -> None:
+    @in_virtual_time
+    async def test() -> None:
+        async with board() as app, client(app) as browser:
+            slow = [
+                asyncio.create_task(
+                    browser.post("/board/recordings", content=drops(trace, 5.0, 1 + len(trace) // 3))
+                )
+                for _ in range(application.AT_ONCE)
+            ]
+            await passing(1)
+            answer = await browser.post("/board/recordings", content=trace)
+            assert (answer.status_code, answer.headers["retry-after"]) == (503, "10")
+            assert "try again" in answer.text
+            assert {answer.status_code for answer in await asyncio.gather(*slow)} == {201}
+            assert (await browser.post("/board/recordings", content=trace)).status_code == 201
+
+    test()
+
+
+@in_virtual_time
+async def test_what_comes_for_too_long_is_refused_and_leaves_the_way_free() -> None:
+    clock = asyncio.get_running_loop().time
+    async with board() as app, client(app) as browser:
+        for _ in range(2):
+            before = clock()
+            answers = await asyncio.gather(
+                *(
+                    browser.post("/board/recordings", content=drops(b" " * 1000, 1.0, 1))
+                    for _ in range(application.AT_ONCE)
+                )
+            )
+            assert {(answer.status_code, answer.text) for answer in answers} == {
+                (408, "a recording has to come within 300 s")
+            }
+            assert clock() - before == pytest.approx(application.LONGEST)  # pyright: ignore[reportUnknownMemberType]
 
 
 def test_what_is_too_large_is_refused_and_the_next_one_is_taken(

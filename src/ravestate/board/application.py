@@ -34,6 +34,12 @@ LARGEST = 64 * 1024 * 1024
 """Bytes that a recording may have that is sent to be looked at: twice as many as the page exports at most, some 125,000
 records of 270 bytes."""
 
+AT_ONCE = 4
+"""Recordings that are received at once."""
+
+LONGEST = 300.0
+"""Seconds that a recording may take to come."""
+
 
 class RecordedAgent(Agent):
     """An agent whose contexts are recorded from their beginning, so that the past can be looked at."""
@@ -64,6 +70,7 @@ def routes(
     """
     known = Recorders() if recorders is None else recorders
     shelf = Shelf(recording)
+    receiving = asyncio.Semaphore(AT_ONCE)
     reading = asyncio.Lock()  # one recording at a time: while it is read it takes many times its size
 
     async def inspect(socket: WebSocket) -> None:
@@ -75,20 +82,28 @@ def routes(
         if not request.app.state.gate.admits(bearer):
             await asyncio.sleep(PAUSE)
             return PlainTextResponse("the token is wrong, or missing", 401)
-        try:
-            async with reading:
-                return await read(request)
-        except ClientDisconnect:
-            return Response(status_code=400)  # to nobody
+        if receiving.locked():
+            return PlainTextResponse(
+                f"{AT_ONCE} recordings are being sent already: try again", 503, {"retry-after": "10"}
+            )
+        async with receiving:
+            return await read(request)
 
     async def read(request: Request) -> Response:
         data = bytearray()
-        async for piece in request.stream():
-            data += piece
-            if len(data) > LARGEST:
-                return PlainTextResponse(f"a recording has at most {LARGEST:,} bytes", 413)
         try:
-            recording = await asyncio.to_thread(read_trace, bytes(data))
+            async with asyncio.timeout(LONGEST):
+                async for piece in request.stream():
+                    data += piece
+                    if len(data) > LARGEST:
+                        return PlainTextResponse(f"a recording has at most {LARGEST:,} bytes", 413)
+        except TimeoutError:
+            return PlainTextResponse(f"a recording has to come within {LONGEST:g} s", 408)
+        except ClientDisconnect:
+            return Response(status_code=400)  # to nobody
+        try:
+            async with reading:
+                recording = await asyncio.to_thread(read_trace, bytes(data))
         except ValueError as error:
             return PlainTextResponse(f"this is no trace: {error}", 422)
         return JSONResponse({"recording": shelf.put(recording)}, 201)
