@@ -3,6 +3,7 @@
 import asyncio
 from typing import Any
 
+import pytest
 import uvicorn
 from starlette.types import Receive, Scope, Send
 from uvicorn.server import ServerState
@@ -119,6 +120,42 @@ async def test_what_hardly_comes_is_not_waited_for() -> None:
     caller.send(request(10**6))
     await caller.send_slowly(b"x" * 10**6, rate=100)
     assert caller.hung_up == 2 * PATIENCE
+
+
+@in_virtual_time
+async def test_what_comes_in_fits_and_starts_is_taken_if_it_is_enough_all_in_all() -> None:
+    size = int(SLOWEST * 20 * PATIENCE)
+    caller = Caller(Reader())
+    caller.send(request(size))
+    for _ in range(20):
+        caller.send(b"x" * (size // 20))
+        await past(PATIENCE / 2)
+        assert caller.hung_up is None
+        await past(PATIENCE / 2)
+    assert caller.answer.endswith(b"%d bytes" % size)
+
+
+@in_virtual_time
+async def test_what_comes_in_fits_and_starts_is_not_waited_for_if_it_is_too_little() -> None:
+    size, each = 10**7, int(SLOWEST * PATIENCE)
+    caller = Caller(Reader())
+    caller.send(request(size))
+    while caller.hung_up is None:  # half of what should come
+        caller.send(b"x" * each)
+        await past(2 * PATIENCE)
+        assert asyncio.get_running_loop().time() < 10 * PATIENCE
+
+
+@pytest.mark.parametrize(("share", "looks"), [(0.6, 3), (0.9, 10)])
+def test_the_less_is_missing_the_later_it_is_noticed(share: float, looks: int) -> None:
+    @in_virtual_time
+    async def test() -> None:
+        caller = Caller(Reader())
+        caller.send(request(10**6))
+        await caller.send_slowly(b"x" * 10**6, rate=share * SLOWEST)
+        assert caller.hung_up == looks * PATIENCE
+
+    test()
 
 
 @in_virtual_time

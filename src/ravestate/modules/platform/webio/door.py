@@ -22,7 +22,7 @@ PATIENCE = 10.0
 """Seconds in which a client is to send its request, and then to read the answer."""
 
 SLOWEST = 8 * 1024
-"""Bytes a second that a client is to send at least while more of its request is to come."""
+"""Bytes a second that a client is to send at least while more of its request is to come; it may be `PATIENCE` late."""
 
 STALLED = 20.0
 """Seconds for which a client may leave unread what the server has for it."""
@@ -56,6 +56,7 @@ class Door(H11Protocol):
         self._most = most
         self._received = 0  # bytes, since the last look
         self._waited: object = None  # the request for whose client was waited at the last look; at first, any
+        self._late: tuple[object, float] = (None, 0.0)  # a request, and by how many bytes it is behind
 
     def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]  # as above it
         """Take a connection, or refuse it."""
@@ -87,23 +88,27 @@ class Door(H11Protocol):
         read."""
         if self.transport.is_closing() or self.transport.get_protocol() is not self:
             return
-        if self._goes_on():
-            self._waited = self  # for none
-        elif self.cycle is not self._waited:
-            self._waited = self.cycle
+        request = cast("RequestResponseCycle | None", self.cycle)
+        if request is None or request.response_complete or self.flow.write_paused:
+            spent = request is self._waited
+            self._waited = request
         else:
+            spent = self._is_late(request)
+            self._waited = self  # for none
+        if spent:
             _hang_up(self.transport)
             return
         self._received = 0
         self.loop.call_later(PATIENCE, self._look)
 
-    def _goes_on(self) -> bool:
-        """Whether a request comes in as quickly as it should, or the client has to wait for its answer."""
-        request = cast("RequestResponseCycle | None", self.cycle)
-        if request is None or request.response_complete or self.flow.write_paused:
-            return False
-        comes = self._received >= SLOWEST * PATIENCE
-        return comes or self.flow.read_paused or not request.more_body
+    def _is_late(self, request: RequestResponseCycle) -> bool:
+        """Whether a request comes in more slowly than it should, all in all, and not because the server does not read."""
+        due = SLOWEST * PATIENCE
+        behind = self._late[1] if self._late[0] is request else 0.0
+        waits = self.flow.read_paused or not request.more_body
+        behind = 0.0 if waits else max(0.0, behind + due - self._received)
+        self._late = (request, behind)
+        return behind > due
 
 
 class Line(WebSocketsSansIOProtocol):
