@@ -3,7 +3,8 @@
 import dataclasses
 import enum
 import json
-from typing import Any
+from collections.abc import Callable, Mapping
+from typing import Annotated, Any, Literal
 
 import pytest
 
@@ -102,10 +103,10 @@ def test_what_a_signal_does_not_carry_is_refused(
         emit(signal, **payload)
 
 
-@pytest.mark.parametrize("holds", [None, 7, float("inf"), "x", [1], {"a": {"b": (1, 2)}}, "x" * 10**6])
+@pytest.mark.parametrize("holds", [None, 7, float("inf"), "x", [1], {"a": {"b": [1, 2]}}, "x" * 10**6])
 def test_what_has_no_type_takes_anything_unless_it_holds_what_json_cannot_say(holds: object) -> None:
     check_value(free, "new", holds)
-    for foreign in (Point(1), [Point(1)], {"a": Point(1)}, {1: 2}):
+    for foreign in (Point(1), [Point(1)], {"a": Point(1)}, {1: 2}, (1, 2), [(1, 2)]):
         with pytest.raises(
             rs.RavestateError, match=rf"lab:free holds a {type(foreign).__name__}, for which JSON"
         ):
@@ -122,6 +123,52 @@ def test_what_json_cannot_write_to_a_slot_is_told_to_be_so() -> None:
     with pytest.raises(rs.RavestateError, match="lab:place takes Point, for which JSON has no words"):
         check_value(place, {"x": 1}, None)
     check_value(place, None, Point(1))  # its default
+
+
+Strings = Annotated[list[str] | None, "of some kind"]
+
+CONTAINERS: list[tuple[Any, Any, list[Any], list[Any]]] = [
+    (list[int], [], [[1], []], ["banana", {}, None]),
+    (dict[str, int], {}, [{"a": 1}], ["banana", [], 7]),
+    (Mapping[str, int], {}, [{"a": 1}], ["banana", []]),
+    (list[int] | str, "", ["banana", [1]], [7, {}, None]),
+    (list[int] | None, None, [[1], None], ["banana", {}]),
+    (Strings, None, [["a"], None], ["banana", {}]),
+    (list[int], None, [[1], None], ["banana", {}]),
+]
+
+
+@pytest.mark.parametrize(("kind", "default", "taken", "refused"), CONTAINERS, ids=lambda one: str(one))
+def test_of_a_type_of_containers_the_container_is_asked_for(
+    kind: Any, default: Any, taken: list[Any], refused: list[Any]
+) -> None:
+    slot = rs.Module("boxes").slot("box", default, type=kind)
+    for value in taken:
+        check_value(slot, value, default)
+        check_payload(slot.changed, Emit(type="emit", signal="boxes:box:changed", payload=value), slot)
+    for value in refused:
+        with pytest.raises(rs.RavestateError, match=r"boxes:box takes .*, not"):
+            check_value(slot, value, default)
+        with pytest.raises(rs.RavestateError, match=r"boxes:box:changed carries a payload of type .*, not"):
+            check_payload(slot.changed, Emit(type="emit", signal="boxes:box:changed", payload=value), slot)
+
+
+@pytest.mark.parametrize(
+    "kind", [tuple[str, ...], frozenset[str], set[int], Callable[[], None], tuple[int] | set[str]]
+)
+def test_containers_that_json_does_not_know_are_not_written(kind: Any) -> None:
+    slot = rs.Module("boxes").slot("box", 0, type=kind)
+    for value in ("banana", ["a"], None):
+        with pytest.raises(rs.RavestateError, match=r"boxes:box takes .*, for which JSON has no words"):
+            check_value(slot, value, None)
+
+
+@pytest.mark.parametrize("kind", [Any, Literal["a", "b"], list[int] | Literal["a"]])
+def test_a_type_that_cannot_be_asked_for_is_as_none(kind: Any) -> None:
+    slot = rs.Module("boxes").slot("box", "a", type=kind)
+    check_value(slot, "b", "a")
+    with pytest.raises(rs.RavestateError, match="boxes:box holds a Point"):
+        check_value(slot, "b", Point(1))
 
 
 @pytest.mark.parametrize("value", [1, 0, "true", None])

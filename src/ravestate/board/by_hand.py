@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from types import GenericAlias, NoneType
-from typing import Any
+from types import NoneType, UnionType
+from typing import Annotated, Any, Union, get_args, get_origin
 
 from ravestate.board.commands import Emit
 from ravestate.board.shown import is_foreign
@@ -18,7 +18,7 @@ WORDS: tuple[Any, ...] = (True, 0, 0.5, "", [], {})
 
 
 def check_value(slot: Slot[Any], value: object, holds: object) -> None:
-    """Refuse what cannot be written to a slot by hand; what is of another type than the slot's `Slot.check` refuses.
+    """Refuse what cannot be written to a slot by hand; what `Slot.check` refuses as it is written is left to it.
 
     Args:
         slot: The slot.
@@ -26,14 +26,19 @@ def check_value(slot: Slot[Any], value: object, holds: object) -> None:
         holds: What the slot holds now: if it has no type, that tells what it is for.
 
     Raises:
-        RavestateError: JSON has no words for what the slot takes, or it is a flag and the value no truth value.
+        RavestateError: JSON has no words for what the slot takes, or the value is of another type.
     """
     if isinstance(slot, Flag) and not isinstance(value, bool):
         raise RavestateError(f"{slot.name} is a flag: write true or false, not {value!r}")
-    if slot.type is None:
+    takes = _asked(slot.declared)
+    if takes is None:
         _check_holds(slot, holds)
-    elif not _is_sayable(slot.type) and not (value is None and slot.default is None):
-        raise RavestateError(f"{slot.name} takes {_named(slot.type)}, for which JSON has no words")
+    elif value is None and slot.default is None:
+        return
+    elif not _is_sayable(takes):
+        raise RavestateError(f"{slot.name} takes {_named(slot.declared)}, for which JSON has no words")
+    elif slot.type is None and not isinstance(value, takes):
+        raise RavestateError(f"{slot.name} takes {_named(slot.declared)}, not {type(value).__name__}")
 
 
 def check_payload(signal: Signal[Any], command: Emit, slot: Slot[Any] | None, holds: object = None) -> None:
@@ -59,8 +64,8 @@ def check_payload(signal: Signal[Any], command: Emit, slot: Slot[Any] | None, ho
                 )
             return
     else:
-        kind = bool if isinstance(slot, Flag) else slot.type
-        if kind is None:
+        kind = bool if isinstance(slot, Flag) else slot.declared
+        if _asked(kind) is None:
             _check_holds(slot, holds)
             return
         if command.payload is None and slot.default is None:
@@ -70,11 +75,11 @@ def check_payload(signal: Signal[Any], command: Emit, slot: Slot[Any] | None, ho
 
 def _check_kind(signal: Signal[Any], kind: Any, command: Emit) -> None:
     what = f"{signal.name} carries a payload of type {_named(kind)}"
-    if not _is_sayable(kind):
+    takes = _asked(kind)
+    if not _is_sayable(takes):
         raise RavestateError(f"{what}, for which JSON has no words: only a rule or a program can raise it")
     if "payload" not in command.model_fields_set:
         raise RavestateError(f"{what}: give one")
-    takes = _asked(kind)
     if takes is not None and not isinstance(command.payload, takes):
         raise RavestateError(f"{what}, not {type(command.payload).__name__}")
 
@@ -87,15 +92,26 @@ def _check_holds(slot: Slot[Any], holds: object) -> None:
         )
 
 
-def _is_sayable(kind: Any) -> bool:
+def _is_sayable(takes: Any) -> bool:
     """Whether anything that JSON has a word for is of a type, as far as one can tell."""
-    takes = _asked(kind)
     return takes is None or any(isinstance(word, takes) for word in WORDS)
 
 
 def _asked(kind: Any) -> Any:
-    """What `isinstance` is asked of a type: of ``tuple[str, ...]`` whether something is a tuple; None: nothing."""
-    return checkable(kind.__origin__ if isinstance(kind, GenericAlias) else kind)
+    """What `isinstance` is asked of a type; None: nothing.
+
+    Of ``list[int]`` it is whether something is a list: what that holds is not looked at.
+    """
+    takes = checkable(kind)
+    if takes is not None:
+        return takes
+    origin = get_origin(kind)
+    if origin is Annotated:
+        return _asked(get_args(kind)[0])
+    if origin is Union or origin is UnionType:
+        each = tuple(_asked(one) for one in get_args(kind))
+        return None if None in each else each
+    return checkable(origin)
 
 
 def _named(kind: Any) -> str:

@@ -119,7 +119,7 @@ def _json(value: object, depth: int) -> Iterator[str]:
             yield (", " if number else "") + json.dumps(well_formed(key[:1000]), ensure_ascii=False) + ": "
             yield from _json(item, depth + 1)
         yield "}"
-    elif type(value) in (list, tuple):
+    elif type(value) is list:  # a tuple would come back as another thing
         yield "["
         for number, item in enumerate(cast("list[object]", value)):
             if number:

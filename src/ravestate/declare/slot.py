@@ -33,12 +33,13 @@ class Slot(Generic[T]):
         name: The qualified name, ``module:name``.
         default: The value before the first write; each context gets a copy of its own.
         type: What `isinstance` is asked of each value written; None: nothing.
+        declared: The type as it was declared, such as ``list[int]``; None: none was.
         always: Whether writing an equal value signals too.
         signals: All signals of the slot, `changed` first.
         origin: Where it was declared, ``file:line``.
     """
 
-    __slots__ = ("always", "changed", "default", "name", "origin", "signals", "type")
+    __slots__ = ("always", "changed", "declared", "default", "name", "origin", "signals", "type")
     kind = "value"
 
     def __init__(
@@ -56,6 +57,7 @@ class Slot(Generic[T]):
         self.name = name
         self.default = default
         self.type = checkable(type)
+        self.declared = type
         self.always = always
         self.origin = origin
         self.changed: Signal[Any] = self._signal("changed", input, keep, limit)
