@@ -227,9 +227,13 @@ async def _outside_of_any_task(function: Callable[[], T]) -> T:
 
     def call() -> None:
         try:
-            called.set_result(function())
+            result = function()
         except Exception as error:
-            called.set_exception(error)
+            if not called.done():  # else who asked is gone
+                called.set_exception(error)
+        else:
+            if not called.done():
+                called.set_result(result)
 
     loop.call_soon(call)
     return await called
