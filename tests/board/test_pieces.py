@@ -40,6 +40,11 @@ class Own:
         return "mine"
 
 
+@dataclasses.dataclass
+class Box:
+    x: Any
+
+
 class Tags(set[Any]):
     pass
 
@@ -65,6 +70,9 @@ VALUES = st.recursive(
         | st.builds(Curt, inner)
         | st.builds(Row, st.lists(inner, max_size=2))
         | st.lists(inner, max_size=3).map(deque)
+        | st.builds(deque[Any], st.lists(inner, max_size=3), st.integers(0, 3))
+        | st.dictionaries(HASHABLE, inner, max_size=3).map(OrderedDict)
+        | st.dictionaries(HASHABLE, inner, max_size=3).map(lambda items: defaultdict(list, items))
     ),
     max_leaves=12,
 )
@@ -84,15 +92,81 @@ def test_it_is_what_python_says(value: object) -> None:
         (frozenset[int](), "frozenset()"),
         (Tags({1}), "Tags({1})"),
         (bytearray(b"x"), "bytearray(b'x')"),
-        (OrderedDict({1: "a"}), "OrderedDict({1: 'a'})"),
-        (defaultdict(int, {1: 2}), "defaultdict({1: 2})"),
+        (deque([1]), "deque([1])"),
+        (deque([1], maxlen=3), "deque([1], maxlen=3)"),
+        (deque[int](maxlen=0), "deque([], maxlen=0)"),
+        (defaultdict(int, {1: 2}), "defaultdict(<class 'int'>, {1: 2})"),
+        (defaultdict[int, int](), "defaultdict(None, {})"),
         (Counter("aab"), "Counter({'a': 2, 'b': 1})"),
+        (Counter[str](), "Counter()"),
         (MappingProxyType({1: Own(2)}), "mappingproxy({1: mine})"),
         (Pair(1, [object]), "Pair(left=1, right=[<class 'object'>])"),
     ],
 )
 def test_what_is_said_of_containers(value: object, text: str) -> None:
-    assert "".join(pieces(value)) == text
+    assert "".join(pieces(value)) == repr(value) == text
+
+
+ORDERED: list[OrderedDict[Any, Any]] = [
+    OrderedDict({1: "a", 2: Own(1)}),
+    OrderedDict(),
+    OrderedDict({1: {2: 3}}),
+]
+
+
+@pytest.mark.parametrize("value", ORDERED)
+def test_what_python_says_otherwise_from_3_12_on(value: object) -> None:
+    assert "".join(pieces(value)) == repr(value)
+
+
+class Sly(list[Any]):
+    def __iter__(self) -> Iterator[Any]:
+        yield 99
+
+    def __len__(self) -> int:
+        raise RuntimeError("no")
+
+
+class SlyText(str):
+    __slots__ = ()
+
+    def __getitem__(self, key: Any) -> str:
+        raise RuntimeError("no")
+
+
+class SlyDict(dict[Any, Any]):
+    def items(self) -> Any:
+        raise RuntimeError("no")
+
+
+class Bytes(bytearray):
+    pass
+
+
+@dataclasses.dataclass(repr=False, frozen=True)
+class Further(Point):
+    y: Any = 0
+
+
+@pytest.mark.parametrize(
+    "value", [Sly([1, 2]), SlyText("x"), SlyDict({1: 2}), Bytes(b"x"), Further(1, 2, 3)], ids=repr
+)
+def test_what_is_made_from_pythons_own_is_shown_by_what_it_holds(value: object) -> None:
+    assert "".join(pieces([value])) == repr([value])
+
+
+def test_of_things_that_are_counted_the_first_comes_first() -> None:
+    assert "".join(pieces(Counter("abb"))) == "Counter({'a': 1, 'b': 2})"
+
+
+def test_what_is_within_itself_is_left_out_as_python_does() -> None:
+    inner: list[Any] = []
+    row: deque[Any] = deque([inner], maxlen=3)
+    ordered: OrderedDict[int, Any] = OrderedDict({1: inner})
+    default: defaultdict[int, Any] = defaultdict(None, {1: inner})
+    for value in ((inner,), (1, inner), row, ordered, default, Box(inner), {1: inner}):
+        inner[:] = [value]
+        assert "".join(pieces(value)) == repr(value)
 
 
 def test_what_is_within_itself_is_said_once() -> None:
