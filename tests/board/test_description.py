@@ -39,3 +39,14 @@ def test_hearers_and_raisers_readers_and_writers_are_told() -> None:
     assert rule is not None
     assert rule.doc == "Tell questions from other things."
     assert found.rule("gossip:nobody") is None
+
+
+def test_types_are_named_as_they_were_declared() -> None:
+    m = rs.Module("m")
+    m.slot("one", [], type=list[int])
+    m.slot("two", "", type=str)
+    m.slot("three", None)
+    m.signal("four", payload=dict[str, int])
+    found = describe(rs.compile(m))
+    assert [slot.type for slot in found.slots if slot.module == "m"] == ["list[int]", "str", ""]
+    assert [signal.payload for signal in found.signals if signal.name == "m:four"] == ["dict[str, int]"]

@@ -8,7 +8,7 @@ from __future__ import annotations
 import inspect
 import math
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, get_origin
 
 from ravestate.policy.completion import UNIT
 from ravestate.policy.diagram.build import build
@@ -245,7 +245,7 @@ def _slot(plan: SlotPlan, readers: _Users, writers: _Users) -> SlotView:
         plan.name,
         _module(plan.name),
         plan.slot.kind,
-        _type(plan.slot.type),
+        _type(plan.slot.declared),
         tuple(signal.name for signal in plan.signals),
         tuple(readers.get(plan.name, ())),
         tuple(writers.get(plan.name, ())),
@@ -270,4 +270,4 @@ def _module(name: str) -> str:
 def _type(kind: Any) -> str:
     if kind is None or kind is type(None):
         return ""
-    return getattr(kind, "__name__", str(kind))
+    return kind.__name__ if isinstance(kind, type) and get_origin(kind) is None else str(kind)
