@@ -36,7 +36,7 @@ export class Board {
   whole = $state(true);
   trouble = $state("");
   /** What was to be done and was refused, until somebody takes it up to mend it. */
-  refused: Command | null = $state.raw(null);
+  refused: { command: Command; typed: string } | null = $state.raw(null);
   ending = $state("");
   /** Counts the batches of records: whoever shows something of the trace looks at it. */
   version = $state(0);
@@ -58,10 +58,13 @@ export class Board {
   });
   #causes = $derived.by(() => {
     void this.version;
-    const heard = this.trace.inputs(RECENT, (spike) =>
-      this.trace.siblings(spike).some(({ signal }) => !this.#aside.has(signal)),
-    );
-    const inputs = heard.length > 0 ? heard : this.trace.inputs(RECENT);
+    const asides = new Set<string>();
+    const inputs = this.trace.inputs(RECENT, (spike) => {
+      const first = !asides.has(spike.signal);
+      if (!this.#isAside(spike)) return true;
+      asides.add(spike.signal);
+      return first;
+    });
     const pointed = this.spike === null ? undefined : this.trace.spike(this.spike);
     if (pointed === undefined || inputs.includes(pointed)) return inputs;
     const same = inputs.findIndex(({ group }) => group === pointed.group);
@@ -79,7 +82,8 @@ export class Board {
   follows = $state(true);
   trace = new Trace();
   #asked: number | null = null; // the spike that "why not" was asked of last
-  #sent: Command | null = null; // what was to be done last
+  #sent: { command: Command; typed: string } | null = null; // what was to be done last
+  #lent = false; // whether the cause was the newest when a rule was looked at for it
   #before: Address = {}; // what was looked at before a recording
   #address: Address;
   #link: Link;
@@ -148,11 +152,14 @@ export class Board {
     return this.#address.token;
   }
 
-  /** Send a command; whether it went out. */
-  send(command: Command): boolean {
+  /**
+   * Send a command; whether it went out.
+   * @param typed what somebody typed for it, to be mended if it is refused
+   */
+  send(command: Command, typed = ""): boolean {
     const sent = this.#link.send(command);
     this.refused = null;
-    this.#sent = sent ? command : null;
+    this.#sent = sent ? { command, typed } : null;
     this.trouble = sent ? "" : "There is no connection to the agent.";
     return sent;
   }
@@ -178,8 +185,23 @@ export class Board {
 
   /** Ask about the cause of a spike from now on; without one, about whichever is the newest. */
   point(spike: number | null): void {
+    this.#lent = false;
     this.spike = spike;
     this.#ask();
+  }
+
+  /** Look at what a rule made of a cause. */
+  enter(rule: string, spike: number): void {
+    const lent = this.#lent || this.spike === null;
+    this.select(rule);
+    this.point(spike);
+    this.#lent = lent;
+  }
+
+  /** Look at no rule any more; and at the newest cause, unless somebody has chosen one. */
+  leave(): void {
+    this.select(null);
+    if (this.#lent) this.point(null);
   }
 
   /** Ask about a cause from now on, and see what came of it: of its runs, or else of whatever took it. */
@@ -240,16 +262,25 @@ export class Board {
   }
 
   /**
-   * What one may ask about: what came from outside, the newest first; before it the spike that was pointed at. What only
-   * background rules hear, such as that somebody is writing, is left out where there is anything else.
+   * What one may ask about: what came from outside, the newest first; before it the spike that was pointed at. Of what only
+   * background rules hear, such as that somebody is writing, the newest of each signal.
    */
   get causes(): readonly Spike[] {
     return this.#causes;
   }
 
-  /** What is asked about: the spike that was pointed at, or else the newest cause. */
+  /** What is asked about: the spike that was pointed at, or else the newest cause that not only background rules hear. */
   get cause(): Spike | undefined {
-    return this.#causes.find((spike) => spike.id === this.spike) ?? this.#causes[0];
+    const causes = this.#causes;
+    return (
+      causes.find((spike) => spike.id === this.spike) ??
+      causes.find((spike) => !this.#isAside(spike)) ??
+      causes[0]
+    );
+  }
+
+  #isAside(spike: Spike): boolean {
+    return this.trace.siblings(spike).every(({ signal }) => this.#aside.has(signal));
   }
 
   value(slot: string): Shown | undefined {
@@ -257,8 +288,8 @@ export class Board {
   }
 
   #ask(): void {
-    this.why = null;
     this.#asked = this.cause?.id ?? null;
+    if (this.why?.rule !== this.rule || this.why?.spike !== this.#asked) this.why = null;
     if (this.rule === null || this.#asked === null) return;
     this.asking = this.#link.send({ type: "why", rule: this.rule, spike: this.#asked });
   }
@@ -329,7 +360,7 @@ export class Board {
         break;
       case "error":
         this.trouble = frame.text;
-        if (frame.of !== undefined && frame.of === this.#sent?.type) this.refused = this.#sent;
+        if (frame.of !== undefined && frame.of === this.#sent?.command.type) this.refused = this.#sent;
         this.asking = false;
         break;
     }

@@ -47,9 +47,10 @@ const REASONS: Record<string, string> = {
   retired: "the rule retired",
 };
 
-/** What one would type for a value: the inverse of `typed`. */
-export function untyped(value: unknown): string {
-  return typeof value === "string" && typed(value) === value ? value : JSON.stringify(value);
+/** What is wrong with a value that somebody typed: it begins like JSON, and is none. */
+export function slip(text: string): string {
+  if (!/^\s*[[{"]/.test(text) || typed(text) !== text) return "";
+  return `This begins like JSON, and is none: ${text.slice(0, 40)} – put a text that is meant so in quotes.`;
 }
 
 export function nats(value: number): string {
