@@ -629,6 +629,7 @@ async def test_the_pictures_in_the_documentation(stage: Stage, tmp_path: Path) -
         await drawn(page)
         await page.screenshot(path=folder / "board.png")
         await page.get_by_role("button", name="Choose no rule").click()
+        await page.get_by_role("button", name="Newest").click()
         await page.get_by_role("button", name="Diagram").click()
         await expect(node(page, "rule keeper:answer")).to_be_visible()
         Cue.classified.clear()
