@@ -38,9 +38,8 @@ def test_who_asked_may_be_gone_when_it_is_done(work: Callable[[], object], by_it
             return work()
 
         asking = asyncio.create_task(_outside_of_any_task(call))
-        await asyncio.sleep(0)
-        if not by_itself:
-            asking.cancel()
+        if not by_itself:  # after it has asked, and before it is answered
+            asyncio.get_running_loop().call_soon(asking.cancel)
         await passing(1)
         with contextlib.suppress(asyncio.CancelledError):
             await asking

@@ -12,10 +12,11 @@ from typing import Any
 import pytest
 
 import ravestate as rs
+from ravestate.board.answer import WhyNot
 from ravestate.board.description import describe
 from ravestate.board.gates import gates_of
 from ravestate.board.recorder import Gap
-from ravestate.board.why_not import MOST, WhyNot, why_not
+from ravestate.board.why_not import MOST, why_not
 from ravestate.board.wire import data_of, record_of
 from ravestate.engine.explain import GAVE_UP
 from ravestate.engine.trace import Born, GaveUp, Passed, Settled, Started

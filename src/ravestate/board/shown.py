@@ -94,7 +94,9 @@ def is_foreign(value: object, most: int = 2000) -> bool:
             size += len(piece)
             if size > most:
                 break
-    except Exception:  # foreign, or of foreign make
+    except (
+        Exception
+    ):  # JSON has no word for it, or its own code failed while it was looked through: foreign either way
         return True
     return False
 

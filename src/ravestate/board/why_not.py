@@ -8,43 +8,15 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any
 
+from ravestate.board.answer import FURTHEST, Missing, Moment, Raiser, Verdict, WhyNot
 from ravestate.board.description import ClauseView, Description, RuleView
 from ravestate.board.history import Attempt, History
 from ravestate.engine.explain import PASSED, how_ended, why_given_up
 from ravestate.engine.trace import GaveUp, Passed, Record, Settled, Waits
 
-__all__ = ["Missing", "Moment", "Raiser", "Verdict", "WhyNot", "why_not"]
-
-Verdict = Literal[
-    "fired",  # it did
-    "running",  # it does
-    "waiting",  # it is ready, and kept waiting
-    "outrun",  # it was ready, and another one answered
-    "resigned",
-    "failed",
-    "gated",  # a predicate on a slot was false
-    "young",  # its spikes were not old enough yet
-    "eliminated",  # others waited for it until its patience ran out
-    "withdrawn",  # the spike was wiped, superseded, or dropped
-    "lacked",  # a signal was missing
-    "passed",  # it hears the signal, but did not take the spike
-    "untouched",  # nothing of what it hears occurred
-    "retired",
-]
-"""How far a rule came."""
-
-FURTHEST: dict[str, int] = {
-    verdict: rank
-    for rank, verdict in enumerate(
-        (
-            "fired", "running", "waiting", "outrun", "failed", "resigned", "gated", "young", "eliminated", "withdrawn",
-            "lacked", "passed", "untouched", "retired",
-        )
-    )
-}  # fmt: skip
+__all__ = ["Opens", "why_not"]
 
 DEEPEST = 3
 """Causes of causes that are told."""
@@ -55,76 +27,6 @@ MOST = 200
 Opens = Callable[[str, int, int, Any], bool | None]
 """Whether a gate is open for a value of its slot: the rule, its clause and the gate by their numbers, the value; None
 where it cannot be told."""
-
-
-@dataclass(frozen=True, slots=True)
-class Raiser:
-    """A rule that might have raised a missing signal, and how that ended in this causal group.
-
-    Attributes:
-        outcome: Of its run; ``running``; or ``not run``.
-        words: The same in words.
-    """
-
-    rule: str
-    outcome: str
-    time: float | None
-    words: str
-
-
-@dataclass(frozen=True, slots=True)
-class Missing:
-    """A signal that the rule lacked, and who might have raised it."""
-
-    signal: str
-    words: str
-    raisers: tuple[Raiser, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class Moment:
-    """Something that befell the rule, for this cause; `rules` are the others that it is about."""
-
-    time: float
-    words: str
-    rules: tuple[str, ...] = ()
-
-
-@dataclass(frozen=True, slots=True)
-class WhyNot:
-    """The answer.
-
-    Attributes:
-        rule, spike, signal, time: What was asked; the time is when the spike was born (seconds).
-        verdict: How far the rule came, at best.
-        words: The reason, in a sentence or two.
-        at: When that was decided (seconds), if it is.
-        clause: By which clause (its number), if it took a spike.
-        missing: What it lacked, and who might have raised it.
-        moments: What befell it, in order; of more than 200 the first and the last, with one between them that says how
-            many are left out.
-        whole: Whether the trace reaches back to before the spike; otherwise something may have gone unseen.
-    """
-
-    rule: str
-    spike: int
-    signal: str
-    time: float
-    verdict: Verdict
-    words: str
-    at: float | None
-    clause: int | None
-    missing: tuple[Missing, ...]
-    moments: tuple[Moment, ...]
-    whole: bool
-
-    def __str__(self) -> str:
-        lines = [f"{self.rule}, for {self.signal} at {self.time:.3f} s: {self.words}"]
-        for missing in self.missing:
-            lines.append(f"  {missing.words}")
-            lines += [f"    {raiser.words}" for raiser in missing.raisers]
-        lines += [f"  {moment.time:.3f} s: {moment.words}" for moment in self.moments]
-        return "\n".join(lines)
 
 
 def why_not(

@@ -17,5 +17,5 @@ def said(exception: BaseException) -> str:
     """The exception's message, or, if that fails, what it is."""
     try:
         return str(exception)
-    except Exception:  # likewise
+    except Exception:  # any exception's own code may raise anything, and the failure must still be told
         return shown(exception)

@@ -6,6 +6,7 @@ import contextlib
 import gc
 import sys
 from collections.abc import Generator
+from dataclasses import dataclass
 
 __all__ = ["COLLECT", "SWITCH", "at_pace"]
 
@@ -17,23 +18,31 @@ COLLECT = (10_000, 10, 10)
 """New objects, and rounds, after which those are looked for that only refer to each other. Python's own (700, 10, 10) looks
 at everything that some hundred conversations hold every few seconds, and nobody is answered meanwhile."""
 
-_users = 0
-_before: tuple[float, tuple[int, int, int]] = (0.0, (0, 0, 0))
+
+@dataclass(slots=True)
+class _Pace:
+    """How many serve, and what was set before the first of them. The interpreter has one of each, whoever serves."""
+
+    users: int = 0
+    switch: float = 0.0
+    collect: tuple[int, int, int] = (0, 0, 0)
+
+
+_pace = _Pace()
 
 
 @contextlib.contextmanager
 def at_pace() -> Generator[None]:
     """Within, the interpreter is set for short answers to many. It is as before once the last has left."""
-    global _users, _before  # the interpreter has one of each, whoever serves
-    if not _users:
-        _before = sys.getswitchinterval(), gc.get_threshold()
+    if not _pace.users:
+        _pace.switch, _pace.collect = sys.getswitchinterval(), gc.get_threshold()
         sys.setswitchinterval(SWITCH)
         gc.set_threshold(*COLLECT)
-    _users += 1
+    _pace.users += 1
     try:
         yield
     finally:
-        _users -= 1
-        if not _users:
-            sys.setswitchinterval(_before[0])
-            gc.set_threshold(*_before[1])
+        _pace.users -= 1
+        if not _pace.users:
+            sys.setswitchinterval(_pace.switch)
+            gc.set_threshold(*_pace.collect)
