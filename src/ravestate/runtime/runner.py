@@ -6,23 +6,22 @@ import asyncio
 import contextlib
 import functools
 import logging
-import os
 import random
 import threading
 from collections import deque
-from collections.abc import Callable, Coroutine, Mapping
+from collections.abc import Callable, Mapping
 from time import perf_counter
 from typing import Any, cast
 
-from ravestate.declare.outcome import Resign, Retire
 from ravestate.declare.rule import Rule
 from ravestate.engine.activation import NEVER, Activation
 from ravestate.engine.effects import Cancel, Effect, Ended, Failed, Run, Spiked
 from ravestate.engine.engine import Engine
 from ravestate.engine.events import AddRule, Event, Finish
-from ravestate.engine.foreign import said, shown
-from ravestate.errors import EngineError, PlatformError, RavestateError, RuleError, RunEnded
+from ravestate.engine.foreign import said
+from ravestate.errors import EngineError, PlatformError, RavestateError, RunEnded
 from ravestate.runtime.clock import Clock
+from ravestate.runtime.ending import ending, short
 from ravestate.runtime.journal import Taken
 from ravestate.runtime.nest import Nest
 from ravestate.runtime.rule_context import RuleContext
@@ -163,7 +162,7 @@ class Runner:
             try:
                 self.receive(event)
             except Exception:  # nobody stands above us: the designer must see it all the same
-                log.exception("what another thread asked for was refused: %s", _short(event))
+                log.exception("what another thread asked for was refused: %s", short(event))
 
     # ------------------------------------------------------------------------------------ effects out
 
@@ -421,22 +420,9 @@ class Runner:
         cancelled = bool(ctx.told)
         ctx.ended = ctx.ended or "the function has returned"
         told = result if exception is None else exception
-        if told is None or (cancelled and isinstance(told, asyncio.CancelledError)):
-            event = Finish(run, "done")
-        elif isinstance(told, Resign):
-            event = Finish(run, "resigned", told.reason)
-        elif isinstance(told, Retire):
-            event = Finish(run, "retired", told.reason)
-        else:
-            failure = told if exception is not None else _nonsense(rule, told)
-            if isinstance(told, SystemExit):
-                failure = RuleError(
-                    f"rule {rule.name} ({rule.origin}) called sys.exit: a rule does not end the process; write ctx.stop() "
-                    "to end the agent"
-                )
-                failure.__cause__ = told
-            event = Finish(run, "failed", _short(failure) + _place(rule, failure), failure)
-        self.receive(event)
+        if cancelled and isinstance(told, asyncio.CancelledError):
+            told = None
+        self.receive(ending(run, rule, told, exception is not None))
 
     def _cancel(self, effect: Cancel) -> None:
         ctx = self._contexts.get(effect.run)
@@ -590,32 +576,3 @@ def _is_async(function: Callable[..., Any]) -> bool:
     return inspect.iscoroutinefunction(function) or inspect.iscoroutinefunction(
         vars(type(function)).get("__call__")  # an object with an async call
     )
-
-
-def _nonsense(rule: Rule[Any, Any], result: Any) -> RuleError:
-    if isinstance(result, Coroutine):
-        cast("Coroutine[Any, Any, Any]", result).close()
-        return RuleError(
-            f"rule {rule.name} ({rule.origin}) is a plain function that returned a coroutine: write async def, also for "
-            "what a decorator puts around it"
-        )
-    return RuleError(
-        f"rule {rule.name} ({rule.origin}) returned {_short(result)}; a rule returns nothing, rs.Resign(reason) or "
-        "rs.Retire(); write its result to a slot"
-    )
-
-
-def _place(rule: Rule[Any, Any], failure: BaseException) -> str:
-    """Where in the rule's own file it failed, e.g. `` (guide.py:42)``; nothing if that cannot be told."""
-    file = rule.origin.rpartition(":")[0]
-    line, step = 0, failure.__traceback__
-    while step is not None:
-        if step.tb_frame.f_code.co_filename == file:
-            line = step.tb_lineno
-        step = step.tb_next
-    return f" ({os.path.basename(file)}:{line})" if line else ""
-
-
-def _short(value: Any) -> str:
-    text = shown(value)
-    return text if len(text) <= 60 else text[:57] + "..."
