@@ -150,7 +150,7 @@ async def test_why_not_is_answered_with_the_right_reason() -> None:
         found = await look.answer("why")
     assert found["verdict"] == "untouched"
     assert found["missing"][0]["raisers"][0]["words"].startswith(
-        "gossip:classify was done without raising it"
+        "gossip:classify finished without raising it"
     )
     assert found["whole"] is True
 
