@@ -13,17 +13,17 @@ from .protocol import (
     CLIENT,
     VERSION,
     Bye,
+    ClientFrame,
     Ended,
     Error,
-    Frame,
     Hello,
-    Message,
     Piece,
     Ping,
     Pong,
     ProtocolError,
     Renamed,
     Say,
+    ServerFrame,
     Typing,
     Welcome,
     Writing,
@@ -127,7 +127,7 @@ class Connection:
                 self._reply(Error(error.code, str(error), error.id))
             await asyncio.sleep(others.wait(now()))
 
-    def _take(self, frame: Frame, session: Session) -> None:
+    def _take(self, frame: ClientFrame, session: Session) -> None:
         if isinstance(frame, Say):
             if not session.hear(frame.id, frame.text):
                 raise ProtocolError("over", "the conversation is ending: nothing more is heard", frame.id)
@@ -138,7 +138,7 @@ class Connection:
         else:
             raise ProtocolError("malformed", "hello is said once, at the beginning")
 
-    def _reply(self, frame: Frame) -> None:
+    def _reply(self, frame: ServerFrame) -> None:
         self._channel.reply(serialise(frame))
 
     # ------------------------------------------------------------------------------------ to the client
@@ -177,7 +177,7 @@ class Connection:
         """What the agent is called on the page."""
         return session.agent if self._title is None else self._title
 
-    async def _send(self, frame: Frame | Message) -> None:
+    async def _send(self, frame: ServerFrame) -> None:
         await self._channel.send(serialise(frame))
 
 
