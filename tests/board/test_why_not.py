@@ -13,8 +13,8 @@ import pytest
 import ravestate as rs
 from ravestate.board.answer import WhyNot
 from ravestate.board.description import describe
-from ravestate.board.gates import gates_of
 from ravestate.board.recorder import Gap
+from ravestate.board.source import gates_of
 from ravestate.board.why_not import MOST, why_not
 from ravestate.board.wire import data_of, record_of
 from ravestate.engine.reasons import LossReason, PassReason, Verdict
@@ -488,7 +488,10 @@ def test_the_signal_of_another_cause_is_told_apart(stage: Stage) -> None:
         sim.put(stage.input, "hello")
         found = ask(sim, "qa", number=1)
     assert found.verdict == "untouched"
-    assert found.missing[0].words == "demo:question did not occur for this cause (it did for another, at 0.000 s)"
+    assert (
+        found.missing[0].words
+        == "demo:question did not occur for this cause (it did for another, at 0.000 s)"
+    )
     assert found.missing[0].raisers[0].words == (
         "demo:classify did not run: it did not take demo:input:changed: its payload did not match the predicate"
     )
@@ -513,8 +516,7 @@ def test_causes_are_followed_back_and_circles_end(stage: Stage) -> None:
     assert found.verdict == "lacked"
     assert [missing.signal for missing in found.missing] == ["demo:one", "demo:two"]
     assert (
-        "demo:to_one did not run: it took demo:touch but lacked demo:two"
-        in found.missing[0].raisers[0].words
+        "demo:to_one did not run: it took demo:touch but lacked demo:two" in found.missing[0].raisers[0].words
     )
 
 
