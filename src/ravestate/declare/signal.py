@@ -58,12 +58,5 @@ class Signal(Condition, Generic[T]):
         """Constrain the signal: see `Constraint.where`."""
         return Constraint(self).where(predicate)
 
-    def __eq__(self, other: object) -> bool:
-        # What a policy reports may be compared with signals in hand or with their qualified names.
-        return self is other or (isinstance(other, str) and other == self.name)
-
-    def __hash__(self) -> int:
-        return hash(self.name)
-
     def __repr__(self) -> str:
         return self.name
