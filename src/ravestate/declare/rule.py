@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import functools
+import inspect
 from collections.abc import Callable
-from typing import Any, Generic, ParamSpec, TypeVar
+from typing import Any, Generic, ParamSpec, TypeVar, cast
 
 from ravestate.declare.condition import Condition
 from ravestate.declare.settings import Number
@@ -22,6 +24,7 @@ class Rule(Generic[P, R]):
     Attributes:
         name: The qualified name, ``module:function``.
         function: The function: ``async def`` runs on the loop, a plain one in a worker thread.
+        is_async: Whether a call of the function makes a coroutine.
         when: The condition.
         reads: The slots whose values the function may read.
         writes: The slots that the function may write (and read); they decide whom it excludes (L10).
@@ -43,6 +46,7 @@ class Rule(Generic[P, R]):
         "detached",
         "emits",
         "function",
+        "is_async",
         "name",
         "origin",
         "patience",
@@ -74,6 +78,7 @@ class Rule(Generic[P, R]):
     ) -> None:
         self.name = name
         self.function = function
+        self.is_async = _is_async(function)
         self.when = when
         self.reads = reads
         self.writes = writes
@@ -94,3 +99,11 @@ class Rule(Generic[P, R]):
 
     def __repr__(self) -> str:
         return f"<rule {self.name}>"
+
+
+def _is_async(function: Callable[..., Any]) -> bool:
+    while isinstance(function, functools.partial):
+        function = cast("functools.partial[Any]", function).func
+    return inspect.iscoroutinefunction(function) or inspect.iscoroutinefunction(
+        getattr(type(function), "__call__", None)  # noqa: B004  # an object with an async call
+    )

@@ -19,8 +19,6 @@ if TYPE_CHECKING:
 
 __all__ = ["NO_INFORMATION", "Clause", "Need", "RulePlan", "SignalPlan", "SlotPlan"]
 
-COROUTINE = 0x80  # inspect.CO_COROUTINE, without importing inspect
-
 NO_INFORMATION = 1e-9
 """Nats at which a clause without information (U = 0) competes, so that its weight and cooldown still count."""
 
@@ -211,8 +209,7 @@ class RulePlan:
         self.name = rule.name
         self.detached = rule.detached
         self.background = rule.background
-        code = getattr(rule.function, "__code__", None)
-        self.interruptible = code is None or bool(code.co_flags & COROUTINE)  # a thread cannot be stopped
+        self.interruptible = rule.is_async  # a thread cannot be stopped
         self.weight = 1.0
         self.cooldown = 0.0
         self.patience: float | None = None
