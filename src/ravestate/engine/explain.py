@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from ravestate.engine.activation import GATHERING, NEVER, WAITING, Activation
 from ravestate.engine.reasons import LossReason, Outcome, PassReason, StopReason
 from ravestate.engine.trace import Born, GaveUp, Held, Passed, Pressed, Record, Settled, Started, Told, Waits
-from ravestate.policy.plan import Clause, RulePlan
+from ravestate.policy.model import Clause, RulePlan
 
 if TYPE_CHECKING:
     from ravestate.engine.engine import Engine
@@ -133,7 +133,7 @@ def _clause(engine: Engine, clause: Clause) -> ClauseState:
     return ClauseState(
         clause.source,
         tuple(signal.name for signal in clause.signals),
-        tuple(tuple(sorted(signal.name for signal in pathway)) for pathway in clause.pathways),
+        tuple(tuple(sorted(signal.name for signal in pathway)) for pathway in engine.policy.pathways.of_clause(clause)),
         clause.utility,
         engine.effective(clause),
         tuple((str(guard), engine.opens(slot, guard)) for slot, guard in clause.guards),

@@ -3,7 +3,7 @@
 import functools
 
 import ravestate as rs
-from ravestate.policy.plan import RulePlan
+from ravestate.policy.model import RulePlan
 
 demo = rs.Module("demo")
 go, seen = demo.signal("go"), demo.signal("seen", keep="latest", limit=4)
@@ -41,18 +41,18 @@ def test_a_signal_knows_how_it_is_kept_and_whose_it_is() -> None:
 
 
 def test_needs_have_bits_and_hang_on_their_signals() -> None:
-    first, second = policy.clauses("demo:work")
+    first, second = policy.rule_plan("demo:work").clauses
     assert [need.bit for need in first.needs] == [1, 2]
     assert (first.all_bits, first.firm_bits, first.asks_detached, first.simple) == (3, 1, True, False)
     assert (second.all_bits, second.firm_bits, second.asks_detached, second.simple) == (1, 1, False, False)
     assert policy.signal_of["demo:go"].listeners == (
         first.needs[0],
-        policy.clauses("demo:thread")[0].needs[0],
+        policy.rule_plan("demo:thread").clauses[0].needs[0],
     )
     assert [str(need.clause) for need in policy.signal_of["demo:go"].watchers] == ["demo:work[0]"]
     assert policy.signal_of["demo:seen"].retain == 5.0
     assert [str(clause) for clause in (first, second)] == ["demo:work[0]", "demo:work[1]"]
-    assert policy.clauses("demo:thread")[0].simple
+    assert policy.rule_plan("demo:thread").clauses[0].simple
 
 
 def test_a_rule_knows_what_it_may_do() -> None:
@@ -67,5 +67,6 @@ def test_a_rule_knows_what_it_may_do() -> None:
 def test_only_what_runs_on_the_loop_can_be_interrupted() -> None:
     assert RulePlan(0, work).interruptible
     assert not RulePlan(0, thread).interruptible
-    partial = rs.Module("m").rule(when=go, name="partial")(functools.partial(work.function))
-    assert RulePlan(0, partial).interruptible
+    for function in (work.function, thread.function):
+        partial = rs.Module("m").rule(when=go, name="partial")(functools.partial(function))
+        assert RulePlan(0, partial).interruptible == (function is work.function)

@@ -1,9 +1,9 @@
 """A task for a coroutine that may turn out not to need one.
 
-Making a task and having the loop switch to it costs more than most rules take. So the first step of a
-coroutine is driven by hand, while a spare task counts as the current one (`asyncio.current_task`,
-`asyncio.timeout`, context variables and the like work as they should). If the coroutine ends in its first step,
-the spare is kept for the next; if it suspends, the spare adopts it.
+Making a task and having the loop switch to it costs more than most rules take. So the first step of a coroutine is
+driven by hand, while a spare task counts as the current one. `asyncio.current_task`, `asyncio.timeout` and context
+variables work as they should. If the coroutine ends in its first step, the spare is kept for the next one; if it
+suspends, the spare adopts it.
 """
 
 from __future__ import annotations
@@ -11,29 +11,31 @@ from __future__ import annotations
 import asyncio
 import contextvars
 import types
-from collections.abc import Callable, Coroutine, Generator
-from time import perf_counter
+from collections.abc import Coroutine, Generator
 from typing import Any
 
-__all__ = ["Nest"]
+from ravestate.declare.rule import Rule
+from ravestate.runtime.blocking import StepTimer
+
+__all__ = ["EagerTask"]
 
 
-class Nest:
-    """One spare task, and what it is to drive once it has adopted a coroutine.
+class EagerTask:
+    """A spare task, and the coroutine of a rule once the task has adopted one.
 
     Args:
         loop: The loop of the task.
-        blocked: Called with the owner of the coroutine and the seconds that a single step of it took.
+        timer: Measures each step after the first; the caller measures the first one.
     """
 
     __slots__ = (
-        "_abandoned", "_blocked", "_clean", "_context", "_coroutine", "_first", "_loop", "_owner", "_wake", "task",
+        "_abandoned", "_clean", "_context", "_coroutine", "_first", "_loop", "_rule", "_timer", "_wake", "task",
     )  # fmt: skip
 
-    def __init__(self, loop: asyncio.AbstractEventLoop, blocked: Callable[[Any, float], None]) -> None:
+    def __init__(self, loop: asyncio.AbstractEventLoop, timer: StepTimer) -> None:
         self._loop = loop
-        self._blocked = blocked
-        self._owner: Any = None
+        self._timer = timer
+        self._rule: Rule[Any, Any] | None = None
         self._coroutine: Coroutine[Any, Any, Any] | None = None
         self._first: Any = None
         self._abandoned = False
@@ -41,17 +43,17 @@ class Nest:
         self._context = contextvars.copy_context()
         self._clean = self._context.copy()
         host = self._main()
-        host.send(None)  # so that the host meets a cancellation that comes before the task's first step
+        host.send(None)  # now the host meets a cancellation that comes before the task's first step
         self.task: asyncio.Task[Any] = loop.create_task(host, context=self._context)
 
-    def first_step(self, coroutine: Coroutine[Any, Any, Any], owner: Any) -> None:
+    def first_step(self, coroutine: Coroutine[Any, Any, Any], rule: Rule[Any, Any]) -> None:
         """Drive a coroutine to its end or to its first suspension, where the task adopts it.
 
         Raises:
-            StopIteration: It has ended; the nest is free for another, unless it is `spoilt`.
-            BaseException: What it raised; likewise.
+            StopIteration: It has ended. The spare is free for another coroutine, unless it is `spoilt`.
+            BaseException: The coroutine has failed; likewise.
         """
-        around = asyncio.current_task(self._loop)  # who steps a paused context by hand may be a task
+        around = asyncio.current_task(self._loop)  # a task may step a paused context by hand
         if around is not None:
             asyncio.tasks._leave_task(self._loop, around)  # pyright: ignore[reportPrivateUsage]
         asyncio.tasks._enter_task(self._loop, self.task)  # pyright: ignore[reportPrivateUsage]  # documented for task implementations
@@ -62,13 +64,13 @@ class Nest:
             if around is not None:
                 asyncio.tasks._enter_task(self._loop, around)  # pyright: ignore[reportPrivateUsage]
         self._coroutine = coroutine
-        self._owner = owner
+        self._rule = rule
         if not self._wake.done():
             self._wake.set_result(None)
 
     @property
     def spoilt(self) -> bool:
-        """Whether the last coroutine has left traces: it cancelled its task, or set a context variable."""
+        """Whether the last coroutine has cancelled its task, or has set a context variable."""
         return self.task.cancelling() > 0 or self._context != self._clean
 
     def close(self) -> None:
@@ -77,7 +79,7 @@ class Nest:
             self.task.cancel()
 
     def abandon(self) -> None:
-        """End the task although its coroutine refuses to: it is closed where it stands."""
+        """End the task although its coroutine refuses to end: close the coroutine where it is."""
         self._abandoned = True
         self.task.cancel()
 
@@ -95,11 +97,12 @@ class Nest:
             error = cancelled
         if self._coroutine is None:
             return None
-        coroutine = self._coroutine
+        coroutine, rule = self._coroutine, self._rule
+        assert rule is not None  # set together with the coroutine
         pending = self._first
         self._first = None
         if error is not None and pending is not None and pending.cancel():
-            error = None  # it comes back from what was waited for, as in any task
+            error = None  # it comes back from the awaited future, as in any task
         while True:
             value = None
             if error is None:
@@ -113,7 +116,7 @@ class Nest:
             if self._abandoned:
                 coroutine.close()
                 return None
-            began = perf_counter()
+            began = self._timer.begin()
             try:
                 if error is None:
                     pending = coroutine.send(value)
@@ -125,4 +128,4 @@ class Nest:
             except SystemExit as exit:  # would end the loop, and all other rules with it
                 return exit
             finally:
-                self._blocked(self._owner, perf_counter() - began)
+                self._timer.end(rule, began)

@@ -4,24 +4,27 @@ import asyncio
 import contextvars
 import threading
 from collections.abc import AsyncIterator, Coroutine
-from typing import Any
+from typing import Any, ClassVar
 
 import pytest
 
 import ravestate as rs
-from ravestate.runtime import nest as nest_file
-from ravestate.runtime.nest import Nest
+from ravestate.runtime.blocking import StepTimer
+from ravestate.runtime.eager_task import EagerTask
 from runtime.on_loop import on_loop, turns
 
 shade = contextvars.ContextVar("shade", default="none")
 
 
-def make(blocked: list[tuple[Any, float]] | None = None) -> Nest:
-    noted: list[tuple[Any, float]] = [] if blocked is None else blocked
-    return Nest(asyncio.get_running_loop(), lambda owner, seconds: noted.append((owner, seconds)))
+@rs.Module("m").rule(when=rs.startup)
+async def rule(ctx: rs.RuleContext) -> None: ...
 
 
-async def step(nest: Nest, coroutine: Coroutine[Any, Any, Any]) -> bool:
+def make(timer: StepTimer | None = None) -> EagerTask:
+    return EagerTask(asyncio.get_running_loop(), timer or StepTimer())
+
+
+async def step(eager: EagerTask, coroutine: Coroutine[Any, Any, Any]) -> bool:
     """Take the first step as the runner does: from a callback of the loop, where no task is current.
 
     Returns whether the coroutine was adopted.
@@ -30,7 +33,7 @@ async def step(nest: Nest, coroutine: Coroutine[Any, Any, Any]) -> bool:
 
     def take() -> None:
         try:
-            nest.first_step(coroutine, "owner")
+            eager.first_step(coroutine, rule)
         except StopIteration:
             done.set_result(False)
         except BaseException as error:
@@ -42,10 +45,10 @@ async def step(nest: Nest, coroutine: Coroutine[Any, Any, Any]) -> bool:
     return await done
 
 
-async def closed(nest: Nest) -> None:
-    nest.close()
+async def closed(eager: EagerTask) -> None:
+    eager.close()
     await turns()
-    assert nest.task.done()
+    assert eager.task.done()
 
 
 # ---------------------------------------------------------------------------------------- what does not wait
@@ -53,29 +56,29 @@ async def closed(nest: Nest) -> None:
 
 @on_loop
 async def test_a_coroutine_that_does_not_wait_leaves_the_nest_free() -> None:
-    nest = make()
+    eager = make()
     ran: list[int] = []
 
     async def work(number: int) -> None:
         ran.append(number)
 
     for number in range(3):
-        assert not await step(nest, work(number))
-    assert ran == [0, 1, 2] and not nest.task.done() and not nest.spoilt
-    await closed(nest)
+        assert not await step(eager, work(number))
+    assert ran == [0, 1, 2] and not eager.task.done() and not eager.spoilt
+    await closed(eager)
 
 
 @on_loop
 async def test_what_it_raises_comes_at_once() -> None:
-    nest = make()
+    eager = make()
 
     async def fail() -> None:
         raise KeyError("x")
 
     with pytest.raises(KeyError):
-        await step(nest, fail())
-    assert not nest.spoilt
-    await closed(nest)
+        await step(eager, fail())
+    assert not eager.spoilt
+    await closed(eager)
 
 
 def counted_tasks() -> list[str]:
@@ -110,7 +113,7 @@ async def test_rules_that_do_not_wait_share_one_spare_task() -> None:
         await waiting
         await context.quiet()
         asyncio.get_running_loop().set_task_factory(None)
-    assert made == ["Nest._main"]
+    assert made == ["EagerTask._main"]
 
 
 # ---------------------------------------------------------------------------------------- what waits
@@ -118,7 +121,7 @@ async def test_rules_that_do_not_wait_share_one_spare_task() -> None:
 
 @on_loop
 async def test_a_coroutine_that_waits_is_adopted_and_goes_on() -> None:
-    nest = make()
+    eager = make()
     seen: list[object] = []
 
     async def work() -> str:
@@ -130,27 +133,27 @@ async def test_a_coroutine_that_waits_is_adopted_and_goes_on() -> None:
         seen.append(await future)
         return "result"
 
-    assert await step(nest, work())
-    assert await nest.task == "result"
-    assert seen == [nest.task, nest.task, 7]
+    assert await step(eager, work())
+    assert await eager.task == "result"
+    assert seen == [eager.task, eager.task, 7]
 
 
 @on_loop
 async def test_an_exception_after_waiting_is_the_task_s() -> None:
-    nest = make()
+    eager = make()
 
     async def fail() -> None:
         await asyncio.sleep(0)
         raise KeyError("x")
 
-    await step(nest, fail())
+    await step(eager, fail())
     with pytest.raises(KeyError):
-        await nest.task
+        await eager.task
 
 
 @on_loop
 async def test_what_it_waits_for_may_fail() -> None:
-    nest = make()
+    eager = make()
     future: asyncio.Future[None] = asyncio.get_running_loop().create_future()
 
     async def recover() -> str:
@@ -160,9 +163,9 @@ async def test_what_it_waits_for_may_fail() -> None:
             return str(error)
         return "nothing"
 
-    await step(nest, recover())
+    await step(eager, recover())
     future.set_exception(ValueError("broken"))
-    assert await nest.task == "broken"
+    assert await eager.task == "broken"
 
 
 @on_loop
@@ -223,11 +226,11 @@ async def test_tools_of_asyncio_work_from_the_first_step() -> None:
         with_timeout, with_timeout_that_is_not_needed, with_timeout_that_is_over, with_group, with_group_that_fails,
         with_thread, with_gather, with_wait_for, with_shield,
     ):  # fmt: skip
-        nest = make()
-        if await step(nest, work()):
-            assert await nest.task == 1, work.__name__
+        eager = make()
+        if await step(eager, work()):
+            assert await eager.task == 1, work.__name__
         else:
-            await closed(nest)
+            await closed(eager)
 
 
 # ---------------------------------------------------------------------------------------- context variables
@@ -235,7 +238,7 @@ async def test_tools_of_asyncio_work_from_the_first_step() -> None:
 
 @on_loop
 async def test_context_variables_live_as_long_as_the_coroutine() -> None:
-    nest = make()
+    eager = make()
     seen: list[str] = []
 
     async def paint() -> None:
@@ -245,8 +248,8 @@ async def test_context_variables_live_as_long_as_the_coroutine() -> None:
         shade.reset(token)
         seen.append(shade.get())
 
-    await step(nest, paint())
-    await nest.task
+    await step(eager, paint())
+    await eager.task
     assert seen == ["red", "none"] and shade.get() == "none"
 
 
@@ -273,7 +276,7 @@ async def test_a_context_variable_does_not_reach_the_next_rule() -> None:
 @pytest.mark.parametrize("when", ["before adoption", "after adoption"])
 @on_loop
 async def test_cancelling_lets_it_clean_up(when: str) -> None:
-    nest = make()
+    eager = make()
     told: list[str] = []
 
     async def work() -> None:
@@ -287,21 +290,21 @@ async def test_cancelling_lets_it_clean_up(when: str) -> None:
             told.append("clean")
 
     if when == "before adoption":  # of which the task hears when it takes its first step
-        asyncio.get_running_loop().call_soon(lambda: (nest.first_step(work(), "owner"), nest.task.cancel()))
+        asyncio.get_running_loop().call_soon(lambda: (eager.first_step(work(), rule), eager.task.cancel()))
         await asyncio.sleep(0)
     else:
-        await step(nest, work())
+        await step(eager, work())
         await turns()
-        nest.task.cancel()
+        eager.task.cancel()
     with pytest.raises(asyncio.CancelledError):
-        await nest.task
+        await eager.task
     assert told == ["cancelled", "clean"]
 
 
 @pytest.mark.parametrize("fresh", [True, False])
 @on_loop
 async def test_cancelling_reaches_what_it_waits_for(fresh: bool) -> None:
-    nest = make()
+    eager = make()
     if not fresh:
         await turns()
     told: list[str] = []
@@ -315,10 +318,10 @@ async def test_cancelling_reaches_what_it_waits_for(fresh: bool) -> None:
     async def outer() -> None:
         await asyncio.gather(inner(), inner())
 
-    await step(nest, outer())
-    nest.task.cancel()
+    await step(eager, outer())
+    eager.task.cancel()
     with pytest.raises(asyncio.CancelledError):
-        await nest.task
+        await eager.task
     await turns()
     assert told in ([], ["inner", "inner"])  # those that had begun
     assert len(asyncio.all_tasks()) == 1
@@ -326,7 +329,7 @@ async def test_cancelling_reaches_what_it_waits_for(fresh: bool) -> None:
 
 @on_loop
 async def test_cancelling_may_be_declined() -> None:
-    nest = make()
+    eager = make()
 
     async def stubborn() -> str:
         try:
@@ -335,14 +338,14 @@ async def test_cancelling_may_be_declined() -> None:
             return "declined"
         return ""
 
-    await step(nest, stubborn())
-    nest.task.cancel()
-    assert await nest.task == "declined"
+    await step(eager, stubborn())
+    eager.task.cancel()
+    assert await eager.task == "declined"
 
 
 @on_loop
 async def test_cancelling_itself_in_the_first_step_strikes_where_it_waits() -> None:
-    nest = make()
+    eager = make()
     told: list[str] = []
 
     async def work() -> None:
@@ -356,25 +359,25 @@ async def test_cancelling_itself_in_the_first_step_strikes_where_it_waits() -> N
             told.append("cancelled")
             raise
 
-    await step(nest, work())
+    await step(eager, work())
     with pytest.raises(asyncio.CancelledError):
-        await nest.task
+        await eager.task
     assert told == ["went on", "cancelled"]
 
 
 @on_loop
 async def test_a_nest_whose_task_was_cancelled_is_spoilt() -> None:
-    nest = make()
+    eager = make()
 
     async def work() -> None:
         task = asyncio.current_task()
         assert task is not None
         task.cancel()
 
-    assert not await step(nest, work())
-    assert nest.spoilt
+    assert not await step(eager, work())
+    assert eager.spoilt
     await turns()
-    assert nest.task.cancelled() or nest.task.done()
+    assert eager.task.cancelled() or eager.task.done()
 
 
 @on_loop
@@ -403,7 +406,7 @@ async def test_a_rule_that_cancels_itself_spoils_no_other_rule() -> None:
 
 @on_loop
 async def test_what_refuses_to_end_can_be_abandoned() -> None:
-    nest = make()
+    eager = make()
     told: list[str] = []
 
     async def stubborn() -> None:
@@ -416,28 +419,28 @@ async def test_what_refuses_to_end_can_be_abandoned() -> None:
         finally:
             told.append("closed")
 
-    await step(nest, stubborn())
-    nest.task.cancel()
+    await step(eager, stubborn())
+    eager.task.cancel()
     await turns()
-    assert told == ["no"] and not nest.task.done()
-    nest.abandon()
+    assert told == ["no"] and not eager.task.done()
+    eager.abandon()
     await turns()
-    assert told == ["no", "closed"] and nest.task.done()
+    assert told == ["no", "closed"] and eager.task.done()
 
 
 @on_loop
 async def test_closing_ends_a_spare_task_and_no_other() -> None:
     await closed(make())
-    nest = make()
+    eager = make()
     future: asyncio.Future[int] = asyncio.get_running_loop().create_future()
 
     async def wait() -> int:
         return await future
 
-    await step(nest, wait())
-    nest.close()
+    await step(eager, wait())
+    eager.close()
     future.set_result(3)
-    assert await nest.task == 3
+    assert await eager.task == 3
 
 
 # ---------------------------------------------------------------------------------------- the rest
@@ -445,37 +448,44 @@ async def test_closing_ends_a_spare_task_and_no_other() -> None:
 
 @on_loop
 async def test_sys_exit_is_handed_over_and_does_not_end_the_loop() -> None:
-    nest = make()
+    eager = make()
 
     async def leave() -> None:
         await asyncio.sleep(0)
         raise SystemExit(3)
 
-    await step(nest, leave())
-    assert isinstance(await nest.task, SystemExit)
+    await step(eager, leave())
+    assert isinstance(await eager.task, SystemExit)
 
 
 @on_loop
-async def test_each_step_is_measured(monkeypatch: pytest.MonkeyPatch) -> None:
-    clock = [0.0]
-    monkeypatch.setattr(nest_file, "perf_counter", lambda: clock[0])
-    steps: list[tuple[Any, float]] = []
-    nest = make(steps)
+async def test_each_step_after_the_first_is_measured() -> None:
+    class Steps(StepTimer):
+        """A timer that counts."""
+
+        steps: ClassVar[list[str]] = []
+
+        def begin(self) -> float:
+            self.steps.append("begin")
+            return 0.0
+
+        def end(self, rule: rs.Rule[Any, Any], began: float) -> None:
+            self.steps.append("end")
+
+    eager = make(Steps())
 
     async def work() -> None:
-        await asyncio.sleep(0)
-        clock[0] += 2
-        await asyncio.sleep(0)
-        clock[0] += 3
+        for _ in range(2):
+            await asyncio.sleep(0)
 
-    await step(nest, work())
-    await nest.task
-    assert steps == [("owner", 2.0), ("owner", 3.0)]
+    await step(eager, work())
+    await eager.task
+    assert Steps.steps == ["begin", "end"] * 2
 
 
 @on_loop
 async def test_a_task_that_is_thrown_away_closes_its_coroutine() -> None:
-    nest = make()
+    eager = make()
     told: list[str] = []
 
     async def work() -> None:
@@ -484,9 +494,9 @@ async def test_a_task_that_is_thrown_away_closes_its_coroutine() -> None:
         finally:
             told.append("closed")
 
-    await step(nest, work())
+    await step(eager, work())
     await turns()
-    nest.task.get_coro().close()
+    eager.task.get_coro().close()
     assert told == ["closed"]
-    nest.task.cancel()
+    eager.task.cancel()
     await turns()
