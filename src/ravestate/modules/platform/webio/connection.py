@@ -33,7 +33,7 @@ from .protocol import (
 from .session import Ending, Session
 
 if TYPE_CHECKING:
-    from .gate import Gate
+    from .access import Access
     from .sessions import Sessions
 
 __all__ = ["Connection"]
@@ -54,7 +54,7 @@ class Connection:
     Args:
         socket: Not accepted yet.
         sessions: The conversations.
-        gate: Knows the token.
+        access: Knows the token.
         title: What the agent is called; None: what it calls itself.
         inside: Where the page may look inside of the agent, e.g. ``board/``; None: nowhere.
     """
@@ -63,13 +63,13 @@ class Connection:
         self,
         socket: WebSocket,
         sessions: Sessions,
-        gate: Gate,
+        access: Access,
         title: str | None = None,
         inside: str | None = None,
     ) -> None:
         self._socket = socket
         self._sessions = sessions
-        self._gate = gate
+        self._access = access
         self._title = title
         self._inside = inside
         self._channel = Channel(socket, REPLIES)
@@ -105,7 +105,7 @@ class Connection:
         if not isinstance(frame, Hello):
             raise ProtocolError("malformed", f"begin with {HELLO}")
         bearer = self._socket.headers.get("authorization", "").removeprefix("Bearer ")
-        await self._gate.check_token(frame.token or bearer)
+        await self._access.check_token(frame.token or bearer)
         return frame
 
     # ------------------------------------------------------------------------------------ from the client

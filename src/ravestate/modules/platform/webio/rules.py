@@ -5,7 +5,7 @@ from __future__ import annotations
 import ravestate as rs
 from ravestate.modules import interloc, rawio
 
-from . import module, page
+from .names import module, page
 
 SLOW = 0.3
 """Seconds that an answer may take before the page shows that it is being made."""

@@ -15,8 +15,8 @@ from ravestate.errors import RavestateError
 from ravestate.modules import interloc, rawio
 from ravestate.modules._text import printable, without_controls
 
-from . import page
 from .history import History
+from .names import page
 from .protocol import LONGEST_NAME, name_of
 
 if TYPE_CHECKING:
