@@ -74,10 +74,7 @@ def routes(
 
     async def inspect(socket: WebSocket) -> None:
         state = socket.app.state
-from ravestate.board.recordings import Recordings
-from ravestate.board.trace_file import Recording, read_apart
-from ravestate.modules.platform.webio.access import PAUSE
-from ravestate.modules.platform.webio.application import AccessMiddleware
+        await Inspector(socket, state.access, state.sessions, known, recordings, title).run()
 
     async def receive(request: Request) -> Response:
         bearer = request.headers.get("authorization", "").removeprefix("Bearer ")
