@@ -481,14 +481,19 @@ class Runner:
 
     # ------------------------------------------------------------------------------------ quiet, and the end
 
-    def is_quiet(self) -> bool:
-        """Whether no rule of the foreground runs or is kept waiting."""
+    def is_quiet(self, slot: str | None = None) -> bool:
+        """Return whether no foreground rule runs or waits; with a slot, no such rule that may lead to a write of it."""
         engine = self.engine
-        return all(a.clause.rule.background for a in (*engine.waiting, *engine.running.values()))
+        alive = [a.clause.rule for a in (*engine.waiting, *engine.running.values())]
+        if slot is not None and alive:
+            policy = engine.policy
+            leading = policy.causes.ancestors(policy.slot_of[slot].signals[0].index)
+            alive = [rule for rule in alive if rule.index in leading]
+        return all(rule.background for rule in alive)
 
-    async def quiet(self) -> None:
+    async def quiet(self, slot: str | None = None) -> None:
         """Wait for `is_quiet`."""
-        await self.until(self.is_quiet)
+        await self.until(lambda: self.is_quiet(slot))
 
     async def until(self, reached: Callable[[], bool]) -> None:
         """Wait until all effects are performed and something is reached, which only effects and ends of runs bring."""
