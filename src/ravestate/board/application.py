@@ -16,8 +16,8 @@ from ravestate.board.inspector import Inspector
 from ravestate.board.recorder import Recorders
 from ravestate.board.shelf import Shelf
 from ravestate.board.trace_file import Recording, read_trace
-from ravestate.modules.platform.webio.application import Guard
-from ravestate.modules.platform.webio.gate import PAUSE
+from ravestate.modules.platform.webio.access import PAUSE
+from ravestate.modules.platform.webio.application import AccessMiddleware
 from ravestate.modules.platform.webio.pages import Pages
 from ravestate.runtime.agent import Agent
 from ravestate.runtime.context import Context
@@ -75,11 +75,11 @@ def routes(
 
     async def inspect(socket: WebSocket) -> None:
         state = socket.app.state
-        await Inspector(socket, state.gate, state.sessions, known, shelf, title).run()
+        await Inspector(socket, state.access, state.sessions, known, shelf, title).run()
 
     async def receive(request: Request) -> Response:
         bearer = request.headers.get("authorization", "").removeprefix("Bearer ")
-        if not request.app.state.gate.admits(bearer):
+        if not request.app.state.access.admits(bearer):
             await asyncio.sleep(PAUSE)
             return PlainTextResponse("the token is wrong, or missing", 401)
         if receiving.locked():
@@ -124,6 +124,6 @@ def routes(
                 Route("/recordings", receive, methods=["POST"]),
                 Mount("/", Pages(PAGE)),
             ],
-            middleware=[Middleware(Guard, inside=True)],
+            middleware=[Middleware(AccessMiddleware, inside=True)],
         ),
     ]

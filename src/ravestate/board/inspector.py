@@ -23,7 +23,7 @@ from ravestate.modules.platform.webio.channel import Channel
 from ravestate.modules.platform.webio.protocol import ProtocolError
 
 if TYPE_CHECKING:
-    from ravestate.modules.platform.webio.gate import Gate
+    from ravestate.modules.platform.webio.access import Access
     from ravestate.modules.platform.webio.session import Session
     from ravestate.modules.platform.webio.sessions import Sessions
 
@@ -80,7 +80,7 @@ class Inspector:
     def __init__(
         self,
         socket: WebSocket,
-        gate: Gate,
+        gate: Access,
         sessions: Sessions,
         recorders: Recorders,
         shelf: Shelf,

@@ -176,6 +176,7 @@ class Live:
         match command:
             case Pause():
                 context.pause()
+                self._session.notify()
             case Step():
                 if not await _outside_of_any_task(context.step):
                     raise RavestateError(
@@ -185,6 +186,7 @@ class Live:
                     )
             case Resume():
                 context.resume()
+                self._session.notify()
             case Put():
                 slot = self._named(context.policy.slots, "slot", command.slot)
                 check_value(slot, command.value, context.read(slot))
@@ -204,6 +206,7 @@ class Live:
         """Nobody looks any more: an agent whose clock was halted goes on."""
         if self._session.ended is None and self._context.paused:
             self._context.resume()
+            self._session.notify()
 
     def _say(self, text: str) -> None:
         try:

@@ -8,7 +8,7 @@ import sys
 from collections.abc import Generator
 from dataclasses import dataclass
 
-__all__ = ["COLLECT", "SWITCH", "at_pace"]
+__all__ = ["COLLECT", "SWITCH", "low_latency"]
 
 SWITCH = 0.0005
 """Seconds after which a thread that computes lets others have their turn. An answer takes several turns of the event
@@ -20,7 +20,7 @@ at everything that some hundred conversations hold every few seconds, and nobody
 
 
 @dataclass(slots=True)
-class _Pace:
+class _Saved:
     """How many serve, and what was set before the first of them. The interpreter has one of each, whoever serves."""
 
     users: int = 0
@@ -28,21 +28,21 @@ class _Pace:
     collect: tuple[int, int, int] = (0, 0, 0)
 
 
-_pace = _Pace()
+_saved = _Saved()
 
 
 @contextlib.contextmanager
-def at_pace() -> Generator[None]:
+def low_latency() -> Generator[None]:
     """Within, the interpreter is set for short answers to many. It is as before once the last has left."""
-    if not _pace.users:
-        _pace.switch, _pace.collect = sys.getswitchinterval(), gc.get_threshold()
+    if not _saved.users:
+        _saved.switch, _saved.collect = sys.getswitchinterval(), gc.get_threshold()
         sys.setswitchinterval(SWITCH)
         gc.set_threshold(*COLLECT)
-    _pace.users += 1
+    _saved.users += 1
     try:
         yield
     finally:
-        _pace.users -= 1
-        if not _pace.users:
-            sys.setswitchinterval(_pace.switch)
-            gc.set_threshold(*_pace.collect)
+        _saved.users -= 1
+        if not _saved.users:
+            sys.setswitchinterval(_saved.switch)
+            gc.set_threshold(*_saved.collect)

@@ -16,15 +16,15 @@ from uvicorn.protocols.http.h11_impl import H11Protocol, RequestResponseCycle
 from uvicorn.protocols.utils import ClientDisconnected
 from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
 
-__all__ = ["Door", "Line"]
+__all__ = ["LimitedHTTP", "LimitedWebSocket"]
 
-PATIENCE = 10.0
+TIMEOUT = 10.0
 """Seconds in which a client is to send its request, and then to read the answer."""
 
-SLOWEST = 8 * 1024
-"""Bytes a second that a client is to send at least while more of its request is to come; it may be `PATIENCE` late."""
+LOWEST_RATE = 8 * 1024
+"""Bytes a second that a client is to send at least while more of its request is to come; it may be `TIMEOUT` late."""
 
-STALLED = 20.0
+STALL_TIMEOUT = 20.0
 """Seconds for which a client may leave unread what the server has for it."""
 
 FULL = b"HTTP/1.1 503 Service Unavailable\r\nconnection: close\r\ncontent-type: text/plain\r\ncontent-length: %d\r\n\r\n%s"
@@ -36,12 +36,12 @@ FOREIGN = (
 )
 """What clients do wrong, in uvicorn's words. They are told; in the log anybody could write as much of it as they like."""
 
-log = logging.getLogger("ravestate.webio.door")
+log = logging.getLogger("ravestate.webio.limits")
 log.setLevel(logging.WARNING)
 log.addFilter(lambda record: record.msg not in FOREIGN)
 
 
-class Door(H11Protocol):
+class LimitedHTTP(H11Protocol):
     """HTTP: bounds the number of connections, in all and from one address, and does not wait for the silent.
 
     Args:
@@ -66,7 +66,7 @@ class Door(H11Protocol):
         elif self._from_here() > self._per_address:
             self._refuse("too many connections from your address")
         else:
-            self.loop.call_later(PATIENCE, self._look)
+            self.loop.call_later(TIMEOUT, self._look)
 
     def data_received(self, data: bytes) -> None:
         """Take what the client has sent."""
@@ -99,11 +99,11 @@ class Door(H11Protocol):
             _hang_up(self.transport)
             return
         self._received = 0
-        self.loop.call_later(PATIENCE, self._look)
+        self.loop.call_later(TIMEOUT, self._look)
 
     def _is_late(self, request: RequestResponseCycle) -> bool:
         """Whether a request comes in more slowly than it should, all in all, and not because the server does not read."""
-        due = SLOWEST * PATIENCE
+        due = LOWEST_RATE * TIMEOUT
         behind = self._late[1] if self._late[0] is request else 0.0
         waits = self.flow.read_paused or not request.more_body
         behind = 0.0 if waits else max(0.0, behind + due - self._received)
@@ -111,7 +111,7 @@ class Door(H11Protocol):
         return behind > due
 
 
-class Line(WebSocketsSansIOProtocol):
+class LimitedWebSocket(WebSocketsSansIOProtocol):
     """WebSockets: drops who does not read, instead of keeping what is meant for them."""
 
     _stalled: asyncio.TimerHandle | None = None
@@ -131,7 +131,7 @@ class Line(WebSocketsSansIOProtocol):
     async def run_asgi(self) -> None:
         """Run the application; who has not closed its end some time after that is hung up on."""
         await super().run_asgi()
-        self.loop.call_later(PATIENCE, self._see_off)
+        self.loop.call_later(TIMEOUT, self._see_off)
 
     def _see_off(self) -> None:
         if not self.disconnected:
@@ -140,7 +140,7 @@ class Line(WebSocketsSansIOProtocol):
     def pause_writing(self) -> None:
         """The client leaves much unread: it has some time to make up."""
         super().pause_writing()
-        self._stalled = self.loop.call_later(STALLED, _hang_up, self.transport)
+        self._stalled = self.loop.call_later(STALL_TIMEOUT, _hang_up, self.transport)
 
     def resume_writing(self) -> None:
         """The client reads again."""

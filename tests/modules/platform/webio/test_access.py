@@ -7,7 +7,7 @@ import pytest
 from modules.platform.webio.visit import in_virtual_time
 from ravestate.modules import webio
 from ravestate.modules.platform.webio import Settings
-from ravestate.modules.platform.webio.gate import Gate, is_local
+from ravestate.modules.platform.webio.access import Access, is_local
 from ravestate.modules.platform.webio.protocol import ProtocolError
 from ravestate.settings import load_settings
 
@@ -38,8 +38,8 @@ def test_addresses_that_others_reach(host: str) -> None:
     ],
 )
 def test_the_page_and_those_who_may_embed_it_come_in(host: str, origin: str | None) -> None:
-    gate = Gate(Settings(origins=("https://chat.museum.example",)))
-    assert gate.refusal({"host": host} | ({"origin": origin} if origin else {})) is None
+    access = Access(Settings(origins=("https://chat.museum.example",)))
+    assert access.refusal({"host": host} | ({"origin": origin} if origin else {})) is None
 
 
 @pytest.mark.parametrize(
@@ -58,8 +58,8 @@ def test_the_page_and_those_who_may_embed_it_come_in(host: str, origin: str | No
     ],
 )
 def test_others_do_not(host: str, origin: str | None) -> None:
-    gate = Gate(Settings(origins=("https://museum.example",)))
-    refusal = gate.refusal({"host": host} | ({"origin": origin} if origin else {}))
+    access = Access(Settings(origins=("https://museum.example",)))
+    refusal = access.refusal({"host": host} | ({"origin": origin} if origin else {}))
     assert refusal is not None
     assert "webio.origins" in refusal
 
@@ -74,14 +74,14 @@ def test_others_do_not(host: str, origin: str | None) -> None:
     ],
 )
 def test_the_page_itself_looks_inside(host: str, origin: str | None) -> None:
-    gate = Gate(Settings(origins=("https://museum.example",)))
-    assert gate.refusal_inside({"host": host} | ({"origin": origin} if origin else {})) is None
+    access = Access(Settings(origins=("https://museum.example",)))
+    assert access.refusal_of_board({"host": host} | ({"origin": origin} if origin else {})) is None
 
 
 @pytest.mark.parametrize("origin", ["https://museum.example", "http://127.0.0.1:9999", "null"])
 def test_who_may_embed_the_page_does_not_look_inside(origin: str) -> None:
-    gate = Gate(Settings(origins=("https://museum.example",)))
-    refusal = gate.refusal_inside({"host": "127.0.0.1:8420", "origin": origin})
+    access = Access(Settings(origins=("https://museum.example",)))
+    refusal = access.refusal_of_board({"host": "127.0.0.1:8420", "origin": origin})
     assert refusal is not None
     assert f"{origin!r} may not look inside" in refusal
 
@@ -93,7 +93,7 @@ EMBEDDED = {"host": "127.0.0.1:8420", "sec-fetch-dest": "iframe"}
     "referer", ["http://museum.example/", "HTTP://museum.example/a?b", "http://museum.example"]
 )
 def test_a_page_that_may_not_show_the_chat_is_named(referer: str) -> None:
-    assert Gate(Settings()).stranger({**EMBEDDED, "referer": referer}) == "http://museum.example"
+    assert Access(Settings()).foreign_embedder({**EMBEDDED, "referer": referer}) == "http://museum.example"
 
 
 @pytest.mark.parametrize(
@@ -108,33 +108,33 @@ def test_a_page_that_may_not_show_the_chat_is_named(referer: str) -> None:
     ],
 )
 def test_who_may_or_does_not_tell_is_no_stranger(headers: dict[str, str]) -> None:
-    assert Gate(Settings(origins=("https://museum.example",))).stranger(headers) is None
+    assert Access(Settings(origins=("https://museum.example",))).foreign_embedder(headers) is None
 
 
 def test_with_a_token_it_answers_to_any_name_but_not_to_any_page() -> None:
-    gate = Gate(Settings(token=TOKEN))
-    assert gate.refusal({"host": "robot.lan", "origin": "http://robot.lan"}) is None
-    assert gate.refusal({"host": "robot.lan", "origin": "https://evil.example"}) is not None
+    access = Access(Settings(token=TOKEN))
+    assert access.refusal({"host": "robot.lan", "origin": "http://robot.lan"}) is None
+    assert access.refusal({"host": "robot.lan", "origin": "https://evil.example"}) is not None
 
 
 @pytest.mark.parametrize("token", [None, "", "open sesame", TOKEN + "!", "ö", "\ud800"])
 def test_a_wrong_token_is_refused(token: str | None) -> None:
-    assert not Gate(Settings(token=TOKEN)).admits(token)
+    assert not Access(Settings(token=TOKEN)).admits(token)
 
 
 def test_the_right_one_is_taken_and_none_is_needed_where_none_is_set() -> None:
-    assert Gate(Settings(token=TOKEN)).admits(TOKEN)
-    assert Gate(Settings()).admits(None)
+    assert Access(Settings(token=TOKEN)).admits(TOKEN)
+    assert Access(Settings()).admits(None)
 
 
 @in_virtual_time
 async def test_guessing_takes_long() -> None:
-    gate, now = Gate(Settings(token=TOKEN)), asyncio.get_running_loop().time
+    access, now = Access(Settings(token=TOKEN)), asyncio.get_running_loop().time
     with pytest.raises(ProtocolError, match="the token is wrong"):
-        await gate.check_token("guess")
+        await access.check_token("guess")
     assert now() == 1.0
     with pytest.raises(ProtocolError, match="a token is needed"):
-        await gate.check_token(None)
+        await access.check_token(None)
 
 
 @pytest.mark.parametrize(
@@ -152,4 +152,4 @@ def test_a_short_token_is_no_setting() -> None:
 
 def test_a_token_of_digits_is_text_in_the_environment_too() -> None:
     variables = {"RAVESTATE_WEBIO_TOKEN": "123456789012"}
-    assert Gate(load_settings([webio.module], None, variables)["webio"]).admits("123456789012")
+    assert Access(load_settings([webio.module], None, variables)["webio"]).admits("123456789012")

@@ -9,7 +9,7 @@ from starlette.types import Receive, Scope, Send
 from uvicorn.server import ServerState
 
 from modules.platform.webio.visit import in_virtual_time, past
-from ravestate.modules.platform.webio.door import PATIENCE, SLOWEST, Door
+from ravestate.modules.platform.webio.limits import LOWEST_RATE, TIMEOUT, LimitedHTTP
 
 
 class Reader:
@@ -54,18 +54,18 @@ class Caller(asyncio.Transport):
         super().__init__({"peername": ("127.0.0.1", 50000), "sockname": ("127.0.0.1", 8420)})
         config = uvicorn.Config(app, log_config=None, access_log=False, lifespan="off", timeout_keep_alive=15)
         state = ServerState()
-        self.door = Door(config=config, server_state=state, app_state={}, per_address=9, most=9)
+        self.limits = LimitedHTTP(config=config, server_state=state, app_state={}, per_address=9, most=9)
         self.answer = b""
         self.reads = True
         """Whether the server reads what is sent."""
         self.hung_up: float | None = None
         """When the server has closed the connection (seconds)."""
-        self.door.connection_made(self)
+        self.limits.connection_made(self)
 
     def send(self, data: bytes) -> None:
         """Send something."""
         assert self.reads
-        self.door.data_received(data)
+        self.limits.data_received(data)
 
     async def send_slowly(self, data: bytes, rate: float) -> None:
         """Send something, so many bytes in each second, as far as the server reads it."""
@@ -76,7 +76,7 @@ class Caller(asyncio.Transport):
                 data = data[int(rate) :]
 
     def get_protocol(self) -> asyncio.BaseProtocol:
-        return self.door
+        return self.limits
 
     def write(self, data: Any) -> None:
         self.answer += data
@@ -94,7 +94,7 @@ class Caller(asyncio.Transport):
         if self.hung_up is None:
             loop = asyncio.get_running_loop()
             self.hung_up = loop.time()
-            loop.call_soon(self.door.connection_lost, None)
+            loop.call_soon(self.limits.connection_lost, None)
 
     close = abort
 
@@ -105,12 +105,12 @@ def request(size: int) -> bytes:
 
 @in_virtual_time
 async def test_what_comes_all_the_time_is_taken_however_long_it_takes() -> None:
-    size = int(2 * SLOWEST * 20 * PATIENCE)
+    size = int(2 * LOWEST_RATE * 20 * TIMEOUT)
     caller = Caller(Reader())
     caller.send(request(size))
-    await caller.send_slowly(b"x" * size, rate=2 * SLOWEST)
+    await caller.send_slowly(b"x" * size, rate=2 * LOWEST_RATE)
     await past(0.1)
-    assert asyncio.get_running_loop().time() > 20 * PATIENCE
+    assert asyncio.get_running_loop().time() > 20 * TIMEOUT
     assert caller.answer.endswith(b"%d bytes" % size)
 
 
@@ -119,31 +119,31 @@ async def test_what_hardly_comes_is_not_waited_for() -> None:
     caller = Caller(Reader())
     caller.send(request(10**6))
     await caller.send_slowly(b"x" * 10**6, rate=100)
-    assert caller.hung_up == 2 * PATIENCE
+    assert caller.hung_up == 2 * TIMEOUT
 
 
 @in_virtual_time
 async def test_what_comes_in_fits_and_starts_is_taken_if_it_is_enough_all_in_all() -> None:
-    size = int(SLOWEST * 20 * PATIENCE)
+    size = int(LOWEST_RATE * 20 * TIMEOUT)
     caller = Caller(Reader())
     caller.send(request(size))
     for _ in range(20):
         caller.send(b"x" * (size // 20))
-        await past(PATIENCE / 2)
+        await past(TIMEOUT / 2)
         assert caller.hung_up is None
-        await past(PATIENCE / 2)
+        await past(TIMEOUT / 2)
     assert caller.answer.endswith(b"%d bytes" % size)
 
 
 @in_virtual_time
 async def test_what_comes_in_fits_and_starts_is_not_waited_for_if_it_is_too_little() -> None:
-    size, each = 10**7, int(SLOWEST * PATIENCE)
+    size, each = 10**7, int(LOWEST_RATE * TIMEOUT)
     caller = Caller(Reader())
     caller.send(request(size))
     while caller.hung_up is None:  # half of what should come
         caller.send(b"x" * each)
-        await past(2 * PATIENCE)
-        assert asyncio.get_running_loop().time() < 10 * PATIENCE
+        await past(2 * TIMEOUT)
+        assert asyncio.get_running_loop().time() < 10 * TIMEOUT
 
 
 @pytest.mark.parametrize(("share", "looks"), [(0.6, 3), (0.9, 10)])
@@ -152,8 +152,8 @@ def test_the_less_is_missing_the_later_it_is_noticed(share: float, looks: int) -
     async def test() -> None:
         caller = Caller(Reader())
         caller.send(request(10**6))
-        await caller.send_slowly(b"x" * 10**6, rate=share * SLOWEST)
-        assert caller.hung_up == looks * PATIENCE
+        await caller.send_slowly(b"x" * 10**6, rate=share * LOWEST_RATE)
+        assert caller.hung_up == looks * TIMEOUT
 
     test()
 
@@ -162,23 +162,23 @@ def test_the_less_is_missing_the_later_it_is_noticed(share: float, looks: int) -
 async def test_who_hardly_gets_to_the_end_of_the_headers_is_not_waited_for() -> None:
     caller = Caller(Reader())
     await caller.send_slowly(b"GET / HTTP/1.1\r\nx: " + b"x" * 1000, rate=1)
-    assert caller.hung_up == PATIENCE
+    assert caller.hung_up == TIMEOUT
 
 
 @in_virtual_time
 async def test_who_has_to_wait_for_an_answer_is_not_hung_up_on() -> None:
-    caller = Caller(Reader(after=10 * PATIENCE))
+    caller = Caller(Reader(after=10 * TIMEOUT))
     caller.send(request(5) + b"hello")
-    await past(10 * PATIENCE + 1)
+    await past(10 * TIMEOUT + 1)
     assert caller.answer.endswith(b"5 bytes")
 
 
 @in_virtual_time
 async def test_who_has_to_wait_until_its_request_is_read_is_not_hung_up_on() -> None:
     size = 10**6
-    caller = Caller(Reader(before=10 * PATIENCE + 3))
+    caller = Caller(Reader(before=10 * TIMEOUT + 3))
     caller.send(request(size))
-    await caller.send_slowly(b"x" * size, rate=2 * SLOWEST)
+    await caller.send_slowly(b"x" * size, rate=2 * LOWEST_RATE)
     await past(0.1)
     assert caller.answer.endswith(b"%d bytes" % size)
 
@@ -187,14 +187,14 @@ async def test_who_has_to_wait_until_its_request_is_read_is_not_hung_up_on() -> 
 async def test_who_sends_on_after_the_answer_is_hung_up_on() -> None:
     caller = Caller(Refuser())
     caller.send(request(10**7))
-    await caller.send_slowly(b"x" * 10**7, rate=2 * SLOWEST)
-    assert caller.hung_up == 2 * PATIENCE
+    await caller.send_slowly(b"x" * 10**7, rate=2 * LOWEST_RATE)
+    assert caller.hung_up == 2 * TIMEOUT
 
 
 @in_virtual_time
 async def test_who_does_not_read_the_answer_is_hung_up_on() -> None:
     caller = Caller(Reader(after=1.0))
     caller.send(request(5) + b"hello")
-    caller.door.pause_writing()  # as the transport does when nothing is read
-    await past(5 * PATIENCE)
-    assert caller.hung_up == 2 * PATIENCE
+    caller.limits.pause_writing()  # as the transport does when nothing is read
+    await past(5 * TIMEOUT)
+    assert caller.hung_up == 2 * TIMEOUT

@@ -8,8 +8,8 @@ import pytest
 
 from modules.platform.webio.visit import parrot
 from ravestate.modules import webio
-from ravestate.modules.platform.webio.pace import COLLECT, SWITCH, at_pace
 from ravestate.modules.platform.webio.server import Server
+from ravestate.modules.platform.webio.tuning import COLLECT, SWITCH, low_latency
 from ravestate.runtime.agent import Agent
 from runtime.on_loop import on_loop
 
@@ -24,8 +24,8 @@ OURS = (pytest.approx(SWITCH), COLLECT)
 def test_it_is_as_before_once_the_last_has_left_whoever_that_is() -> None:
     before = setting()
     first, second = contextlib.ExitStack(), contextlib.ExitStack()
-    first.enter_context(at_pace())
-    second.enter_context(at_pace())
+    first.enter_context(low_latency())
+    second.enter_context(low_latency())
     assert setting() == OURS
     first.close()
     assert setting() == OURS
@@ -35,7 +35,7 @@ def test_it_is_as_before_once_the_last_has_left_whoever_that_is() -> None:
 
 def test_it_is_as_before_also_after_a_failure() -> None:
     before = setting()
-    with pytest.raises(OSError, match="the disk"), at_pace():
+    with pytest.raises(OSError, match="the disk"), low_latency():
         raise OSError("the disk")
     assert setting() == before
 

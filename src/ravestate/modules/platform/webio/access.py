@@ -9,13 +9,13 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING
 from urllib.parse import urlsplit
 
-from . import ORIGIN
+from .names import ORIGIN
 from .protocol import ProtocolError
 
 if TYPE_CHECKING:
-    from . import Settings
+    from .names import Settings
 
-__all__ = ["Gate", "is_local"]
+__all__ = ["Access", "is_local"]
 
 PAUSE = 1.0
 """Seconds after which a wrong token is refused, so that guessing takes long."""
@@ -31,7 +31,7 @@ def is_local(host: str) -> bool:
         return False
 
 
-class Gate:
+class Access:
     """The checks before anything is served.
 
     A page of this machine's own needs no token, so anything that this machine's browser shows could talk to it. Hence it
@@ -64,7 +64,7 @@ class Gate:
             return f"{origin!r} may not connect: add it to the setting webio.origins"
         return None
 
-    def refusal_inside(self, headers: Mapping[str, str]) -> str | None:
+    def refusal_of_board(self, headers: Mapping[str, str]) -> str | None:
         """Why a request that `refusal` lets in may not look inside of the agent, as only the page itself may; else None.
 
         Args:
@@ -78,7 +78,7 @@ class Gate:
             )
         return None
 
-    def stranger(self, headers: Mapping[str, str]) -> str | None:
+    def foreign_embedder(self, headers: Mapping[str, str]) -> str | None:
         """The origin of a page that wants to show this one in a frame, which the browser will not let it; else None.
 
         Browsers send what tells it over HTTPS and to this machine; widget.js lets them.

@@ -1,5 +1,5 @@
 import { expect, test } from "vitest";
-import { parse } from "../src/lib/protocol";
+import { parse } from "../src/lib/frames";
 
 test("a frame of each type is read", () => {
   expect(parse('{"type":"message","n":1,"from":"agent","text":"Hi","time":5}')).toMatchObject({ n: 1 });
