@@ -143,8 +143,12 @@ class Description:
     diagram: Diagram
 
     def rule(self, name: str) -> RuleView | None:
-        """The rule of a name, if there is one."""
+        """Return the rule of a name, if there is one."""
         return next((rule for rule in self.rules if rule.name == name), None)
+
+    def signal(self, name: str) -> SignalView | None:
+        """Return the signal of a name, if there is one."""
+        return next((signal for signal in self.signals if signal.name == name), None)
 
 
 def describe(policy: Policy) -> Description:

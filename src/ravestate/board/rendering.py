@@ -11,17 +11,17 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import cast
 
-from ravestate.board.pieces import pieces
+from ravestate.board.repr_chunks import repr_chunks
 from ravestate.declare.slot import Entry
 
-__all__ = ["Shown", "is_foreign", "show", "well_formed"]
+__all__ = ["Rendered", "not_json", "render", "well_formed"]
 
 DEEPEST = 6
 """Containers within containers that are looked into."""
 
 
 @dataclass(frozen=True, slots=True)
-class Shown:
+class Rendered:
     """A value as text.
 
     Attributes:
@@ -39,31 +39,31 @@ class _Foreign(Exception):
     """JSON has no word for a value."""
 
 
-def show(value: object, most: int = 2000) -> Shown:
+def render(value: object, most: int = 2000) -> Rendered:
     """A value as text of at most `most` characters.
 
     Example:
-        >>> show({"name": "Ada", "seen": [1, 2]})
-        Shown(text='{"name": "Ada", "seen": [1, 2]}', json=True, cut=False)
-        >>> show("x" * 5000, most=8)
-        Shown(text='"xxxxxxx', json=False, cut=True)
-        >>> show(object).text
+        >>> render({"name": "Ada", "seen": [1, 2]})
+        Rendered(text='{"name": "Ada", "seen": [1, 2]}', json=True, cut=False)
+        >>> render("x" * 5000, most=8)
+        Rendered(text='"xxxxxxx', json=False, cut=True)
+        >>> render(object).text
         "<class 'object'>"
     """
     kind = type(value)
     if value is None or kind is bool or (kind is int and abs(cast("int", value)) < 1 << 2 * most):
-        return Shown(json.dumps(value))
+        return Rendered(json.dumps(value))
     if kind is str:
         text = cast("str", value)
         if len(text) < most - 2:
             whole = json.dumps(well_formed(text), ensure_ascii=False)
             if len(whole) <= most:
-                return Shown(whole)
-        return Shown(json.dumps(well_formed(text[:most]), ensure_ascii=False)[:most], False, True)
+                return Rendered(whole)
+        return Rendered(json.dumps(well_formed(text[:most]), ensure_ascii=False)[:most], False, True)
     if kind is Entry:  # of a collection: its key says most
         key, item = cast("Entry", value)
-        name = show(str(key), most).text
-        return Shown((name if item is None else f"{name}: {show(item, most).text}")[:most], False)
+        name = render(str(key), most).text
+        return Rendered((name if item is None else f"{name}: {render(item, most).text}")[:most], False)
     pieces: list[str] = []
     size = 0
     try:
@@ -71,19 +71,19 @@ def show(value: object, most: int = 2000) -> Shown:
             pieces.append(piece)
             size += len(piece)
             if size > most:
-                return Shown("".join(pieces)[:most], False, True)
-        return Shown("".join(pieces))
+                return Rendered("".join(pieces)[:most], False, True)
+        return Rendered("".join(pieces))
     except _Foreign:
         return _repr(value, most)
     except Exception as error:  # a container of foreign make, that fails when it is looked through
-        return Shown(f"<{kind.__name__} that cannot be shown: {type(error).__name__}>", False)
+        return Rendered(f"<{kind.__name__} that cannot be shown: {type(error).__name__}>", False)
 
 
-def is_foreign(value: object, most: int = 2000) -> bool:
+def not_json(value: object, most: int = 2000) -> bool:
     """Whether JSON has no word for a value, as far as the first `most` characters of it tell.
 
     Example:
-        >>> is_foreign({"name": "Ada"}), is_foreign([1, object()])
+        >>> not_json({"name": "Ada"}), not_json([1, object()])
         (False, True)
     """
     if isinstance(value, (int, float)):
@@ -132,19 +132,19 @@ def _json(value: object, depth: int) -> Iterator[str]:
         raise _Foreign
 
 
-def _repr(value: object, most: int) -> Shown:
+def _repr(value: object, most: int) -> Rendered:
     found: list[str] = []
     size = 0
     try:
-        for piece in pieces(value):
+        for piece in repr_chunks(value):
             found.append(piece)
             size += len(piece)
             if size > most:
                 break
     except Exception as error:  # a container that changes, or a field that fails, while it is looked through
-        return Shown(f"<{type(value).__name__} whose repr fails: {type(error).__name__}>", False)
+        return Rendered(f"<{type(value).__name__} whose repr fails: {type(error).__name__}>", False)
     text = well_formed("".join(found)[: most + 1])
-    return Shown(text[:most], False, len(text) > most)
+    return Rendered(text[:most], False, len(text) > most)
 
 
 def well_formed(text: str) -> str:

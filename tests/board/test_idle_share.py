@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from ravestate.board import leisure
-from ravestate.board.leisure import Leisure
+from ravestate.board import idle_share
+from ravestate.board.idle_share import IdleShare
 
 
 class Clocks:
@@ -22,14 +22,14 @@ class Clocks:
 @pytest.fixture
 def clocks(monkeypatch: pytest.MonkeyPatch) -> Clocks:
     clocks = Clocks()
-    monkeypatch.setattr(leisure, "perf_counter", lambda: clocks.passed)
-    monkeypatch.setattr(leisure, "process_time", lambda: clocks.computed)
-    monkeypatch.setattr(leisure, "_kept_waiting", lambda: clocks.kept)
+    monkeypatch.setattr(idle_share, "perf_counter", lambda: clocks.passed)
+    monkeypatch.setattr(idle_share, "process_time", lambda: clocks.computed)
+    monkeypatch.setattr(idle_share, "_kept_waiting", lambda: clocks.kept)
     return clocks
 
 
 def test_what_was_not_computed_is_to_spare(clocks: Clocks) -> None:
-    spare = Leisure()
+    spare = IdleShare()
     clocks.on(2.0, computed=0.5)
     assert spare.share() == 0.75
     clocks.on(1.0, computed=1.0)
@@ -37,7 +37,7 @@ def test_what_was_not_computed_is_to_spare(clocks: Clocks) -> None:
 
 
 def test_a_process_that_other_programs_keep_waiting_has_nothing_to_spare(clocks: Clocks) -> None:
-    spare = Leisure()
+    spare = IdleShare()
     clocks.on(3.0, computed=1.0, kept=2.0)
     assert spare.share() == 0.0
     clocks.on(4.0, computed=1.0, kept=1.0)
@@ -45,7 +45,7 @@ def test_a_process_that_other_programs_keep_waiting_has_nothing_to_spare(clocks:
 
 
 def test_several_threads_at_work_leave_nothing_to_spare(clocks: Clocks) -> None:
-    spare = Leisure()
+    spare = IdleShare()
     clocks.on(1.0, computed=1.8)
     assert spare.share() == 0.0
     assert spare.share() == 0.0  # no time has passed
@@ -60,5 +60,5 @@ def test_a_system_that_does_not_tell_is_taken_to_have_kept_nobody_waiting(
     file = tmp_path / "schedstat"
     if told is not None:
         file.write_text(told)
-    monkeypatch.setattr(leisure, "SCHEDULE", str(file))
-    assert leisure._kept_waiting() == seconds
+    monkeypatch.setattr(idle_share, "SCHEDULE", str(file))
+    assert idle_share._kept_waiting() == seconds

@@ -10,7 +10,7 @@ from itertools import chain
 from types import MappingProxyType
 from typing import Any, NamedTuple, cast
 
-__all__ = ["pieces"]
+__all__ = ["repr_chunks"]
 
 DEEPEST = 30
 """Containers within containers that are looked into."""
@@ -42,7 +42,7 @@ class _Box(NamedTuple):
     again: str = ""
 
 
-def pieces(value: object, around: tuple[int, ...] = ()) -> Iterator[str]:
+def repr_chunks(value: object, around: tuple[int, ...] = ()) -> Iterator[str]:
     """The pieces of a ``repr``: containers of Python's own, records and texts bit by bit, all else at once.
 
     Together they are the ``repr``, but for this: what is too long or too deep is cut; a `Counter` is in the order in which
@@ -55,9 +55,9 @@ def pieces(value: object, around: tuple[int, ...] = ()) -> Iterator[str]:
         around: The `id` of each container that it is within.
 
     Example:
-        >>> "".join(pieces(({1: {"Ada"}}, b"x")))
+        >>> "".join(repr_chunks(({1: {"Ada"}}, b"x")))
         "({1: {'Ada'}}, b'x')"
-        >>> next(pieces(set(range(1_000_000))))
+        >>> next(repr_chunks(set(range(1_000_000))))
         '{'
     """
     made_by: Any = type(value).__repr__
@@ -81,7 +81,7 @@ def pieces(value: object, around: tuple[int, ...] = ()) -> Iterator[str]:
             if number:
                 yield ", "
             yield from lead
-            yield from pieces(item, (*around, id(value)))
+            yield from repr_chunks(item, (*around, id(value)))
     yield box.closing
 
 
@@ -134,7 +134,7 @@ def _plain(items: Iterable[object]) -> Iterator[tuple[Iterable[str], object]]:
 def _pairs(
     items: Iterable[tuple[object, object]], around: tuple[int, ...]
 ) -> Iterator[tuple[Iterable[str], object]]:
-    return ((chain(pieces(key, around), (": ",)), item) for key, item in items)
+    return ((chain(repr_chunks(key, around), (": ",)), item) for key, item in items)
 
 
 def _named(items: Iterable[tuple[str, object]]) -> Iterator[tuple[Iterable[str], object]]:

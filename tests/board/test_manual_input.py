@@ -11,8 +11,8 @@ import pytest
 import ravestate as rs
 from board.looking import Look, board, gossip, in_virtual_time, passing
 from modules.platform.webio.visit import Visit, parrot
-from ravestate.board.by_hand import check_payload, check_value
-from ravestate.board.commands import Emit
+from ravestate.board.manual_input import check_payload, check_value
+from ravestate.board.protocol import Emit
 from ravestate.modules import interloc, rawio
 from ravestate.modules.platform.webio.protocol import LONGEST_TEXT, SERVER, Message, parse
 
@@ -266,6 +266,6 @@ async def test_a_conversation_that_is_ending_takes_nothing_and_says_so() -> None
             look.tell("look")
             slots = (await look.answer("state"))["slots"]
             await look.answer("ended")
-    assert refused == ["this conversation is ending: nothing more is said, written or raised in it"] * 3
+    assert refused == ["this conversation is ending: it takes no more input"] * 3
     assert slots["gossip:secret"] == {"text": "null"}
     assert [message.text for message in session.history.since(0)] == ["Goodbye"]

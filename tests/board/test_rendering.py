@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ravestate.board.shown import Shown, is_foreign, show, well_formed
+from ravestate.board.rendering import Rendered, not_json, render, well_formed
 from ravestate.declare.slot import Entry
 
 JSON = st.recursive(
@@ -18,7 +18,7 @@ JSON = st.recursive(
 
 @given(JSON, st.integers(1, 60))
 def test_text_is_bounded_and_whole_json_can_be_read_back(value: object, most: int) -> None:
-    shown = show(value, most)
+    shown = render(value, most)
     assert len(shown.text) <= max(most, 40)
     shown.text.encode()
     if shown.json:
@@ -27,9 +27,9 @@ def test_text_is_bounded_and_whole_json_can_be_read_back(value: object, most: in
 
 
 def test_an_entry_of_a_collection_is_shown_by_its_key() -> None:
-    assert show(Entry("ada", None)) == Shown('"ada"', False)
-    assert show(Entry("ada", {"age": 36})).text == '"ada": {"age": 36}'
-    assert len(show(Entry("k" * 900, "v" * 900), 50).text) == 50
+    assert render(Entry("ada", None)) == Rendered('"ada"', False)
+    assert render(Entry("ada", {"age": 36})).text == '"ada": {"age": 36}'
+    assert len(render(Entry("k" * 900, "v" * 900), 50).text) == 50
 
 
 class Loud:
@@ -51,24 +51,24 @@ def endless() -> list[object]:
 @pytest.mark.parametrize(
     ("value", "shown"),
     [
-        ("hello", Shown('"hello"')),
-        (True, Shown("true")),
-        (None, Shown("null")),
-        ((1, 2), Shown("(1, 2)", json=False)),  # as a list it would be written back as one
-        ({1: 2}, Shown("{1: 2}", json=False)),
-        (float("inf"), Shown("inf", json=False)),
-        ({1, 2}, Shown("{1, 2}", json=False)),
-        (Loud(), Shown("<Loud whose repr fails: RuntimeError>", json=False)),
-        (Liar(a=1), Shown("<Liar that cannot be shown: RuntimeError>", json=False)),
-        ("<b>", Shown('"<b>"')),
+        ("hello", Rendered('"hello"')),
+        (True, Rendered("true")),
+        (None, Rendered("null")),
+        ((1, 2), Rendered("(1, 2)", json=False)),  # as a list it would be written back as one
+        ({1: 2}, Rendered("{1: 2}", json=False)),
+        (float("inf"), Rendered("inf", json=False)),
+        ({1, 2}, Rendered("{1, 2}", json=False)),
+        (Loud(), Rendered("<Loud whose repr fails: RuntimeError>", json=False)),
+        (Liar(a=1), Rendered("<Liar that cannot be shown: RuntimeError>", json=False)),
+        ("<b>", Rendered('"<b>"')),
     ],
 )
-def test_what_is_shown(value: object, shown: Shown) -> None:
-    assert show(value) == shown
+def test_what_is_shown(value: object, shown: Rendered) -> None:
+    assert render(value) == shown
 
 
 def test_what_has_no_end_is_shown() -> None:
-    assert show(endless()).text == "[[...]]"
+    assert render(endless()).text == "[[...]]"
 
 
 class Counted:
@@ -86,27 +86,27 @@ def test_of_what_is_huge_and_foreign_no_more_is_made_than_is_shown() -> None:
         [{Counted()}] * 1000,
     ):
         Counted.asked = 0
-        shown = show(value, 100)
+        shown = render(value, 100)
         assert (len(shown.text), shown.json, shown.cut) == (100, False, True)
         assert Counted.asked <= 20
 
 
 def test_lone_surrogates_are_replaced() -> None:
-    assert show({1: "\ud800"}).text == "{1: '\\ud800'}"
+    assert render({1: "\ud800"}).text == "{1: '\\ud800'}"
     assert well_formed("\ud800x") == "?x"
     assert well_formed("café 👋🏽") == "café 👋🏽"
 
 
 def test_what_json_has_no_word_for_is_known() -> None:
     assert (
-        is_foreign(Loud())
-        and is_foreign({"a": [Loud()]})
-        and is_foreign(Liar(a=1))
-        and is_foreign(endless())
-        and is_foreign((1, 2))
-        and is_foreign({"a": [()]})
+        not_json(Loud())
+        and not_json({"a": [Loud()]})
+        and not_json(Liar(a=1))
+        and not_json(endless())
+        and not_json((1, 2))
+        and not_json({"a": [()]})
     )
-    assert not any(map(is_foreign, (None, True, 10**5000, float("nan"), "x" * 10**7, [1] * 10**6)))
+    assert not any(map(not_json, (None, True, 10**5000, float("nan"), "x" * 10**7, [1] * 10**6)))
 
 
 @pytest.mark.parametrize(
@@ -115,6 +115,6 @@ def test_what_json_has_no_word_for_is_known() -> None:
     ids=["text", "list", "number", "key", "set", "odd keys"],
 )
 def test_what_is_huge_is_cut(value: object) -> None:
-    shown = show(value, 100)
+    shown = render(value, 100)
     assert len(shown.text) <= 100
     assert not shown.json

@@ -1,4 +1,4 @@
-"""What an inspector looks at: a conversation that goes on, or a trace that was recorded."""
+"""The source of an inspector's data: a running conversation or a recording."""
 
 from __future__ import annotations
 
@@ -7,84 +7,99 @@ import secrets
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
-from ravestate.board.by_hand import check_payload, check_value
-from ravestate.board.commands import Command, Emit, Pause, Put, Resume, Say, Step
 from ravestate.board.description import Description, describe
-from ravestate.board.gates import gates_of
+from ravestate.board.manual_input import check_payload, check_value
+from ravestate.board.protocol import (
+    Alive,
+    ClientFrame,
+    Emit,
+    Explained,
+    ExplainedClause,
+    Pause,
+    Put,
+    Resume,
+    Say,
+    State,
+    Step,
+    fields_of,
+)  # fmt: skip
 from ravestate.board.recorder import Gap, Recorder
-from ravestate.board.shown import Shown, show
+from ravestate.board.rendering import Rendered, render
 from ravestate.board.trace_file import Recording
 from ravestate.board.why_not import Opens
-from ravestate.board.wire import VALUE, shown_data, whole_data
+from ravestate.board.wire import VALUE
 from ravestate.engine.trace import Record, Set
 from ravestate.errors import RavestateError, UndeclaredError, nearest
 from ravestate.modules.platform.webio.protocol import ProtocolError, heard_text
+from ravestate.policy.policy import Policy
 
 if TYPE_CHECKING:
     from ravestate.modules.platform.webio.session import Session
 
-__all__ = ["Live", "Recorded", "Subject"]
+__all__ = ["LiveSource", "RecordedSource", "Source", "gates_of"]
 
 T = TypeVar("T")
 
 
-class Subject(Protocol):
-    """A policy, and records that are numbered from 1 on."""
+class Source(Protocol):
+    """A policy, and its records, numbered from 1.
+
+    Attributes:
+        description: The policy.
+        live: Whether it is a running conversation.
+        first: The number of the oldest record that is kept.
+        last: The number of the newest record.
+        whole: Whether the records reach back to the start without a gap.
+        opens: Evaluates slot predicates; None for a recording.
+    """
 
     description: Description
     live: bool
 
     @property
-    def first(self) -> int:
-        """The number of the oldest record that is kept."""
-        ...
-
+    def first(self) -> int: ...
     @property
-    def last(self) -> int:
-        """The number of the newest record."""
-        ...
-
+    def last(self) -> int: ...
     @property
-    def whole(self) -> bool:
-        """Whether the records reach back to the beginning."""
-        ...
-
+    def whole(self) -> bool: ...
     @property
-    def opens(self) -> Opens | None:
-        """What tells whether gates are open for a value."""
-        ...
+    def opens(self) -> Opens | None: ...
 
     def since(self, number: int, most: int) -> list[Record | Gap]:
-        """Records after a number, at most so many."""
+        """Return at most `most` records after a number."""
         ...
 
-    def clock(self) -> dict[str, Any]:
-        """``now`` (seconds) and ``paused``."""
+    def clock(self) -> tuple[float, bool]:
+        """Return the time (seconds), and whether the clock is stopped."""
         ...
 
-    def look(self) -> dict[str, Any]:
-        """The values of slots, and what is alive."""
+    def look(self) -> State:
+        """Return the values of the slots and the live activations."""
         ...
 
-    def explain(self, rule: str) -> dict[str, Any]:
-        """What a rule holds, lacks and waits for."""
-        ...
-
-    async def act(self, command: Command) -> None:
-        """Do something.
+    def explain(self, rule: str) -> Explained:
+        """Return what a rule holds, lacks and waits for.
 
         Raises:
-            RavestateError: It cannot be done.
+            RavestateError: There is no such rule, or no agent.
+        """
+        ...
+
+    async def act(self, command: ClientFrame) -> None:
+        """Carry out a command.
+
+        Raises:
+            RavestateError: It is refused.
         """
         ...
 
 
-class Live:
-    """A conversation that goes on.
+class LiveSource:
+    """A running conversation.
 
     Args:
         session: The conversation.
-        recorder: That of its context.
+        recorder: The recorder of its context.
     """
 
     live = True
@@ -109,16 +124,16 @@ class Live:
 
     @property
     def whole(self) -> bool:
-        """Whether the records reach back to the beginning, without a gap."""
+        """Whether the records reach back to the start without a gap."""
         recorder = self._recorder
         return recorder.whole and recorder.first == 1 and not recorder.missed
 
     def since(self, number: int, most: int) -> list[Record | Gap]:
-        """Records after a number, at most so many."""
+        """Return at most `most` records after a number."""
         return self._recorder.since(number, most)
 
     def renewed(self) -> bool:
-        """Whether the policy has changed since it was described: rules may be added. If so, it is described again."""
+        """Describe the policy again if a rule was added; return whether one was."""
         if self._context.policy is self._policy:
             return False
         self._policy = self._context.policy
@@ -126,53 +141,45 @@ class Live:
         self.opens = gates_of(self._policy)
         return True
 
-    def clock(self) -> dict[str, Any]:
-        """``now`` (seconds) and ``paused``."""
-        return {"now": round(self._context.now, 6), "paused": self._context.paused}
+    def clock(self) -> tuple[float, bool]:
+        """Return the time (seconds), and whether the clock is stopped."""
+        return round(self._context.now, 6), self._context.paused
 
-    def look(self) -> dict[str, Any]:
-        """The values of slots, and what is alive."""
+    def look(self) -> State:
+        """Return the values of the slots and the live activations."""
         slots = self._context.policy.slots
-        return {
-            "slots": {
-                name: shown_data(show(self._context.read(slot), VALUE)) for name, slot in slots.items()
-            },
-            "activations": [
-                {"rule": rule, **whole_data(state)}
+        return State(
+            {name: render(self._context.read(slot), VALUE) for name, slot in slots.items()},
+            [
+                Alive(**fields_of(state), rule=rule)
                 for rule in self._policy.rules
                 for state in self._context.explain(rule).activations
             ],
-        }
+            *self.clock(),
+        )
 
-    def explain(self, rule: str) -> dict[str, Any]:
-        """What a rule holds, lacks and waits for; effective utilities (nats); in data and in words.
+    def explain(self, rule: str) -> Explained:
+        """Return what a rule holds, lacks and waits for.
 
         Raises:
             DeclarationError: There is no such rule.
         """
         found = self._context.explain(rule)
-        return {
-            "now": found.now,
-            "retired": found.retired,
-            "clauses": [
-                {"effective": clause.effective, "gates": [list(gate) for gate in clause.gates]}
-                for clause in found.clauses
-            ],
-            "activations": [whole_data(state) for state in found.activations],
-        }
+        clauses = [ExplainedClause(clause.effective, clause.gates) for clause in found.clauses]
+        return Explained(rule, found.now, found.retired, clauses, list(found.activations))
 
-    async def act(self, command: Command) -> None:
-        """Do something.
+    async def act(self, command: ClientFrame) -> None:
+        """Carry out a command.
 
         Raises:
-            RavestateError: It cannot be done.
+            RavestateError: It is refused.
         """
         context = self._context
         if isinstance(command, Say | Put | Emit) and (
             self._session.leaving or self._session.ended is not None
         ):
             about = "is ending" if self._session.ended is None else "has ended"
-            raise RavestateError(f"this conversation {about}: nothing more is said, written or raised in it")
+            raise RavestateError(f"this conversation {about}: it takes no more input")
         match command:
             case Pause():
                 context.pause()
@@ -180,9 +187,9 @@ class Live:
             case Step():
                 if not await _outside_of_any_task(context.step):
                     raise RavestateError(
-                        "nothing is due: the agent waits for something to come, or for what takes its own time"
+                        "nothing is due: the agent waits for input, or for work outside its clock"
                         if context.paused
-                        else "the clock is not halted: pause it first"
+                        else "the clock is running: pause it first"
                     )
             case Resume():
                 context.resume()
@@ -200,10 +207,10 @@ class Live:
             case Say():
                 self._say(command.text)
             case _:
-                raise RavestateError(f"{command.type} is not for an agent")
+                raise RavestateError(f"an agent takes no {command.type!r}")
 
     def leave(self) -> None:
-        """Nobody looks any more: an agent whose clock was halted goes on."""
+        """Start a stopped clock again, after the last inspector has left."""
         if self._session.ended is None and self._context.paused:
             self._context.resume()
             self._session.notify()
@@ -211,9 +218,7 @@ class Live:
     def _say(self, text: str) -> None:
         try:
             heard = heard_text(text)
-        except (
-            ProtocolError
-        ) as error:  # of the visitor's protocol; here it is what was asked for that cannot be done
+        except ProtocolError as error:  # here the command is refused, not the connection
             raise RavestateError(str(error)) from None
         self._session.hear(f"board-{secrets.token_hex(8)}", heard)
 
@@ -224,7 +229,7 @@ class Live:
 
 
 async def _outside_of_any_task(function: Callable[[], T]) -> T:
-    """Call a function on the loop, but not within this task: what starts rules must not."""
+    """Call a function on the loop, outside of this task: the task may be cancelled, and rules must not be."""
     loop = asyncio.get_running_loop()
     called: asyncio.Future[T] = loop.create_future()
 
@@ -232,7 +237,7 @@ async def _outside_of_any_task(function: Callable[[], T]) -> T:
         try:
             result = function()
         except Exception as error:
-            if not called.done():  # else who asked is gone
+            if not called.done():  # else the caller is gone
                 called.set_exception(error)
         else:
             if not called.done():
@@ -242,8 +247,26 @@ async def _outside_of_any_task(function: Callable[[], T]) -> T:
     return await called
 
 
-class Recorded:
-    """A trace that was recorded."""
+def gates_of(policy: Policy) -> Opens:
+    """Return a function that evaluates the slot predicates of a policy."""
+    guards = {
+        (rule.name, clause.number): clause.guards for rule in policy.rule_plans for clause in rule.clauses
+    }
+
+    def opens(rule: str, clause: int, number: int, value: Any) -> bool | None:
+        found = guards.get((rule, clause), ())
+        if number >= len(found):
+            return None
+        try:
+            return bool(found[number][1].predicate(value))
+        except Exception:  # a user's predicate that fails counts as false
+            return False
+
+    return opens
+
+
+class RecordedSource:
+    """A recording."""
 
     live = False
     opens = None
@@ -257,28 +280,26 @@ class Recorded:
         self.last = len(recording.records)
 
     def since(self, number: int, most: int) -> list[Record | Gap]:
-        """Records after a number, at most so many."""
+        """Return at most `most` records after a number."""
         return list(self._records[number : number + most])
 
-    def clock(self) -> dict[str, Any]:
-        """When it ends (seconds)."""
-        return {"now": self._records[-1].time if self._records else 0.0, "paused": True}
+    def clock(self) -> tuple[float, bool]:
+        """Return the time of its end (seconds); the clock is stopped."""
+        return self._records[-1].time if self._records else 0.0, True
 
-    def look(self) -> dict[str, Any]:
-        """The values that slots had at the end, as far as they were written."""
+    def look(self) -> State:
+        """Return the last written value of each slot."""
         values = {record.slot: record.value for record in self._records if isinstance(record, Set)}
-        return {
-            "slots": {
-                name: shown_data(value if isinstance(value, Shown) else show(value, VALUE))
-                for name, value in values.items()
-            },
-            "activations": [],
+        slots = {
+            name: value if isinstance(value, Rendered) else render(value, VALUE)
+            for name, value in values.items()
         }
+        return State(slots, [], *self.clock())
 
-    def explain(self, rule: str) -> dict[str, Any]:
-        """Nothing is known of a moment that nobody asked about."""
-        raise RavestateError("this is a recording: there is no agent that could be asked")
+    def explain(self, rule: str) -> Explained:
+        """Refuse: only an agent can explain a moment."""
+        raise RavestateError("this is a recording: there is no agent to ask")
 
-    async def act(self, command: Command) -> None:
-        """Nothing can be done."""
-        raise RavestateError(f"this is a recording: there is no agent that could take {command.type!r}")
+    async def act(self, command: ClientFrame) -> None:
+        """Refuse."""
+        raise RavestateError(f"this is a recording: there is no agent to take {command.type!r}")

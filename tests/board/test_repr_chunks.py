@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ravestate.board.pieces import DEEPEST, pieces
+from ravestate.board.repr_chunks import DEEPEST, repr_chunks
 
 
 class Pair(NamedTuple):
@@ -80,7 +80,7 @@ VALUES = st.recursive(
 
 @given(VALUES)
 def test_it_is_what_python_says(value: object) -> None:
-    assert "".join(pieces(value)) == repr(value)
+    assert "".join(repr_chunks(value)) == repr(value)
 
 
 @pytest.mark.parametrize(
@@ -104,7 +104,7 @@ def test_it_is_what_python_says(value: object) -> None:
     ],
 )
 def test_what_is_said_of_containers(value: object, text: str) -> None:
-    assert "".join(pieces(value)) == repr(value) == text
+    assert "".join(repr_chunks(value)) == repr(value) == text
 
 
 ORDERED: list[OrderedDict[Any, Any]] = [
@@ -116,7 +116,7 @@ ORDERED: list[OrderedDict[Any, Any]] = [
 
 @pytest.mark.parametrize("value", ORDERED)
 def test_what_python_says_otherwise_from_3_12_on(value: object) -> None:
-    assert "".join(pieces(value)) == repr(value)
+    assert "".join(repr_chunks(value)) == repr(value)
 
 
 class Sly(list[Any]):
@@ -152,11 +152,11 @@ class Further(Point):
     "value", [Sly([1, 2]), SlyText("x"), SlyDict({1: 2}), Bytes(b"x"), Further(1, 2, 3)], ids=repr
 )
 def test_what_is_made_from_pythons_own_is_shown_by_what_it_holds(value: object) -> None:
-    assert "".join(pieces([value])) == repr([value])
+    assert "".join(repr_chunks([value])) == repr([value])
 
 
 def test_of_things_that_are_counted_the_first_comes_first() -> None:
-    assert "".join(pieces(Counter("abb"))) == "Counter({'a': 1, 'b': 2})"
+    assert "".join(repr_chunks(Counter("abb"))) == "Counter({'a': 1, 'b': 2})"
 
 
 def test_what_is_within_itself_is_left_out_as_python_does() -> None:
@@ -166,20 +166,20 @@ def test_what_is_within_itself_is_left_out_as_python_does() -> None:
     default: defaultdict[int, Any] = defaultdict(None, {1: inner})
     for value in ((inner,), (1, inner), row, ordered, default, Box(inner), {1: inner}):
         inner[:] = [value]
-        assert "".join(pieces(value)) == repr(value)
+        assert "".join(repr_chunks(value)) == repr(value)
 
 
 def test_what_is_within_itself_is_said_once() -> None:
     loop: list[Any] = [1]
     loop += [loop, {2: loop}]
-    assert "".join(pieces(loop)) == repr(loop) == "[1, [...], {2: [...]}]"
+    assert "".join(repr_chunks(loop)) == repr(loop) == "[1, [...], {2: [...]}]"
 
 
 def test_what_is_too_deep_is_left_out() -> None:
     deep: list[Any] = []
     for _ in range(100_000):
         deep = [deep]
-    assert "".join(pieces(deep)) == "[" * (DEEPEST + 2) + "..." + "]" * (DEEPEST + 2)
+    assert "".join(repr_chunks(deep)) == "[" * (DEEPEST + 2) + "..." + "]" * (DEEPEST + 2)
 
 
 class Loud:
@@ -188,7 +188,7 @@ class Loud:
 
 
 def test_what_fails_is_told_in_its_place() -> None:
-    assert "".join(pieces([1, Loud()])) == "[1, <Loud whose repr fails: RuntimeError>]"
+    assert "".join(repr_chunks([1, Loud()])) == "[1, <Loud whose repr fails: RuntimeError>]"
 
 
 class Watched:
@@ -216,9 +216,9 @@ def things() -> Iterator[Watched]:
 )  # fmt: skip
 def test_no_more_is_made_than_is_taken(value: object) -> None:
     Watched.asked = 0
-    list(islice(pieces(value), 20))
+    list(islice(repr_chunks(value), 20))
     assert 0 < Watched.asked <= 20
 
 
 def test_a_huge_text_is_cut_before_it_is_spelt() -> None:
-    assert len("".join(pieces(["x" * 10**7, b"x" * 10**7]))) < 250_000
+    assert len("".join(repr_chunks(["x" * 10**7, b"x" * 10**7]))) < 250_000

@@ -5,8 +5,8 @@ from __future__ import annotations
 from types import NoneType, UnionType
 from typing import Annotated, Any, Union, get_args, get_origin
 
-from ravestate.board.commands import Emit
-from ravestate.board.shown import is_foreign
+from ravestate.board.protocol import Emit
+from ravestate.board.rendering import not_json
 from ravestate.declare.signal import Signal
 from ravestate.declare.slot import Collection, Flag, Slot, checkable
 from ravestate.errors import RavestateError
@@ -85,7 +85,7 @@ def _check_kind(signal: Signal[Any], kind: Any, command: Emit) -> None:
 
 
 def _check_holds(slot: Slot[Any], holds: object) -> None:
-    if not isinstance(slot, Flag) and not isinstance(slot, Collection) and is_foreign(holds):
+    if not isinstance(slot, Flag) and not isinstance(slot, Collection) and not_json(holds):
         raise RavestateError(
             f"{slot.name} holds a {type(holds).__name__}, for which JSON has no words: only a rule or a program can "
             "write it"

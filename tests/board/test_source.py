@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from board.looking import in_virtual_time, passing
-from ravestate.board.subject import _outside_of_any_task  # pyright: ignore[reportPrivateUsage]
+from ravestate.board.source import _outside_of_any_task  # pyright: ignore[reportPrivateUsage]
 
 
 def fail() -> None:

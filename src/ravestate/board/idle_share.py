@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from time import perf_counter, process_time
 
-__all__ = ["Leisure"]
+__all__ = ["IdleShare"]
 
 SCHEDULE = "/proc/thread-self/schedstat"
 """Where Linux tells of a thread: nanoseconds that it ran, and that it was ready but had no processor."""
 
 
-class Leisure:
+class IdleShare:
     """The share of time in which the process had nothing to do, since it was last asked; ask in one thread only.
 
     All of its threads count, so that several of them at work may hide that one rests: then there is nothing to spare.
@@ -18,7 +18,7 @@ class Leisure:
     systems that do not tell (all but Linux) it counts as if it were.
 
     Example:
-        >>> 0.0 <= Leisure().share() <= 1.0
+        >>> 0.0 <= IdleShare().share() <= 1.0
         True
     """
 
