@@ -6,7 +6,8 @@ import ravestate as rs
 from board.looking import gossip
 from modules.platform.webio.visit import parrot
 from ravestate.board.description import describe
-from ravestate.board.picture import draw, fold
+from ravestate.board.picture import draw
+from ravestate.draw.fold import fold
 from ravestate.modules import hibye, idle
 
 

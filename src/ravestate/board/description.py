@@ -10,9 +10,9 @@ import math
 from dataclasses import dataclass
 from typing import Any, get_origin
 
+from ravestate.draw.build import build
+from ravestate.draw.graph import Diagram
 from ravestate.policy.completion import UNIT
-from ravestate.policy.diagram.build import build
-from ravestate.policy.diagram.graph import Diagram
 from ravestate.policy.plan import Clause, Need, RulePlan, SignalPlan, SlotPlan
 from ravestate.policy.policy import Policy
 
