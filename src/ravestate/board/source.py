@@ -183,6 +183,7 @@ class LiveSource:
         match command:
             case Pause():
                 context.pause()
+                self._session.notify()
             case Step():
                 if not await _outside_of_any_task(context.step):
                     raise RavestateError(
@@ -192,6 +193,7 @@ class LiveSource:
                     )
             case Resume():
                 context.resume()
+                self._session.notify()
             case Put():
                 slot = self._named(context.policy.slots, "slot", command.slot)
                 check_value(slot, command.value, context.read(slot))
@@ -211,6 +213,7 @@ class LiveSource:
         """Start a stopped clock again, after the last inspector has left."""
         if self._session.ended is None and self._context.paused:
             self._context.resume()
+            self._session.notify()
 
     def _say(self, text: str) -> None:
         try:

@@ -39,7 +39,7 @@ numbers = st.integers(0, GREATEST)
 names = st.text(st.characters(categories=("L", "N")), min_size=1, max_size=80)
 
 client_frames = st.one_of(
-    st.builds(Hello, st.just(1), st.none() | keys, numbers, st.none() | texts, st.none() | names),
+    st.builds(Hello, st.just(1), st.none() | keys, numbers, st.none() | st.text(), st.none() | names),
     st.builds(Say, keys, texts.filter(str.strip)),
     st.just(Writing()),
     st.just(Bye()),

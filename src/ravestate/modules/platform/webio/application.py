@@ -53,7 +53,8 @@ def make_app(agent: Agent, routes: Iterable[BaseRoute] = (), inside: str | None 
     sessions = Sessions(agent, limit=settings.sessions, keep=settings.keep)
 
     async def connect(socket: WebSocket) -> None:
-        await Connection(socket, sessions, access, settings.title, inside).run()
+        title, suggestions = settings.title, settings.suggestions
+        await Connection(socket, sessions, access, title, inside, suggestions).run()
 
     @contextlib.asynccontextmanager
     async def lifespan(_: Starlette) -> AsyncGenerator[None]:

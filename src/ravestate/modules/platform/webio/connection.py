@@ -17,6 +17,7 @@ from .protocol import (
     Ended,
     Error,
     Hello,
+    Paused,
     Piece,
     Ping,
     Pong,
@@ -66,12 +67,14 @@ class Connection:
         access: Access,
         title: str | None = None,
         inside: str | None = None,
+        suggestions: tuple[str, ...] = (),
     ) -> None:
         self._socket = socket
         self._sessions = sessions
         self._access = access
         self._title = title
         self._inside = inside
+        self._suggestions = suggestions
         self._channel = Channel(socket, REPLIES)
 
     async def run(self) -> None:
@@ -94,7 +97,9 @@ class Connection:
             first, newest = session.history.first, session.history.last
             agent = self._name_of(session)
             await self._send(
-                Welcome(VERSION, session.id, resumed, first, agent, self._inside, newest, writing=True)
+                Welcome(
+                    VERSION, session.id, resumed, first, agent, self._inside, newest, True, self._suggestions
+                )
             )
             await self._channel.both(self._read(session), self._write(session, max(last, first - 1), agent))
         finally:
@@ -146,7 +151,7 @@ class Connection:
     async def _write(self, session: Session, last: int, agent: str) -> None:
         """Tell the client what it has not seen: another name than `agent`, messages after number `last`, and what is
         being said."""
-        shown, typing = "", False
+        shown, typing, paused = "", False, False
         woken = self._channel.woken
         while True:
             woken.clear()
@@ -167,6 +172,9 @@ class Connection:
             if session.typing != typing:
                 typing = session.typing
                 await self._send(Typing(typing))
+            if session.paused != paused:
+                paused = session.paused
+                await self._send(Paused(paused))
             if session.ended is not None and last == session.history.last:
                 await self._send(Ended(session.ended.for_visitor))
                 await self._channel.end()

@@ -150,7 +150,7 @@ class Hello:
     v: Version
     session: Id | None = None
     last: Number = 0
-    token: Text | None = None
+    token: String | None = None
     name: Name | None = None
     type: Literal["hello"] = "hello"
 

@@ -8,8 +8,8 @@ import errno
 import functools
 import socket
 import sys
-from collections.abc import Generator, Iterable
-from types import TracebackType
+from collections.abc import Callable, Generator, Iterable, Mapping
+from types import MappingProxyType, TracebackType
 from typing import TYPE_CHECKING, Any, cast
 from urllib.parse import quote
 
@@ -131,11 +131,34 @@ class Server:
             host = socket.gethostname()
         return f"http://{f'[{host}]' if ':' in host else host}:{self.port}/"
 
-    def announce(self) -> None:
-        """Print where the page is; with the token, as it is the link that lets in."""
+    def link(self, path: str = "") -> str:
+        """Return the address of a page, with the token that lets its visitor in."""
         token = self._settings.token
-        link = self.address + (f"#token={quote(token.get_secret_value(), safe='')}" if token else "")
-        sys.stdout.write(f"The agent is at {link} (Ctrl-C ends it)\n")
+        secret = f"#token={quote(token.get_secret_value(), safe='')}" if token else ""
+        return f"{self.address}{path}{secret}"
+
+    def announce(self, pages: Mapping[str, str] = MappingProxyType({"agent": ""})) -> None:
+        """Print the address of each page.
+
+        The token appears only on a terminal: other outputs are often kept in files that others can read.
+
+        Args:
+            pages: For the name of each page its path.
+        """
+
+        def lines(address: Callable[[str], str]) -> str:
+            return (
+                "\n".join(f"The {name} is at {address(path)}" for name, path in pages.items())
+                + " (Ctrl-C ends it)\n"
+            )
+
+        if self._settings.token is None or sys.stdout.isatty():
+            sys.stdout.write(lines(self.link))
+        else:
+            sys.stdout.write(lines(lambda path: f"{self.address}{path}"))
+            sys.stdout.write("To open it, add #token= and the token that you have set (webio.token).\n")
+            if sys.stderr.isatty():
+                sys.stderr.write(lines(self.link))
         sys.stdout.flush()
 
     async def until_failed(self) -> None:
