@@ -306,7 +306,7 @@ async def test_the_chat_page_leads_to_the_board_of_its_own_conversation(stage: S
 async def test_the_board_asks_for_the_token(stage: Stage) -> None:
     async with served(token="open-sesame-please") as host:
         async with stage.open(f"{host.address}board/") as page:
-            await page.get_by_label("This board asks for a token.").fill("open-sesame-please")
+            await page.get_by_label("This board needs a token.").fill("open-sesame-please")
             await page.get_by_role("button", name="Open", exact=True).click()
             await expect(page.locator(".status")).to_have_text("live")
         async with stage.open(f"{host.address}board/#token=open-sesame-please") as page:
@@ -451,7 +451,7 @@ async def test_choosing_a_cause_shows_the_time_in_which_it_was_answered(stage: S
         await say(page, "Since when?")
         await until_lane(page, "keeper:answer", "done")
         await page.get_by_role("tab", name="Rule").click()
-        causes = page.get_by_label("Which cause")
+        causes = page.get_by_label("Cause", exact=True)
         value = await causes.locator("option", has_text='"Since when?"').get_attribute("value")
         await causes.select_option(value)
         await expect(page.get_by_role("button", name="Follow", exact=True)).to_be_visible()
@@ -643,3 +643,36 @@ async def test_the_pictures_in_the_documentation(stage: Stage, tmp_path: Path) -
     for picture in ("board.png", "board-diagram.png"):
         head = (folder / picture).read_bytes()[:24]
         assert struct.unpack(">II", head[16:24]) == (size["width"], size["height"])
+
+
+@on_stage
+async def test_the_board_follows_the_newest_conversation_of_its_browser(stage: Stage) -> None:
+    async with served() as host, stage.open(f"{host.address}board/") as board:
+        await expect(board.locator(".status")).to_have_text("live")
+        page = await board.context.new_page()
+        await page.goto(host.address)
+        await page.get_by_label("What you say to Elske").fill("It is quiet here.")
+        await page.get_by_label("What you say to Elske").press("Enter")
+        await until_lane(board, "keeper:small_talk", "done")
+        later = await board.context.new_page()
+        await later.goto(f"{host.address}board/")
+        await until_lane(later, "keeper:small_talk", "done")
+
+
+clumsy = rs.Module("clumsy", requires=(rawio,))
+
+
+@clumsy.rule(when=rawio.input.changed, writes=rawio.output)
+async def spill(ctx: rs.RuleContext) -> None:
+    """Fail."""
+    raise ValueError("out of ink")
+
+
+@on_stage
+async def test_a_failure_is_counted_and_shows_its_traceback(stage: Stage) -> None:
+    async with served(clumsy) as host, stage.open(f"{host.address}board/") as page:
+        await say(page, "Write this down.")
+        await page.get_by_role("button", name="1 failed").click()
+        await expect(page.get_by_role("heading", name="clumsy:spill")).to_be_visible()
+        await expect(page.locator("pre")).to_contain_text("Traceback (most recent call last)")
+        await expect(page.locator("pre")).to_contain_text('raise ValueError("out of ink")')
