@@ -77,7 +77,7 @@ def test_what_a_signal_carries_is_raised(signal: rs.Signal[Any], payload: dict[s
 @pytest.mark.parametrize(
     ("signal", "payload", "words"),
     [
-        (plain, {"payload": 7}, r"lab:plain carries no payload: leave it away, or declare its type"),
+        (plain, {"payload": 7}, r"lab:plain carries no payload: leave it out, or declare its type"),
         (plain, {"payload": False}, r"lab:plain carries no payload"),
         (word, {}, r"lab:word carries a payload of type str: give one"),
         (word, {"payload": 7}, r"a payload of type str, not int"),
@@ -92,7 +92,7 @@ def test_what_a_signal_carries_is_raised(signal: rs.Signal[Any], payload: dict[s
         (perhaps.changed, {"payload": 7}, r"a payload of type str, not int"),
         (place.changed, {"payload": {"x": 1}}, r"type Point, which JSON cannot express"),
         (lamp.changed, {"payload": 1}, r"a payload of type bool, not int"),
-        (people.added, {"payload": ["ada", 1]}, r"a change in the collection lab:people: write the slot"),
+        (people.added, {"payload": ["ada", 1]}, r"a change of the collection lab:people: write the slot"),
         (people.changed, {}, r"write the slot"),
     ],
 )  # fmt: skip

@@ -17,8 +17,8 @@ class Node:
 
     Attributes:
         id: Its name within the diagram.
-        kind: What it stands for.
-        label: What is written in it; empty for a junction.
+        kind: The kind of thing that it shows.
+        label: Its text; empty for a junction.
         module: The module it is declared in; empty for a junction and for a module.
         note: Options worth seeing, such as a weight; empty for none.
     """
