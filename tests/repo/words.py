@@ -138,7 +138,7 @@ def of_docstring(text: str, first: int) -> Iterator[tuple[int, str]]:
     lines = text.expandtabs().splitlines()
     margin = min((len(x) - len(x.lstrip()) for x in lines[1:] if x.strip()), default=0)
     prose: list[str] = []
-    section, literal, indent = "", False, 0
+    section, literal = "", False
     for place, line in enumerate(lines):
         bare = line.strip() if place == 0 else line[margin:]
         depth = len(bare) - len(bare.lstrip())
@@ -270,7 +270,6 @@ def faults(paths: Iterable[Path] = ()) -> Iterator[Fault]:
 
 
 if __name__ == "__main__":
-    count = 0
-    for count, fault in enumerate(faults(Path(x).resolve() for x in sys.argv[1:]), 1):
-        print(fault)
-    print(f"{count} faults", file=sys.stderr)
+    found = list(faults(Path(x).resolve() for x in sys.argv[1:]))
+    print(*found, sep="\n")
+    print(f"{len(found)} faults", file=sys.stderr)
