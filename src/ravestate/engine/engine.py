@@ -138,13 +138,13 @@ class Engine(Waves):
         slot = self._collection(event.slot)
         run = self._run(event.run)
         self._mark_write(slot, run)
-        self._change_item(slot, event.key, event.item, run, self._origin(run))
+        self._change_item(slot, event.key, event.item, run)
 
     def on_discard(self, event: events.Discard) -> None:
         slot = self._collection(event.slot)
         run = self._run(event.run)
         self._mark_write(slot, run)
-        self._change_item(slot, event.key, ABSENT, run, self._origin(run))
+        self._change_item(slot, event.key, ABSENT, run)
 
     def on_emit(self, event: events.Emit) -> None:
         signal = self.policy.signal_of.get(event.signal)

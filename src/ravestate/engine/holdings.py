@@ -368,7 +368,11 @@ class Holdings:
         self._unready(activation)
         for need in needs:
             self.lacking.setdefault(need, {})[activation] = None
+        kin = 0
         for need in needs:
+            kin |= need.kin
+        # A lost spike may have kept out spikes of other groups: its kin may now find theirs, too.
+        for need in (*needs, *(n for n in clause.needs if n.bit & kin)):
             if need.bit & activation.missing:
                 self._rematch(activation, need)
         self._update(activation)

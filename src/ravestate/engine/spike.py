@@ -17,6 +17,7 @@ class Spike:
     """Payload, time of birth (seconds), parents, causal group; and who holds it.
 
     Attributes:
+        before: The number of the last activation that is older than the spike.
         source: The number of the run that raised it, 0 if it came from outside.
         holders: The activations that hold it, in the order in which they took it.
         claims: For rules without slots: the activation that runs on it, or None once one has (L10).
@@ -25,6 +26,7 @@ class Spike:
     """
 
     __slots__ = (
+        "before",
         "born",
         "claims",
         "expiring",
@@ -49,6 +51,7 @@ class Spike:
         parents: tuple[Spike, ...],
         source: int,
         rule: int,
+        before: int,
     ) -> None:
         self.id = id
         self.signal = signal
@@ -58,6 +61,7 @@ class Spike:
         self.parents = parents
         self.source = source
         self.rule = rule  # index of the rule that raised it, -1 from outside
+        self.before = before
         self.holders: dict[Activation, None] = {}
         self.expiring: tuple[float, ...] = ()
         self.refused: set[int] | None = None
