@@ -10,6 +10,7 @@ from ravestate.engine.contests import Contests
 from ravestate.engine.deadlines import WATCH
 from ravestate.engine.effects import Cancel, CancelReason, Spiked
 from ravestate.engine.group import Group
+from ravestate.engine.loops import MANY, Lineage
 from ravestate.engine.spike import Spike
 from ravestate.engine.watch import Watch
 from ravestate.policy.plan import Need, SignalPlan
@@ -87,6 +88,7 @@ class Pool(Contests):
         parents: tuple[Spike, ...],
         group: Group,
         run: Activation | None,
+        lineage: Lineage | None = None,
     ) -> None:
         """A spike is born, and offered to whoever lacks it (L11, L12)."""
         self._spikes += 1
@@ -102,6 +104,8 @@ class Pool(Contests):
             return
         rule = -1 if run is None or run.clause.rule.detached else run.clause.rule.index
         spike = Spike(self._spikes, signal, payload, self.now, group, parents, source, rule, self._activations)
+        if self._loops.runs > MANY:
+            spike.lineage = lineage if run is None else run.lineage
         live = self.live.get(signal.index)
         if live is None:
             live = self.live[signal.index] = {}

@@ -9,6 +9,7 @@ from ravestate.policy.plan import SignalPlan
 if TYPE_CHECKING:
     from ravestate.engine.activation import Activation
     from ravestate.engine.group import Group
+    from ravestate.engine.loops import Lineage
 
 __all__ = ["Spike"]
 
@@ -23,6 +24,7 @@ class Spike:
         claims: For rules without slots: the activation that runs on it, or None once one has (L10).
         expiring: The times at which holders that are still incomplete give it up for age (seconds).
         refused: Rules that gave it up for good.
+        lineage: The rules that led to it, when an instant has many runs (L23).
     """
 
     __slots__ = (
@@ -33,6 +35,7 @@ class Spike:
         "group",
         "holders",
         "id",
+        "lineage",
         "parents",
         "payload",
         "refused",
@@ -62,6 +65,7 @@ class Spike:
         self.source = source
         self.rule = rule  # index of the rule that raised it, -1 from outside
         self.before = before
+        self.lineage: Lineage | None = None
         self.holders: dict[Activation, None] = {}
         self.expiring: tuple[float, ...] = ()
         self.refused: set[int] | None = None
