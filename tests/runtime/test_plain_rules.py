@@ -21,6 +21,7 @@ class Crowd:
 
     def __init__(self) -> None:
         self.module = rs.Module("m")
+        self.begun = threading.Semaphore(0)
         self.release = threading.Event()
         self.hang = self.module.signal("hang", payload=int)
         self.ask = self.module.signal("ask")
@@ -28,6 +29,7 @@ class Crowd:
 
         @self.module.rule(when=self.hang, name="hangs")
         def hangs(ctx: rs.RuleContext) -> None:
+            self.begun.release()
             self.release.wait(LIMIT)
 
         @self.module.rule(when=self.ask, emits=self.answered)
@@ -66,6 +68,7 @@ async def test_hanging_functions_that_use_up_the_workers_are_named_in_one_warnin
         async with rs.Context(crowd.module) as context:
             for number in range(2):
                 context.emit(crowd.hang, number)
+                await asyncio.to_thread(crowd.begun.acquire)
             for _ in range(3):
                 context.emit(crowd.ask)
             text = await log.texts.get()
