@@ -60,7 +60,6 @@ class Warnings(logging.Handler):
 async def test_hanging_functions_that_use_up_the_workers_are_named_in_one_warning(full: str) -> None:
     crowd = Crowd()
     with pytest.MonkeyPatch.context() as patch, Warnings() as log:
-        patch.setattr(plain_rules, "STARVED", 0.0)
         patch.setattr(plain_rules, "JobQueue", functools.partial(JobQueue, ThreadPool()))
         patch.setattr(workers, "SHARE" if full.startswith("the share") else "THREADS", 2)
         patch.setattr(workers, "monotonic", lambda: 0.0)
@@ -69,6 +68,7 @@ async def test_hanging_functions_that_use_up_the_workers_are_named_in_one_warnin
             for number in range(2):
                 context.emit(crowd.hang, number)
                 await asyncio.to_thread(crowd.begun.acquire)
+            patch.setattr(plain_rules, "STARVED", 0.0)
             for _ in range(3):
                 context.emit(crowd.ask)
             text = await log.texts.get()
