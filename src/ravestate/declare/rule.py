@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import functools
-import inspect
 from collections.abc import Callable
+from functools import partial
+from inspect import iscoroutinefunction
 from typing import Any, Generic, ParamSpec, TypeVar, cast
 
 from ravestate.declare.condition import Condition
@@ -23,8 +23,8 @@ class Rule(Generic[P, R]):
 
     Attributes:
         name: The qualified name, ``module:function``.
-        function: The function: ``async def`` runs on the loop, a plain one in a worker thread.
-        is_async: Whether a call of the function makes a coroutine.
+        function: The function.
+        is_async: Whether the function is a coroutine function. It runs on the loop, a plain one in a worker thread.
         when: The condition.
         reads: The slots whose values the function may read.
         writes: The slots that the function may write (and read); they decide whom it excludes (L10).
@@ -101,9 +101,9 @@ class Rule(Generic[P, R]):
         return f"<rule {self.name}>"
 
 
-def _is_async(function: Callable[..., Any]) -> bool:
-    while isinstance(function, functools.partial):
-        function = cast("functools.partial[Any]", function).func
-    return inspect.iscoroutinefunction(function) or inspect.iscoroutinefunction(
-        getattr(type(function), "__call__", None)  # noqa: B004  # an object with an async call
+def _is_async(function: object) -> bool:
+    while isinstance(function, partial):
+        function = cast("partial[Any]", function).func
+    return iscoroutinefunction(function) or iscoroutinefunction(
+        vars(type(function)).get("__call__")  # an object with an async call
     )

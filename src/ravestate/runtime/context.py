@@ -155,9 +155,13 @@ class Context:
         if runner.fault is not None:
             raise runner.fault
 
-    async def quiet(self) -> None:
-        """Wait until no rule, apart from those in the background, runs or is kept waiting."""
-        await self._running().quiet()
+    async def quiet(self, slot: Slot[Any] | None = None) -> None:
+        """Wait until no foreground rule runs or waits for consent.
+
+        Args:
+            slot: Wait only for rules that may write this slot, or cause another rule to write it.
+        """
+        await self._running().quiet(None if slot is None else slot.name)
 
     # ------------------------------------------------------------------------------------ its clock
 

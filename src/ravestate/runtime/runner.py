@@ -380,9 +380,9 @@ class Runner:
 
     # ------------------------------------------------------------------------------------ the end
 
-    async def quiet(self) -> None:
-        """Wait until no rule of the foreground runs or is kept waiting."""
-        await self.waits.until(self.waits.is_quiet)
+    async def quiet(self, slot: str | None = None) -> None:
+        """Wait until no foreground rule runs or waits for consent; with a slot, no such rule that may lead to its write."""
+        await self.waits.until(lambda: self.waits.is_quiet(slot))
 
     def stop(self, failure: RavestateError | None) -> None:
         """Ask the context to end; the first failure given is its fault."""

@@ -56,9 +56,14 @@ class Waits:
                 future.set_exception(error)
         self.futures.clear()
 
-    def is_quiet(self) -> bool:
-        """Whether no rule of the foreground runs or is kept waiting."""
-        return all(activation.clause.rule.background for activation in self.alive().values())
+    def is_quiet(self, slot: str | None = None) -> bool:
+        """Return whether no foreground rule runs or waits; with a slot, no such rule that may lead to a write of it."""
+        alive = [activation.clause.rule for activation in self.alive().values()]
+        if slot is not None and alive:
+            policy = self._engine.policy
+            leading = policy.causes.ancestors(policy.slot_of[slot].signals[0].index)
+            alive = [rule for rule in alive if rule.index in leading]
+        return all(rule.background for rule in alive)
 
     def alive(self) -> dict[int, Activation]:
         """Return the activations that run, or are ready and wait, by their numbers."""
