@@ -28,8 +28,8 @@ sys.path.insert(0, str(ROOT / "tests"))
 
 import ravestate as rs  # noqa: E402
 from ravestate.engine import trace as t  # noqa: E402
-from ravestate.policy.diagram.style import NODE_COLOURS, PAPER, TEXT  # noqa: E402
-from ravestate.policy.diagram.text import width  # noqa: E402
+from ravestate.draw.style import NODE_COLOURS, PAPER, TEXT  # noqa: E402
+from ravestate.draw.text import width  # noqa: E402
 from repo.snippets import Page  # noqa: E402
 
 FOLDER = ROOT / "docs" / "pictures"

@@ -16,7 +16,7 @@ ROOT = Path(__file__).parents[2]
 SOURCE = ROOT / "src" / "ravestate"
 KINDS = ("platform", "modality", "meta", "skill")
 
-PURE_ROOMS = ("declare", "policy", "engine", "errors.py")
+PURE_ROOMS = ("declare", "policy", "draw", "engine", "errors.py")
 PURE_LIBRARY = {
     "__future__", "abc", "array", "ast", "bisect", "collections", "contextlib", "copy", "dataclasses", "difflib", "dis",
     "enum", "fractions", "functools", "graphlib", "hashlib", "heapq", "html", "inspect", "itertools", "json",

@@ -10,9 +10,9 @@ import math
 from dataclasses import dataclass
 from typing import Any, get_origin
 
+from ravestate.draw.build import build
+from ravestate.draw.graph import Diagram
 from ravestate.policy.completion import UNIT
-from ravestate.policy.diagram.build import build
-from ravestate.policy.diagram.graph import Diagram
 from ravestate.policy.model import Clause, Need, RulePlan, SignalPlan, SlotPlan
 from ravestate.policy.policy import Policy
 
@@ -143,8 +143,12 @@ class Description:
     diagram: Diagram
 
     def rule(self, name: str) -> RuleView | None:
-        """The rule of a name, if there is one."""
+        """Return the rule of a name, if there is one."""
         return next((rule for rule in self.rules if rule.name == name), None)
+
+    def signal(self, name: str) -> SignalView | None:
+        """Return the signal of a name, if there is one."""
+        return next((signal for signal in self.signals if signal.name == name), None)
 
 
 def describe(policy: Policy) -> Description:

@@ -178,7 +178,7 @@ class Policy:
         Raises:
             ValueError: The format is unknown.
         """
-        from ravestate.policy.diagram import draw
+        from ravestate.draw import draw
 
         return draw(self, format)
 
