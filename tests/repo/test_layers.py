@@ -18,7 +18,7 @@ KINDS = ("platform", "modality", "meta", "skill")
 
 PURE_ROOMS = ("declare", "policy", "draw", "engine", "errors.py")
 PURE_LIBRARY = {
-    "__future__", "abc", "array", "ast", "bisect", "collections", "contextlib", "copy", "dataclasses", "difflib",
+    "__future__", "abc", "array", "ast", "bisect", "collections", "contextlib", "copy", "dataclasses", "difflib", "dis",
     "enum", "fractions", "functools", "graphlib", "hashlib", "heapq", "html", "inspect", "itertools", "json",
     "keyword", "linecache", "math", "numbers", "operator", "re", "reprlib", "string", "struct", "sys", "textwrap",
     "traceback", "types", "typing", "unicodedata", "weakref",
