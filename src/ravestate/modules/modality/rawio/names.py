@@ -23,7 +23,7 @@ utterance writes it to `output` at its end."""
 speaking = module.flag("speaking")
 """Whether an utterance is being made piece by piece."""
 
-typing = module.signal("typing", keep="latest")
+typing = module.signal("typing", input=True, keep="latest")
 """The user is writing a line. A platform that notices emits this with each key, or now and then."""
 
 picture: rs.Slot[Any] = module.slot("picture", None, always=True, input=True)
