@@ -108,7 +108,7 @@ def test_what_cannot_be_written_is_a_failure() -> None:
         )
     assert run.returncode == 1
     assert (
-        "ravestate chat: conio: what the agent says cannot be written: No space left on device\n"
+        "ravestate chat: conio: the agent's words cannot be written: No space left on device\n"
         in run.stderr
     )
 
