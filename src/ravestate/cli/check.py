@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import inspect
 import sys
 
 from ravestate.cli import agent
@@ -39,8 +40,9 @@ def run(options: argparse.Namespace) -> int:
     # What a built-in module offers and this agent has no use or no rival for is no finding of its designer's.
     findings = [
         f
-        for f in policy.findings()
-        if f.kind not in ("unheard", "cooldown") or f.subject.split(":")[0] not in BUILT_IN
+        for f in policy.findings(inspect.getsource)
+        if f.kind not in ("unheard", "unraised", "cooldown")
+        or not {name.split(":")[0] for name in (f.subject, *f.rules)} <= set(BUILT_IN)
     ]
     for finding in findings:
         print(finding)

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from ravestate.engine.group import Group
     from ravestate.engine.loops import Lineage
     from ravestate.engine.spike import Spike
-    from ravestate.policy.plan import Clause
+    from ravestate.policy.model import Clause
 
 __all__ = [
     "CANCEL",

@@ -24,7 +24,7 @@ from ravestate.engine.slots import ABSENT, equal
 from ravestate.engine.spike import Spike
 from ravestate.engine.waves import Waves
 from ravestate.errors import EngineError, RuleError, RuleTimeout, UndeclaredError, nearest
-from ravestate.policy.plan import RulePlan, SlotPlan
+from ravestate.policy.model import RulePlan, SlotPlan
 from ravestate.policy.policy import Policy
 
 __all__ = ["DEFAULT_PATIENCE", "Engine"]
@@ -248,7 +248,7 @@ class Engine(Waves):
             self._substitute(run)
         if self.tracer is not None:
             text = reason or (said(exception) if exception is not None else "")
-            self.tracer(trace.Settled(self.now, run.id, rule.name, outcome, text, fired))
+            self.tracer(trace.Settled(self.now, run.id, rule.name, outcome, text, fired, exception))
         if self.report_ends:
             self._out.append(Ended(run.id, rule.name, outcome, fired))
         on_error = event.kind == "failed" and any(

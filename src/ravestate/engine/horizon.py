@@ -24,7 +24,7 @@ from collections.abc import Generator
 from typing import TYPE_CHECKING, Any
 
 from ravestate.engine.activation import RUNNING, Activation
-from ravestate.policy.plan import Clause, Need
+from ravestate.policy.model import Clause, Need
 
 if TYPE_CHECKING:
     from ravestate.engine.group import Group

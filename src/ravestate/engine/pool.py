@@ -13,7 +13,7 @@ from ravestate.engine.group import Group
 from ravestate.engine.loops import MANY, Lineage
 from ravestate.engine.spike import Spike
 from ravestate.engine.watch import Watch
-from ravestate.policy.plan import Need, SignalPlan
+from ravestate.policy.model import Need, SignalPlan
 
 __all__ = ["Pool"]
 

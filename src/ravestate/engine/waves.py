@@ -26,7 +26,7 @@ from ravestate.engine.loops import MANY, TURNS
 from ravestate.engine.slots import Slots
 from ravestate.engine.watch import Watch
 from ravestate.errors import RuleError
-from ravestate.policy.plan import Clause, RulePlan, SlotPlan
+from ravestate.policy.model import Clause, RulePlan, SlotPlan
 from ravestate.policy.policy import Policy
 
 __all__ = ["Waves"]

@@ -19,6 +19,7 @@ from ravestate.engine.trace import Record
 from ravestate.errors import EngineError
 from ravestate.policy.policy import Policy
 from ravestate.runtime.context import Context
+from ravestate.runtime.hooks import Hooks
 from ravestate.testing.virtual_loop import VirtualLoop
 
 __all__ = ["Simulation", "simulate"]
@@ -56,17 +57,15 @@ class Simulation:
             )
         loop = self._loop = VirtualLoop()
         context = self.context
-        context._on_ended = self._ended  # pyright: ignore[reportPrivateUsage]  # a friend of the context
-        context._on_failed = self._failed  # pyright: ignore[reportPrivateUsage]
-        if OUTPUT in context.policy.signals:
-            context._listeners[OUTPUT] = self.said.append  # pyright: ignore[reportPrivateUsage]
+        hooks = Hooks(
+            on_ended=self._ended,
+            on_failed=self._failed,
+            on_endless=loop.give_up,
+            listeners={OUTPUT: self.said.append} if OUTPUT in context.policy.signals else {},
+        )
         try:
-            loop.run_until_complete(context.__aenter__())
-            runner = context._runner  # pyright: ignore[reportPrivateUsage]
-            assert runner is not None  # entering makes it
-            runner.serial = True
-            runner.on_endless = loop.give_up
-            loop.busy = lambda: [rule.name for rule in runner.threads.values()]
+            loop.run_until_complete(context.start(hooks))
+            loop.busy = context.plain_functions
             self.settle()
         except BaseException:
             loop.close()

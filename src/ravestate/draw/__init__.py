@@ -1,0 +1,52 @@
+"""Signal-Rule-Slot diagrams in the paper's notation, as SVG, DOT or Mermaid; no third party is needed.
+
+`graph` is the diagram as a value, `build` makes it from rules, `layout` places it, and `svg`, `dot` and
+`mermaid` write it down.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+from ravestate.draw.build import build
+from ravestate.draw.dot import dot
+from ravestate.draw.graph import Diagram
+from ravestate.draw.mermaid import mermaid
+from ravestate.draw.svg import svg
+
+if TYPE_CHECKING:
+    from ravestate.policy.policy import Policy
+
+__all__ = ["FORMATS", "draw"]
+
+FORMATS: dict[str, Callable[[Diagram], str]] = {"svg": svg, "dot": dot, "mermaid": mermaid}
+"""The formats by name."""
+
+
+def draw(policy: Policy, format: str = "svg") -> str:
+    """Draw the rules of a policy.
+
+    Args:
+        policy: What ``rs.compile`` gave.
+        format: ``"svg"``, ``"dot"`` or ``"mermaid"``.
+
+    Raises:
+        ValueError: The format is none of these.
+
+    Example:
+        >>> from ravestate.declare.module import Module
+        >>> lamp = Module("lamp")
+        >>> lit = lamp.flag("lit")
+        >>> @lamp.rule(when=lit.true, emits=lamp.signal("bright"))
+        ... def shine(ctx): ...
+        >>> from ravestate.policy.compile import compile_policy
+        >>> print(draw(compile_policy(lamp), "mermaid").splitlines()[0])
+        flowchart LR
+    """
+    writer = FORMATS.get(format)
+    if writer is None:
+        raise ValueError(
+            f"diagram format {format!r} is unknown: write one of {', '.join(map(repr, FORMATS))}"
+        )
+    return writer(build(policy.rules.values()))

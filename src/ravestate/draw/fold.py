@@ -1,0 +1,59 @@
+"""Folding: a whole module becomes one node of the diagram."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Collection
+
+from ravestate.draw.graph import Diagram, Edge, Node
+
+__all__ = ["fold"]
+
+
+def fold(diagram: Diagram, unfolded: Collection[str] = ()) -> Diagram:
+    """Return the diagram with one node for each module.
+
+    Edges inside a folded module disappear. Parallel edges of one kind become one edge.
+
+    Args:
+        diagram: The whole diagram.
+        unfolded: Names of the modules that keep their own nodes.
+
+    Example:
+        >>> whole = Diagram((Node("s", "slot", "s", "m"), Node("r", "rule", "r", "n")), (Edge("s", "r", "reads"),))
+        >>> [node.id for node in fold(whole, {"n"}).nodes]
+        ['module m', 'r']
+    """
+    home = _modules(diagram)
+    rules = Counter(home[node.id] for node in diagram.nodes if node.kind == "rule")
+    places = {
+        node.id: node.id if home[node.id] in unfolded else f"module {home[node.id]}" for node in diagram.nodes
+    }
+    nodes: dict[str, Node] = {}
+    for node in diagram.nodes:
+        place, module = places[node.id], home[node.id]
+        if place == node.id:
+            nodes[place] = node
+        else:
+            note = f"{rules[module] or 'no'} rule{'' if rules[module] == 1 else 's'}"
+            nodes.setdefault(place, Node(place, "module", module, "", note))
+    edges: dict[Edge, None] = {}  # an ordered set
+    for edge in diagram.edges:
+        source, target = places[edge.source], places[edge.target]
+        if source != target:
+            whole = source == edge.source and target == edge.target
+            edges.setdefault(Edge(source, target, edge.kind, edge.label if whole else ""))
+    return Diagram(tuple(nodes.values()), tuple(edges))
+
+
+def _modules(diagram: Diagram) -> dict[str, str]:
+    """Return the module of each node. A junction belongs to the module of its rule."""
+    home = {node.id: node.module for node in diagram.nodes}
+    leads = {edge.source: edge.target for edge in diagram.edges if edge.kind.startswith("condition")}
+    kinds = {node.id: node.kind for node in diagram.nodes}
+    for node in diagram.nodes:
+        end = node.id
+        while kinds[end] in ("and", "or"):
+            end = leads[end]
+        home[node.id] = home[end]
+    return home

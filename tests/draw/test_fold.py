@@ -1,0 +1,22 @@
+from draw.examples import games, prompting
+from ravestate.draw.build import build
+from ravestate.draw.fold import fold
+from ravestate.draw.svg import svg
+
+RULES = [*games().rules, *prompting().rules]
+
+
+def test_each_module_is_one_node_that_counts_its_rules() -> None:
+    folded = fold(build(RULES))
+    assert [(node.id, node.kind, node.note) for node in folded.nodes] == [
+        ("module demo", "module", "8 rules"),
+        ("module prompt", "module", "3 rules"),
+    ]
+    assert "module prompt (3 rules)" in svg(folded)
+
+
+def test_an_unfolded_module_keeps_its_own_nodes_and_junctions() -> None:
+    whole = build(RULES)
+    folded = fold(whole, {"demo"})
+    assert [node for node in folded.nodes if node.kind != "module"] == list(build(games().rules).nodes)
+    assert fold(whole, {"demo", "prompt"}) == whole
