@@ -252,4 +252,4 @@ def test_inputs_from_outside_are_answered_while_a_loop_has_no_end() -> None:
         return answers
 
     assert asyncio.run(talk()) == ["answer"] * 2
-    assert 1_000 < turns.total() < 10_000  # it has not come to its end meanwhile
+    assert 1_000 < turns.total() < 9_000  # it has not come to its end meanwhile

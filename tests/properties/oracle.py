@@ -10,7 +10,16 @@ from ravestate.engine.activation import NEVER, State
 from ravestate.engine.consent import ask
 from ravestate.engine.effects import Effect, Ended, Run
 
-__all__ = ["Exclusion", "bounded", "consistent", "empty", "joined", "pressed_in_time", "still", "waits_for_a_reason"]
+__all__ = [
+    "Exclusion",
+    "bounded",
+    "consistent",
+    "empty",
+    "joined",
+    "pressed_in_time",
+    "still",
+    "waits_for_a_reason",
+]
 
 
 @dataclass

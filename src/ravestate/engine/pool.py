@@ -75,11 +75,12 @@ class Pool(Contests):
                     ]
         for _, _, index, activation, spike in sorted(offers, key=_birth_order):
             need = activation.clause.needs[index]
-            if need.bit & activation.missing and activation.state is GATHERING:
-                if self._coherent(activation, need, spike) and self._fits(need, spike):
-                    self._acquire(activation, need, spike)
-                    self._stir(activation)
-                    self._update(activation)
+            if activation.state is not GATHERING or not need.bit & activation.missing:
+                continue  # an earlier offer has met it
+            if self._coherent(activation, need, spike) and self._fits(need, spike):
+                self._acquire(activation, need, spike)
+                self._stir(activation)
+                self._update(activation)
 
     def _birth(
         self,
@@ -103,7 +104,9 @@ class Pool(Contests):
         if not signal.listeners and not (signal.watchers and self._watches):
             return
         rule = -1 if run is None or run.clause.rule.detached else run.clause.rule.index
-        spike = Spike(self._spikes, signal, payload, self.now, group, parents, source, rule, self._activations)
+        spike = Spike(
+            self._spikes, signal, payload, self.now, group, parents, source, rule, self._activations
+        )
         if self._loops.runs > MANY:
             spike.lineage = lineage if run is None else run.lineage
         live = self.live.get(signal.index)
