@@ -181,4 +181,4 @@ def test_what_is_no_mapping_is_refused(values: Any) -> None:
 
 def test_a_ready_value_of_another_class_is_refused() -> None:
     (fault,) = faults([voice], {"voice": Server(address="")})
-    assert fault == "settings for 'voice' must be of its class Voice, not Server"
+    assert fault == "settings for 'voice' must be an instance of Voice, not of Server"

@@ -57,7 +57,7 @@ def pairs(count: int) -> rs.Condition:
 def test_too_many_clauses_are_refused_before_they_are_made(count: int, alternatives: str) -> None:
     with pytest.raises(
         rs.DeclarationError,
-        match=f"condition has {alternatives} alternatives, more than 256: raise a signal of its own",
+        match=f"condition has {alternatives} alternatives, more than 256: move a part of it to a rule that emits a signal",
     ):
         normal_form(pairs(count))
 

@@ -115,7 +115,7 @@ def test_a_signal_of_another_edition_of_a_module_is_told_apart() -> None:
     m = rs.Module("m", requires=[second])
     rule(m, "r", word)
     (text,) = faults(m)
-    assert "another signal of that name is in the policy: two modules are named 'twin'" in text
+    assert "the policy has another signal of that name: two modules are named 'twin'" in text
 
 
 def test_a_signal_that_the_module_does_not_hold_is_met_by_the_nearest() -> None:
@@ -125,7 +125,7 @@ def test_a_signal_that_the_module_does_not_hold_is_met_by_the_nearest() -> None:
     m.signal("word")
     rule(m, "r", word)
     (text,) = faults(m)
-    assert text.endswith("module m does not hold it; did you mean 'm:word'?")
+    assert text.endswith("module m has no such signal; did you mean 'm:word'?")
 
 
 # ---------------------------------------------------------------------------------------- names used twice
@@ -166,7 +166,7 @@ def test_a_cycle_of_requires_is_shown() -> None:
     a, b, c = rs.Module("a"), rs.Module("b"), rs.Module("c")
     a.requires, b.requires, c.requires = [b], [c], [a]
     (text,) = faults(a)
-    assert text.startswith("modules require each other in a cycle: a -> b -> c -> a; take one `requires` out")
+    assert text.startswith("modules require each other in a cycle: a -> b -> c -> a; remove one `requires`")
     a.requires = [a]
     assert faults(a)[0].startswith("modules require each other in a cycle: a -> a;")
 
@@ -240,7 +240,7 @@ def test_a_predicate_alone_waits_for_nothing() -> None:
     rule(m, "r", mood.holds(bool) | m.signal("go"))
     (text,) = faults(m)
     assert (
-        "'m:mood.holds(bool)' waits for no signal; a predicate on a slot only gates: write mood.changed & ..."
+        "'m:mood.holds(bool)' waits for no signal, and a predicate on a slot only gates: write mood.changed & ..."
         in text
     )
 
@@ -360,7 +360,7 @@ def test_rules_that_wait_for_each_other_only_are_unreachable() -> None:
     found = faults(m)
     assert len(found) == 2
     assert re.match(
-        rf"rule m:first \({HERE}:\d+\) is unreachable: it waits for m:b, raised only by m:second", found[0]
+        rf"rule m:first \({HERE}:\d+\) is unreachable: it waits for m:b; only m:second may raise it", found[0]
     )
     assert found[0].endswith("if it comes from outside, declare it with input=True")
 

@@ -19,7 +19,7 @@ R = TypeVar("R")
 
 
 class Rule(Generic[P, R]):
-    """What ``@module.rule(...)`` makes of a function. Calling it calls the function.
+    """A function with its declaration, made by ``@module.rule(...)``. A call of the rule calls the function.
 
     Attributes:
         name: The qualified name, ``module:function``.
@@ -27,16 +27,16 @@ class Rule(Generic[P, R]):
         is_async: Whether the function is a coroutine function. It runs on the loop, a plain one in a worker thread.
         when: The condition.
         reads: The slots whose values the function may read.
-        writes: The slots that the function may write (and read); they decide whom it excludes (L10).
+        writes: The slots that the function may write and read. Rules that write one slot exclude each other (L10).
         emits: The signals that the function may emit.
         weight: Factor on the utility (L9), above 0.
         cooldown: Seconds over which the utility recovers from 0 after a run (L9).
-        patience: Seconds that the rule, when others wait for it, has to become ready (L16); ``None``: the context's.
+        patience: Seconds that the rule has to become ready while others wait for it (L16); ``None`` for the context's.
         until: A condition that interrupts a run (L21).
-        timeout: Seconds that a run may take (L18); ``None``: any.
-        detached: Whether what the rule causes begins new causal groups (L19).
+        timeout: Seconds that a run may take (L18); ``None`` for no limit.
+        detached: Whether the rule's effects begin new causal groups (L19).
         background: Whether the rule leaves ``rs.activity`` alone (L22).
-        origin: Where it was declared, ``file:line``.
+        origin: The place of the declaration, ``file:line``.
     """
 
     __slots__ = (
