@@ -1,7 +1,7 @@
 """The rooms of the house: which code may know which.
 
-`pyproject.toml` has the order of the rooms as an import-linter contract. What that tool can't see is proved
-here from the source itself: imports of the standard library, and modules that are named lazily.
+`pyproject.toml` has the order of the rooms as an import-linter contract. This file
+proves the rest from the source itself: imports of the standard library, and modules that are named lazily.
 """
 
 import ast

@@ -117,15 +117,9 @@ class UsageError(RavestateError):
 
 
 def _log(verbosity: int) -> None:
-    """Warnings go to whatever ``sys.stderr`` is at the time: a console may have replaced it."""
     import logging
-
-    class Handler(logging.Handler):
-        def emit(self, record: logging.LogRecord) -> None:
-            print(self.format(record), file=sys.stderr)
 
     logging.basicConfig(
         level=[logging.WARNING, logging.INFO, logging.DEBUG][min(verbosity, 2)],
-        handlers=[Handler()],
         format="%(levelname)s %(name)s: %(message)s",
     )
