@@ -191,7 +191,7 @@ def only_fault(build: Callable[[rs.Module, rs.Signal[None]], object], **options:
 def test_an_age_above_the_default_limit_wants_a_limit_of_its_own() -> None:
     text = only_fault(lambda m, go: rule(m, "r", go.min_age(10)))
     assert "m:go can never be at least 10 s and at most 5 s old" in text
-    assert "write .min_age(10).max_age(None) (max_age is 5 s unless you say otherwise)" in text
+    assert "write .min_age(10).max_age(None) (max_age is 5 s by default)" in text
 
 
 def test_ages_that_exclude_each_other() -> None:

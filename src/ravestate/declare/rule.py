@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import KW_ONLY, dataclass, field
 from functools import partial
 from inspect import iscoroutinefunction
 from typing import Any, Generic, ParamSpec, TypeVar, cast
@@ -18,6 +19,7 @@ P = ParamSpec("P")
 R = TypeVar("R")
 
 
+@dataclass(eq=False, repr=False)
 class Rule(Generic[P, R]):
     """A function with its declaration, made by ``@module.rule(...)``. A call of the rule calls the function.
 
@@ -39,60 +41,27 @@ class Rule(Generic[P, R]):
         origin: The place of the declaration, ``file:line``.
     """
 
-    __slots__ = (
-        "__dict__",  # for functools.wraps
-        "background",
-        "cooldown",
-        "detached",
-        "emits",
-        "function",
-        "is_async",
-        "name",
-        "origin",
-        "patience",
-        "reads",
-        "timeout",
-        "until",
-        "weight",
-        "when",
-        "writes",
-    )
+    name: str
+    function: Callable[P, R]
+    _: KW_ONLY
+    when: Condition
+    reads: tuple[Slot[Any], ...]
+    writes: tuple[Slot[Any], ...]
+    emits: tuple[Signal[Any], ...]
+    weight: Number
+    cooldown: Number
+    patience: Number | None
+    until: Condition | None
+    timeout: Number | None
+    detached: bool
+    background: bool
+    origin: str
+    is_async: bool = field(init=False)
 
-    def __init__(
-        self,
-        name: str,
-        function: Callable[P, R],
-        *,
-        when: Condition,
-        reads: tuple[Slot[Any], ...],
-        writes: tuple[Slot[Any], ...],
-        emits: tuple[Signal[Any], ...],
-        weight: Number,
-        cooldown: Number,
-        patience: Number | None,
-        until: Condition | None,
-        timeout: Number | None,
-        detached: bool,
-        background: bool,
-        origin: str,
-    ) -> None:
-        self.name = name
-        self.function = function
-        self.is_async = _is_async(function)
-        self.when = when
-        self.reads = reads
-        self.writes = writes
-        self.emits = emits
-        self.weight = weight
-        self.cooldown = cooldown
-        self.patience = patience
-        self.until = until
-        self.timeout = timeout
-        self.detached = detached
-        self.background = background
-        self.origin = origin
-        self.__doc__ = function.__doc__
-        self.__wrapped__ = function
+    def __post_init__(self) -> None:
+        self.is_async = _is_async(self.function)
+        self.__doc__ = self.function.__doc__
+        self.__wrapped__ = self.function
 
     def __call__(self, *args: P.args, **kwargs: P.kwargs) -> R:
         return self.function(*args, **kwargs)

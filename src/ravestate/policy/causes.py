@@ -27,20 +27,6 @@ class Causes:
         components: The cycles of `direct`; signals of one component lead to each other.
     """
 
-    __slots__ = (
-        "_ancestors",
-        "_closures",
-        "_downstream",
-        "_roots",
-        "_wide",
-        "all_causes",
-        "causes",
-        "components",
-        "direct",
-        "rules",
-        "signals",
-    )
-
     def __init__(self, signals: Sequence[SignalPlan], rules: Sequence[RulePlan]) -> None:
         self.signals = signals
         self.rules = rules

@@ -36,17 +36,6 @@ class Completion:
         cycle: The set of signals on a cycle with the signal, by place; 0 for a signal on none.
     """
 
-    __slots__ = (
-        "_alike",
-        "_signals",
-        "alternatives",
-        "bare",
-        "components",
-        "cycle",
-        "information",
-        "place",
-    )
-
     def __init__(self, signals: Sequence[SignalPlan], rules: Sequence[RulePlan], causes: Causes) -> None:
         found = [_alternatives(signal, causes) for signal in signals]
         bare = [

@@ -34,26 +34,6 @@ class Policy:
         slots: The slots by qualified name.
     """
 
-    __slots__ = (
-        "causes",
-        "clause_plans",
-        "declared",
-        "guarded",
-        "modules",
-        "pathways",
-        "plan_of",
-        "refers",
-        "rule_plans",
-        "rules",
-        "settings",
-        "signal_of",
-        "signal_plans",
-        "signals",
-        "slot_of",
-        "slot_plans",
-        "slots",
-    )
-
     def __init__(
         self,
         *,
