@@ -4,6 +4,7 @@
 RavestateError
 ├── DeclarationError(ValueError)     the designer's mistake, found before running
 ├── DeclarationErrors(ExceptionGroup) all of them at once, raised by ``rs.compile``
+├── UsageError                       an agent is named wrongly: no such module, file or setting
 ├── RuleError(RuntimeError)          a rule did what it may not, or failed
 │   ├── UndeclaredError(LookupError) it touched what its declaration does not name
 │   ├── RuleTimeout(TimeoutError)    it took longer than its ``timeout``
@@ -30,6 +31,7 @@ __all__ = [
     "RuleTimeout",
     "RunEnded",
     "UndeclaredError",
+    "UsageError",
     "nearest",
 ]
 
@@ -60,6 +62,10 @@ class DeclarationErrors(RavestateError, ExceptionGroup[DeclarationError]):
 
 def _count(faults: Sequence[DeclarationError]) -> str:
     return f"{len(faults)} fault" + ("s" if len(faults) != 1 else "") + " in the declarations"
+
+
+class UsageError(RavestateError):
+    """An agent is named wrongly: there is no such module, file or setting. Commands end with exit code 2."""
 
 
 class RuleError(RavestateError, RuntimeError):

@@ -9,7 +9,9 @@ import pytest
 
 import ravestate as rs
 from cli.examples import HELLO, call, write
-from ravestate.cli import UsageError, agent
+from ravestate.errors import UsageError
+from ravestate.loading import modules, spec
+from ravestate.loading.modules import load_module
 from ravestate.modules import rawio
 
 Capture = pytest.CaptureFixture[str]
@@ -34,7 +36,7 @@ def refused(capsys: Capture, *arguments: str, code: int = 2) -> str:
 
 
 def test_a_module_by_its_built_in_name() -> None:
-    assert agent.load_module("rawio") is rawio.module
+    assert load_module("rawio") is rawio.module
 
 
 def test_a_module_by_its_file(folder: Path, capsys: Capture) -> None:
@@ -44,7 +46,7 @@ def test_a_module_by_its_file(folder: Path, capsys: Capture) -> None:
     assert run(capsys, "./sub/hello.py").startswith("Hello 1.0")
     assert run(capsys, "sub/hello.py").startswith("Hello 1.0")
     assert run(capsys, str(folder / "sub" / "hello.py")).startswith("Hello 1.0")
-    assert agent.load_module("sub/uses.py").name == "beside"
+    assert load_module("sub/uses.py").name == "beside"
 
 
 def test_a_module_by_a_dotted_path(folder: Path, capsys: Capture) -> None:
@@ -52,7 +54,7 @@ def test_a_module_by_a_dotted_path(folder: Path, capsys: Capture) -> None:
     write(folder / "pkg" / "inner.py", HELLO + "\n    other = rs.Module('other')\n    module = hello\n")
     assert run(capsys, "pkg.inner").startswith("Hello")
     assert run(capsys, "pkg.inner:hello").startswith("Hello")
-    assert agent.load_module("pkg.inner:other").name == "other"
+    assert load_module("pkg.inner:other").name == "other"
 
 
 def test_a_module_by_the_name_of_its_package_or_file_here(folder: Path, capsys: Capture) -> None:
@@ -74,7 +76,7 @@ def test_a_module_by_its_entry_point(folder: Path, monkeypatch: pytest.MonkeyPat
     )
     write(folder / "two.py", "import ravestate as rs\nwords = rs.Module('two words')")
     monkeypatch.syspath_prepend(folder)
-    assert agent.load_module("weather").name == "weather"
+    assert load_module("weather").name == "weather"
     for name, text in {
         "bad": "bad: expected an rs.Module (or a Python module that holds one), not 3",
         "gone": "entry point 'gone' (plugin:gone) fails: ",
@@ -83,7 +85,7 @@ def test_a_module_by_its_entry_point(folder: Path, monkeypatch: pytest.MonkeyPat
         "wether": "there is no module 'wether'; did you mean 'weather'?",
     }.items():
         with pytest.raises(rs.RavestateError) as caught:
-            agent.load_module(name)
+            load_module(name)
         assert isinstance(caught.value, UsageError) == (name != "wrong")
         assert text in str(caught.value)
 
@@ -95,11 +97,11 @@ def install(monkeypatch: pytest.MonkeyPatch, **points: str) -> None:
     def entry_points(*, group: str) -> list[EntryPoint]:
         return [point for point in found if point.group == group]
 
-    monkeypatch.setattr(agent, "entry_points", entry_points)
+    monkeypatch.setattr(modules, "entry_points", entry_points)
 
 
 def test_the_installed_package_uses_the_right_group() -> None:
-    assert list(agent.entry_points(group="ravestate.modules")) == []  # the built-in ones need none
+    assert list(modules.entry_points(group="ravestate.modules")) == []  # the built-in ones need none
 
 
 def test_a_module_that_is_named_twice_is_taken_once(folder: Path, capsys: Capture) -> None:
@@ -220,7 +222,7 @@ def test_secrets_come_from_the_environment(
 @pytest.mark.parametrize(
     ("content", "text"),
     [
-        ("modules: [", "agent.yaml is not valid YAML: while parsing"),
+        ("modules: [", "agent.yaml:1: not valid YAML (while parsing"),
         ("- rawio", "agent.yaml must hold `modules: [...]`, and may hold settings, seed, patience"),
         ("", "agent.yaml must hold `modules: [...]`"),
         ("moduls: [rawio]", "agent.yaml: unknown key 'moduls'; did you mean 'modules'?"),
@@ -278,7 +280,7 @@ def test_an_agent_file_that_cannot_be_read(folder: Path, capsys: Capture) -> Non
     (folder / "folder.yaml").mkdir()
     assert refused(capsys, "folder.yaml") == "cannot read folder.yaml: Is a directory"
     (folder / "binary.yaml").write_bytes(b"\xff\xfe\x00")
-    assert refused(capsys, "binary.yaml").startswith("binary.yaml is not valid YAML: ")
+    assert refused(capsys, "binary.yaml").startswith("binary.yaml: not valid YAML (")
 
 
 # ---------------------------------------------------------------------------------------- settings
@@ -327,7 +329,7 @@ def test_settings_of_required_modules_are_known_too(folder: Path) -> None:
     base = rs.Module("base")
     top = rs.Module("top", requires=[base])
     base.requires = [top]  # a cycle is the compiler's business
-    assert agent._all([top]) == [top, base]
+    assert spec._with_required([top]) == [top, base]
 
 
 @pytest.mark.parametrize(
@@ -373,5 +375,5 @@ def test_values_that_do_not_fit_are_faults(text: str, fault: str, capsys: Captur
 
 
 def test_an_agent_knows_what_its_contexts_are_given() -> None:
-    options: Any = agent.Agent([], {"a": {}}, 3, 0.5).options()
+    options: Any = spec.AgentSpec([], {"a": {}}, 3, 0.5).options()
     assert options == {"settings": {"a": {}}, "seed": 3, "patience": 0.5}

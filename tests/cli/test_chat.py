@@ -79,7 +79,7 @@ def test_its_help_tells_where_what_it_learns_is_kept(
     assert Path(tmp_path, ".local/share/ravestate/default/memory.lbug") == default_path("default")
     assert "\n  ~/.local/share/ravestate/default/memory.lbug (--set ontology.path=FILE" in out
     assert all(f"ravestate memory {action}" in out for action in ("list", "show NAME", "forget NAME"))
-    assert (f"kept in {history_file()}\n" in out) == (command == "chat")
+    assert (f"you type in {history_file()}\n" in out) == (command == "chat")
     assert str(history_file()).startswith("/state/")
 
 

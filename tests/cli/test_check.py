@@ -14,7 +14,7 @@ def test_all_is_well(folder: Path, capsys: Capture) -> None:
     write(folder / "hello.py", HELLO)
     assert call(capsys, "check", "./hello.py") == (
         0,
-        "1 rules, 10 signals, 3 slots: no faults, no findings\n",
+        "1 rule, 10 signals, 3 slots: no faults, no findings\n",
         "",
     )
 

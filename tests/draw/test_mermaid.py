@@ -8,7 +8,9 @@ from ravestate.draw.graph import Diagram, Edge, Node
 from ravestate.draw.mermaid import mermaid
 
 TEXT = r'"(?:[^"`<>&|\[\](){}%\\\n#;*.-]|#\d+;|<br/>)*"'
-NODE = re.compile(rf"  n\d+(\[\[{TEXT}\]\]|\(\[{TEXT}\]\)|\[/?{TEXT}/?\]|\(\({TEXT}\)\)|\{{{TEXT}\}}):::srs-\w+")
+NODE = re.compile(
+    rf"  n\d+(\[\[{TEXT}\]\]|\(\[{TEXT}\]\)|\[/?{TEXT}/?\]|\(\({TEXT}\)\)|\{{{TEXT}\}}):::srs-\w+"
+)
 EDGE = re.compile(rf"  n\d+ (-->|==>|-\.->)(\|{TEXT}\|)? n\d+")
 
 

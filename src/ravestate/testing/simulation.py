@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 from collections import deque
 from collections.abc import Mapping
+from pathlib import Path
 from types import ModuleType, TracebackType
 from typing import Any, TypeVar
 
@@ -17,6 +18,7 @@ from ravestate.engine.engine import DEFAULT_PATIENCE
 from ravestate.engine.explain import Explanation
 from ravestate.engine.trace import Record
 from ravestate.errors import EngineError
+from ravestate.loading.spec import AgentSpec
 from ravestate.policy.policy import Policy
 from ravestate.runtime.context import Context
 from ravestate.testing.virtual_loop import VirtualLoop
@@ -29,21 +31,83 @@ OUTPUT = "rawio:output:changed"
 
 
 class Simulation:
-    """A context in virtual time. Made by `simulate`; use it as a context manager.
+    """Modules in virtual time: no real waiting, the same result every time. Use it as a context manager.
+
+    Args:
+        modules: As for `Context`.
+        settings: As for `Context`.
+        seed: The seed of random choices; fixed, so that tests repeat.
+        patience: As for `Context` (seconds).
+        trace: Whether to keep every decision.
 
     Attributes:
-        context: The context, for what has no short cut here.
-        said: What was written to ``rawio.output``, in order.
+        context: The context, with everything that has no shortcut here.
+        said: The values that were written to ``rawio.output``, in order.
         fired: The rules that ran and did not resign, in the order in which they finished.
-        failures: What rules failed with: (name of the rule, exception).
+        failures: The rules that failed: (name of the rule, exception).
+
+    Example:
+        >>> import ravestate as rs
+        >>> from ravestate.testing import simulate
+        >>> door = rs.Module("door")
+        >>> bell, opened = door.signal("bell"), door.flag("opened")
+        >>> @door.rule(when=bell, writes=opened)
+        ... async def open_up(ctx):
+        ...     await ctx.sleep(3.0)
+        ...     ctx[opened] = True
+        >>> with simulate(door) as sim:
+        ...     sim.emit(bell)
+        ...     sim.advance(3.0)
+        ...     sim.read(opened), sim.fired, sim.now
+        (True, ['door:open_up'], 3.0)
     """
 
-    def __init__(self, context: Context) -> None:
-        self.context = context
+    def __init__(
+        self,
+        *modules: Module | ModuleType | Policy,
+        settings: Mapping[str, Any] | None = None,
+        seed: int | None = 0,
+        patience: float = DEFAULT_PATIENCE,
+        trace: bool = True,
+    ) -> None:
+        self.context = Context(*modules, settings=settings, seed=seed, patience=patience, trace=trace)
         self.said: list[str] = []
         self.fired: list[str] = []
         self.failures: list[tuple[str, BaseException]] = []
         self._loop: VirtualLoop | None = None
+
+    @classmethod
+    def from_file(
+        cls,
+        path: str | Path,
+        *,
+        settings: Mapping[str, Mapping[str, Any]] | None = None,
+        seed: int | None = None,
+        patience: float | None = None,
+        trace: bool = True,
+    ) -> Simulation:
+        """Simulate the agent of an agent file, as ``ravestate run -f`` reads it.
+
+        Args:
+            path: The agent file. Its modules are relative to its folder.
+            settings: Settings by module, before the environment's and the file's.
+            seed: The seed of random choices; by default the file's, else 0.
+            patience: As for `Context` (seconds); by default the file's.
+            trace: Whether to keep every decision.
+
+        Raises:
+            UsageError: The file or something in it is wrong. The message has all mistakes.
+        """
+        spec = AgentSpec.from_file(Path(path))
+        for module, values in (settings or {}).items():
+            spec.settings[module] = {**spec.settings.get(module, {}), **values}
+        return cls(
+            *spec.modules,
+            settings=spec.settings,
+            seed=next((s for s in (seed, spec.seed) if s is not None), 0),
+            patience=spec.patience if patience is None else patience,
+            trace=trace,
+        )
 
     def __enter__(self) -> Simulation:
         try:
@@ -157,35 +221,4 @@ class Simulation:
         return self._loop
 
 
-def simulate(
-    *modules: Module | ModuleType | Policy,
-    settings: Mapping[str, Any] | None = None,
-    seed: int | None = 0,
-    patience: float = DEFAULT_PATIENCE,
-    trace: bool = True,
-) -> Simulation:
-    """Run modules in virtual time: no real waiting, the same result every time.
-
-    Args:
-        modules: As for `Context`.
-        settings: As for `Context`.
-        seed: Of random choices; fixed, so that tests repeat.
-        patience: As for `Context` (seconds).
-        trace: Whether to keep what happens.
-
-    Example:
-        >>> import ravestate as rs
-        >>> from ravestate.testing import simulate
-        >>> door = rs.Module("door")
-        >>> bell, opened = door.signal("bell"), door.flag("opened")
-        >>> @door.rule(when=bell, writes=opened)
-        ... async def open_up(ctx):
-        ...     await ctx.sleep(3.0)
-        ...     ctx[opened] = True
-        >>> with simulate(door) as sim:
-        ...     sim.emit(bell)
-        ...     sim.advance(3.0)
-        ...     sim.read(opened), sim.fired, sim.now
-        (True, ['door:open_up'], 3.0)
-    """
-    return Simulation(Context(*modules, settings=settings, seed=seed, patience=patience, trace=trace))
+simulate = Simulation
