@@ -129,7 +129,7 @@ $(DONE)/python:
 	@touch $@
 
 $(DONE)/build: $(DONE)/python constraints.txt
-	@$(PIP) pip hatchling editables
+	@$(PIP) pip hatchling hatch-fancy-pypi-readme editables
 	@touch $@
 
 $(DONE)/chat: $(DONE)/build pyproject.toml

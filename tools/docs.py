@@ -34,7 +34,7 @@ PARTS = {
 }
 READING_ORDER = {
     "declare": ["module", "signal", "slot", "condition", "rule", "outcome", "settings", "core"],
-    "policy": ["compile", "policy", "plan", "conflicts", "findings"],
+    "policy": ["compile", "policy", "model", "conflicts", "findings"],
     "runtime": ["run", "context", "rule_context", "journal"],
     "testing": ["simulation"],
     "engine": ["trace", "explain", "snapshot", "engine", "events", "effects", "activation"],

@@ -85,7 +85,7 @@ def _begin_anew(recorder: Any) -> None:
     """Take from a recorder what it was granted for the time in which others had their turn."""
     recorder._granted = asyncio.get_running_loop().time()
     recorder._left = max(1, min(recorder._left, int(recorder._rate * PAUSE)))
-    recorder._leisure.share()
+    recorder._idle_share.share()
 
 
 def answered() -> list[list[float]]:

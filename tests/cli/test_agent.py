@@ -2,6 +2,7 @@
 
 import re
 from importlib.metadata import EntryPoint
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -242,6 +243,51 @@ def test_secrets_come_from_the_environment(
 def test_an_agent_file_that_is_wrong(content: str, text: str, folder: Path, capsys: Capture) -> None:
     write(folder / "agent.yaml", content)
     assert refused(capsys, "agent.yaml").startswith(text)
+
+
+@pytest.mark.parametrize(
+    ("content", "text"),
+    [
+        (
+            "a: &a [x, x, x, x, x, x, x, x, x, x]\n"
+            + "".join(f"{b}: &{b} [{', '.join([f'*{a}'] * 10)}]\n" for a, b in pairwise("abcdefghijk")),
+            "agent.yaml:5: more than 100,000 values once the aliases are followed",
+        ),
+        ("modules: " + "[" * 5_000, "agent.yaml:1: nested more than 50 levels deep"),
+    ],
+    ids=["aliases", "nesting"],
+)
+@pytest.mark.parametrize("command", ["run", "check", "graph"])
+def test_an_agent_file_that_explodes_ends_at_once(
+    command: str, content: str, text: str, folder: Path, capsys: Capture
+) -> None:
+    (folder / "agent.yaml").write_text(content, encoding="utf-8")
+    assert call(capsys, command, "agent.yaml") == (2, "", f"ravestate {command}: {text}\n")
+
+
+def test_a_setting_that_explodes_is_a_text(capsys: Capture) -> None:
+    assert "= '[[[" in refused(capsys, "idle", "--set", f"idle.bored_after={'[' * 5_000}", code=1)
+
+
+def test_check_and_graph_say_first_which_python_code_an_agent_file_runs(
+    folder: Path, capsys: Capture
+) -> None:
+    write(folder / "deep" / "hello.py", HELLO)
+    write(folder / "other.py", "print('ran'); import ravestate as rs; module = rs.Module('other')")
+    write(folder / "deep" / "agent.yaml", "modules: [rawio, ./hello.py, other]")
+    for command in ("check", "graph"):
+        code, _, errors = call(capsys, command, "deep/agent.yaml")
+        said = f"ravestate {command}: deep/agent.yaml runs Python code: {Path('deep/hello.py')}, other\n"
+        assert (code, errors) == (0, said)
+    assert run(capsys, "deep/agent.yaml").startswith("Hello")  # no word on stderr
+
+
+def test_nothing_is_said_where_an_agent_file_names_built_in_modules_alone(
+    folder: Path, capsys: Capture
+) -> None:
+    write(folder / "hello.py", HELLO)
+    write(folder / "agent.yaml", "modules: [rawio]")
+    assert call(capsys, "check", "agent.yaml", "./hello.py")[2] == ""
 
 
 def test_all_that_is_wrong_in_an_agent_file_is_told_at_once(folder: Path, capsys: Capture) -> None:

@@ -1,5 +1,6 @@
 """The command line as a whole: help, exit codes, no traceback for a user's mistake."""
 
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -9,6 +10,7 @@ import pytest
 import ravestate as rs
 from cli.examples import HELLO, call, complaints, write
 from ravestate.cli import COMMANDS, main
+from ravestate.modules import BUILT_IN
 
 Capture = pytest.CaptureFixture[str]
 
@@ -20,6 +22,24 @@ def test_every_command_has_help(capsys: Capture) -> None:
         assert name in out and summary.split(",")[0][:30] in " ".join(out.split())
         code, own, _ = call(capsys, name, "--help")
         assert code == 0 and own.startswith(f"usage: ravestate {name}")
+
+
+@pytest.mark.parametrize("arguments", [("--help",), ("run", "--help")])
+def test_help_lists_the_built_in_modules_and_imports_none(arguments: tuple[str, ...], folder: Path) -> None:
+    program = (
+        "import sys\n"
+        "from ravestate.cli import main\n"
+        "try: main(sys.argv[1:])\n"
+        "finally: print([m for m in sys.modules if m.startswith('ravestate.modules.')])"
+    )
+    run = subprocess.run(
+        [sys.executable, "-c", program, *arguments], capture_output=True, text=True, timeout=60, check=False
+    )
+    listed = run.stdout.partition("built-in modules:\n")[2].splitlines()
+    told = dict(line.split(maxsplit=1) for line in listed if re.match(r"  \w", line))
+    assert list(told) == sorted(BUILT_IN)
+    assert all(len(summary) > 10 for summary in told.values())
+    assert run.stdout.splitlines()[-1] == "[]"
 
 
 def test_the_version_is_told(capsys: Capture) -> None:

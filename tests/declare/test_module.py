@@ -1,6 +1,7 @@
 """Modules are values; every mistake in a declaration says what to write instead."""
 
 import functools
+import inspect
 import re
 import types
 from collections.abc import Callable
@@ -223,11 +224,35 @@ def test_reads_and_writes_name_slots_and_emits_names_signals(demo: rs.Module) ->
         refused(f"{what}='mood' is no slot", lambda what=what: demo.rule(when=go, **{what: ["mood"]})(do))
         refused(f"{what}=None is no slot", lambda what=what: demo.rule(when=go, **{what: None})(do))
     refused(
-        "emits=demo:mood is no signal: writing it signals; write writes=mood",
+        "emits=demo:mood is no signal: a write raises its signals; write writes=mood",
         lambda: demo.rule(when=go, emits=mood)(do),
     )
     message = refused("emits=5 is no signal", lambda: demo.rule(when=go, emits=5)(do))
     assert re.match(rf"rule demo:do \({HERE}:\d+\): emits=5", message)
+
+
+@pytest.mark.parametrize(
+    ("refusal", "declare"),
+    [
+        ("demo.rule", lambda m: m.rule(when=m.signal("go"), write=())),
+        ("has no argument 'write'; did you mean 'writes'?", lambda m: m.rule(when=None, write=())),
+        ("has no argument 'wen'; did you mean 'when'?", lambda m: m.rule(wen=None)),
+        ("has no argument 'cooldwon'; did you mean 'cooldown'?", lambda m: m.rule(when=None, cooldwon=3)),
+        ("has no argument 'defalt'; did you mean 'default'?", lambda m: m.slot("x", defalt=1)),
+        ("has no argument 'alwys'; did you mean 'always'?", lambda m: m.flag("x", alwys=True)),
+        ("has no argument 'imput'; did you mean 'input'?", lambda m: m.signal("x", imput=True)),
+        ("has no argument 'always'", lambda m: m.collection("x", always=True)),
+        ("rs.Module (", lambda m: rs.Module("x", setings=None)),
+        ("has no argument 'setings'; did you mean 'settings'?", lambda m: rs.Module("x", setings=None)),
+    ],
+)
+def test_a_misspelt_keyword_is_met_by_the_right_one(refusal: str, declare: Any, demo: rs.Module) -> None:
+    assert re.search(rf"\({HERE}:\d+\)", refused(refusal, lambda: declare(demo)))
+    assert demo.rules == demo.slots == []
+
+
+def test_help_shows_the_arguments_of_a_rule() -> None:
+    assert list(inspect.signature(rs.Module.rule).parameters)[:4] == ["self", "when", "reads", "writes"]
 
 
 def test_a_refused_rule_is_not_in_the_module(demo: rs.Module) -> None:

@@ -212,7 +212,7 @@ async def test_why_not_is_answered_with_the_right_reason(stage: Stage) -> None:
             "old => document.querySelector('#cause option')?.value !== old", arg=option
         )
         await page.locator("#cause").select_option(index=0)
-        await expect(answered).to_contain_text("keeper:classify was done without raising it")
+        await expect(answered).to_contain_text("keeper:classify finished without raising it")
 
 
 @on_stage

@@ -66,7 +66,7 @@ def test_rules_clauses_and_names_stand_in_declaration_order() -> None:
     policy = rs.compile(m)
     assert list(policy.rules) == ["m:z", "m:y"]
     assert [name for name in policy.signals if name.startswith("m:")] == ["m:b", "m:a"]
-    assert [clause.signals for clause in policy.clauses("m:z")] == [("m:a",), ("m:b",)]
+    assert [clause.signals for clause in policy.clauses("m:z")] == [(a,), (b,)]
 
 
 def test_inputs_are_what_no_rule_raises_or_what_is_declared_so() -> None:
@@ -84,7 +84,7 @@ def test_coherence_joins_what_may_come_of_one_cause() -> None:
     rule(m, "q", heard, emits=question)
     rule(m, "a", heard, emits=about)
     rule(m, "both", question & about & seen & heard.detached())
-    (clause,) = rs.compile(m).clauses("m:both")
+    (clause,) = rs.compile(m).rule_plan("m:both").clauses
     assert [need.kin for need in clause.needs] == [0b011, 0b011, 0b100, 0b1000]
 
 
@@ -261,7 +261,7 @@ def test_too_many_clauses() -> None:
 def test_ages_that_some_moment_fulfils(least: Any, most: Any) -> None:
     m = rs.Module("m", settings=Late)
     rule(m, "r", m.signal("go").min_age(least).max_age(most))
-    (need,) = rs.compile(m).clauses("m:r")[0].needs
+    (need,) = rs.compile(m).rule_plan("m:r").clauses[0].needs
     assert need.min_age <= need.max_age
 
 

@@ -113,7 +113,9 @@ def _counts(policy: rs.Policy) -> dict[str, int]:
     found: dict[str, int] = {}
     for name in policy.rules:
         seen: set[str] = set()
-        stack = [(need.signal.name, need.detached) for c in policy.clauses(name) for need in c.needs]
+        stack = [
+            (need.signal.name, need.detached) for c in policy.rule_plan(name).clauses for need in c.needs
+        ]
         while stack:
             signal, detached = stack.pop()
             if signal in seen:
@@ -123,7 +125,7 @@ def _counts(policy: rs.Policy) -> dict[str, int]:
                 stack.extend(
                     (need.signal.name, need.detached)
                     for raiser in raisers.get(signal, ())
-                    for c in policy.clauses(raiser)
+                    for c in policy.rule_plan(raiser).clauses
                     for need in c.needs
                 )
         for signal in seen:

@@ -119,6 +119,8 @@ def of_markdown(text: str, first: int = 1) -> Iterator[tuple[int, str]]:
                 fence = opens[1]
             elif bare.startswith("|"):
                 yield from ((number, cell.strip()) for cell in bare.strip("|").split("|") if cell.strip(" -:"))
+            elif bare.startswith("#"):
+                pass  # a heading is a title, not a sentence
             elif starts:
                 begin, held = number, [bare[starts.end() :]]
             continue

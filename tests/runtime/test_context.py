@@ -1,6 +1,7 @@
 """A context's life: begun once, acted on from the loop and from threads, ended in order."""
 
 import asyncio
+import contextlib
 import json
 import logging
 import threading
@@ -10,7 +11,8 @@ from typing import Any
 import pytest
 
 import ravestate as rs
-from ravestate.runtime import runner as runner_file
+from ravestate.runtime import async_rules
+from ravestate.runtime.async_rules import GRACE
 from ravestate.runtime.workers import SHARE
 from ravestate.testing import simulate
 from runtime.on_loop import on_loop, turns
@@ -194,11 +196,10 @@ async def test_several_may_wait_for_the_same() -> None:
         await turns(1)
         context.emit(number, 0)
         assert await asyncio.gather(*waiting) == [0, 0, 0]
-        assert context._runner.futures == {} and context._runner.engine.watched == {}
 
 
 @on_loop
-async def test_next_gives_up_after_its_timeout_and_leaves_nothing_behind() -> None:
+async def test_next_gives_up_after_its_timeout() -> None:
     async with rs.Context(policy) as context:
         with pytest.raises(TimeoutError, match="no demo:number within 0 s"):
             await context.next(number, timeout=0)
@@ -209,7 +210,6 @@ async def test_next_gives_up_after_its_timeout_and_leaves_nothing_behind() -> No
         waiting.cancel()
         await turns()
         assert waiting.cancelled()
-        assert context._runner.futures == {} and context._runner.engine.watched == {}
 
 
 @on_loop
@@ -643,8 +643,7 @@ def test_nothing_begins_while_the_last_clean_up(caplog: pytest.LogCaptureFixture
     assert not caplog.records
 
 
-@on_loop
-async def test_the_others_go_on_when_a_rule_interrupts_the_process() -> None:
+def test_the_others_go_on_when_a_rule_interrupts_the_process() -> None:
     ending = Ending()
 
     @ending.rule(ending.go)
@@ -655,33 +654,31 @@ async def test_the_others_go_on_when_a_rule_interrupts_the_process() -> None:
     async def other(ctx: rs.RuleContext) -> None:
         ending.told.append("other")
 
-    async with rs.Context(ending.module) as context:
-        await context.quiet()
-        runner = context._runner  # pyright: ignore[reportPrivateUsage]
-        assert runner is not None
+    context = rs.Context(ending.module)
+    with contextlib.closing(asyncio.new_event_loop()) as loop:
+        loop.run_until_complete(context.start())
         context.emit(ending.go)
         with pytest.raises(KeyboardInterrupt):
-            runner._pump()  # as the loop does, which ends by it
-        await context.quiet()
+            loop.run_until_complete(context.quiet())
+        loop.run_until_complete(context.quiet())
         assert ending.told == ["other"]
+        loop.run_until_complete(context.stop())
 
 
-@on_loop
-async def test_an_interruption_leaves_no_timer_behind() -> None:
+def test_a_rule_that_ends_when_it_is_interrupted_causes_no_warning_later(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
     ending = Ending()
 
     @ending.rule(ending.go, until=ending.then)
     async def long(ctx: rs.RuleContext) -> None:
         await ctx.sleep(3600)
 
-    async with rs.Context(ending.module) as context:
-        runner = context._runner  # pyright: ignore[reportPrivateUsage]
-        assert runner is not None
-        context.emit(ending.go)
-        await turns(3)
-        context.emit(ending.then)
-        await context.quiet()
-        assert not runner._patience  # pyright: ignore[reportPrivateUsage]
+    with simulate(ending.module) as sim:
+        sim.emit(ending.go)
+        sim.emit(ending.then)
+        sim.advance(2 * GRACE)
+        assert sim.fired == ["m:long"] and not caplog.records
 
 
 def test_shutdown_is_given_so_much_time_and_no_more() -> None:
@@ -746,7 +743,7 @@ async def test_nobody_who_refuses_keeps_the_process() -> None:
                 ending.told.append("no")
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(runner_file, "GRACE", 0.001)
+        patch.setattr(async_rules, "GRACE", 0.001)
         async with rs.Context(ending.module) as context:
             context.emit(ending.go)
             await turns()

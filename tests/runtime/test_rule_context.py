@@ -437,7 +437,7 @@ def test_a_rule_may_write_while_it_cleans_up(scene: Scene) -> None:
         try:
             await ctx.sleep(60)
         finally:
-            ctx[scene.note] = ctx.told
+            ctx[scene.note] = ctx.cancelled
 
     with simulate(scene.module) as sim:
         sim.emit(scene.go)

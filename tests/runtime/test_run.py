@@ -197,9 +197,6 @@ def test_signal_handlers_are_there_while_it_runs_and_gone_after_it(number: signa
 AGENT = """
     import asyncio, sys
     import ravestate as rs
-    from ravestate.runtime import runner
-
-    runner.BLOCKING = float("inf")  # how loaded the machine is does not matter here
     m = rs.Module("m")
 
     def tell(text):

@@ -12,8 +12,7 @@ import pytest
 import ravestate as rs
 from ravestate.engine.engine import Engine
 from ravestate.engine.trace import Settled
-from ravestate.runtime import nest as nest_file
-from ravestate.runtime import runner as runner_file
+from ravestate.runtime.async_rules import GRACE
 from ravestate.testing import simulate
 from runtime.on_loop import on_loop, turns
 
@@ -621,7 +620,7 @@ def test_a_rule_that_refuses_to_end_is_given_up() -> None:
     with Records() as log, simulate(talk.module) as sim:
         sim.put(talk.heard, "hello")
         sim.emit(talk.stop)
-        sim.advance(runner_file.GRACE - 0.1)
+        sim.advance(GRACE - 0.1)
         assert log.messages == []
         sim.advance(0.2)
         assert re.match(
@@ -631,35 +630,6 @@ def test_a_rule_that_refuses_to_end_is_given_up() -> None:
         assert "m:stubborn" in sim.fired
         sim.advance(3600)
         assert told == ["rule m:stubborn acted after its run was over (it did not end in time)"]
-
-
-@pytest.mark.parametrize("waits", [False, True])
-@on_loop
-async def test_a_rule_that_blocks_the_loop_is_named(waits: bool) -> None:
-    talk = Talk()
-    clock = [0.0]
-
-    async def heavy(ctx: rs.RuleContext) -> None:
-        if waits:
-            await asyncio.sleep(0)
-        clock[0] += 0.25
-        ctx[talk.said] = "heavy"
-
-    async def light(ctx: rs.RuleContext) -> None:
-        clock[0] += 0.05
-
-    talk.rule(heavy)
-    talk.rule(light, writes=talk.note)
-    with pytest.MonkeyPatch.context() as patch, Records() as log:
-        patch.setattr(runner_file, "BLOCKING", 0.1)
-        patch.setattr(runner_file, "perf_counter", lambda: clock[0])
-        patch.setattr(nest_file, "perf_counter", lambda: clock[0])
-        async with rs.Context(talk.module) as context:
-            assert await talk.ask(context) == "heavy"
-    (text,) = log.messages
-    assert re.match(
-        rf"rule m:heavy \({HERE}:\d+\) blocked the loop for 250 ms: make it a plain function", text
-    )
 
 
 # ---------------------------------------------------------------------------------------- much, large

@@ -10,12 +10,12 @@ from unittest.mock import Mock
 
 import pytest
 
-from ravestate.runtime.workers import SHARE, Crew, Workers
+from ravestate.runtime.workers import SHARE, JobQueue, ThreadPool
 
 LIMIT = 20.0
 
 
-def finished(workers: Workers, job: Callable[[], None] = lambda: None) -> threading.Thread:
+def finished(jobs: JobQueue, job: Callable[[], None] = lambda: None) -> threading.Thread:
     """Have a job done and return the thread that did it."""
     done: SimpleQueue[threading.Thread] = SimpleQueue()
 
@@ -23,7 +23,7 @@ def finished(workers: Workers, job: Callable[[], None] = lambda: None) -> thread
         job()
         done.put(threading.current_thread())
 
-    workers.submit(work)
+    jobs.submit(work)
     return done.get(timeout=LIMIT)
 
 
@@ -33,16 +33,16 @@ def ended(thread: threading.Thread) -> bool:
 
 
 def test_jobs_run_in_daemon_threads_that_say_whose_they_are() -> None:
-    workers = Workers(Crew())
-    thread = finished(workers)
+    jobs = JobQueue(ThreadPool())
+    thread = finished(jobs)
     assert thread is not threading.current_thread()
     assert thread.daemon and thread.name == "ravestate-1"
-    workers.close()
+    jobs.close()
     assert ended(thread)
 
 
 def test_busy_threads_are_joined_by_new_ones() -> None:
-    workers = Workers(Crew())
+    jobs = JobQueue(ThreadPool())
     together = threading.Barrier(4)  # which nobody passes alone
     done: SimpleQueue[str] = SimpleQueue()
 
@@ -51,14 +51,14 @@ def test_busy_threads_are_joined_by_new_ones() -> None:
         done.put(threading.current_thread().name)
 
     for _ in range(3):
-        workers.submit(meet)
+        jobs.submit(meet)
     together.wait(LIMIT)
     assert {done.get(timeout=LIMIT) for _ in range(3)} == {"ravestate-1", "ravestate-2", "ravestate-3"}
-    workers.close()
+    jobs.close()
 
 
 def test_a_thread_that_hangs_holds_up_nobody() -> None:
-    workers = Workers(Crew())
+    jobs = JobQueue(ThreadPool())
     release = threading.Event()
     begun = threading.Event()
 
@@ -66,18 +66,18 @@ def test_a_thread_that_hangs_holds_up_nobody() -> None:
         begun.set()
         release.wait(LIMIT)
 
-    workers.submit(hang)
+    jobs.submit(hang)
     assert begun.wait(LIMIT)
-    thread = finished(workers)
+    thread = finished(jobs)
     assert thread.name == "ravestate-2"
-    workers.close()
+    jobs.close()
     assert ended(thread)
     release.set()
 
 
 def test_an_idle_thread_is_used_again_also_by_another_context() -> None:
-    crew = Crew()
-    several = [Workers(crew), Workers(crew)]
+    pool = ThreadPool()
+    several = [JobQueue(pool), JobQueue(pool)]
     seen = {finished(several[number % 2]) for number in range(200)}
     assert len(seen) <= 2  # a thread may be met in the instant between its work and its rest
     several[0].close()
@@ -87,8 +87,8 @@ def test_an_idle_thread_is_used_again_also_by_another_context() -> None:
 
 
 def test_no_context_takes_more_than_its_share() -> None:
-    crew = Crew()
-    greedy, modest = Workers(crew), Workers(crew)
+    pool = ThreadPool()
+    greedy, modest = JobQueue(pool), JobQueue(pool)
     release = threading.Event()
     begun: SimpleQueue[threading.Thread] = SimpleQueue()
 
@@ -109,7 +109,7 @@ def test_no_context_takes_more_than_its_share() -> None:
 
 
 def test_what_hangs_and_is_waited_for_no_more_leaves_its_place_to_others() -> None:
-    workers = Workers(Crew())
+    jobs = JobQueue(ThreadPool())
     release = threading.Event()
     done: SimpleQueue[str] = SimpleQueue()
 
@@ -117,35 +117,35 @@ def test_what_hangs_and_is_waited_for_no_more_leaves_its_place_to_others() -> No
         release.wait(LIMIT)
         done.put("hung")
 
-    hanging = [workers.submit(hang) for _ in range(SHARE + 2)]
-    workers.submit(lambda: done.put("late"))
-    workers.let_go(hanging[-1])  # which has not begun
-    workers.let_go(hanging[0])  # whose place the next one takes
-    workers.let_go(hanging[1])
+    hanging = [jobs.submit(hang) for _ in range(SHARE + 2)]
+    jobs.submit(lambda: done.put("late"))
+    jobs.abandon(hanging[-1])  # which has not begun
+    jobs.abandon(hanging[0])  # whose place the next one takes
+    jobs.abandon(hanging[1])
     assert done.get(timeout=LIMIT) == "late"
-    finished(workers)
+    finished(jobs)
     release.set()
     assert [done.get(timeout=LIMIT) for _ in range(SHARE + 1)] == ["hung"] * (SHARE + 1)
     for _ in range(3 * SHARE):
-        finished(workers)  # the share is as large as before
-    workers.close()
+        finished(jobs)  # the share is as large as before
+    jobs.close()
 
 
 def test_a_forked_process_has_threads_of_its_own() -> None:
     program = """
 import os, threading
 from queue import SimpleQueue
-from ravestate.runtime.workers import Workers
+from ravestate.runtime.workers import JobQueue
 
-def do(workers):
+def do(jobs):
     done = SimpleQueue()
-    workers.submit(lambda: done.put(1))
+    jobs.submit(lambda: done.put(1))
     return done.get(timeout=20)
 
-do(Workers())
+do(JobQueue())
 child = os.fork()
 if child == 0:
-    os._exit(7 * do(Workers()))
+    os._exit(7 * do(JobQueue()))
 print(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]))
 """
     process = subprocess.run(
@@ -155,7 +155,7 @@ print(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]))
 
 
 def test_what_has_not_begun_when_a_context_ends_is_not_done() -> None:
-    workers = Workers(Crew())
+    jobs = JobQueue(ThreadPool())
     release = threading.Event()
     done: SimpleQueue[int] = SimpleQueue()
 
@@ -164,32 +164,32 @@ def test_what_has_not_begun_when_a_context_ends_is_not_done() -> None:
         done.put(number)
 
     for number in range(SHARE + 10):
-        workers.submit(functools.partial(work, number))
-    workers.close()
+        jobs.submit(functools.partial(work, number))
+    jobs.close()
     release.set()
     assert sorted(done.get(timeout=LIMIT) for _ in range(SHARE)) == list(range(SHARE))
     assert done.empty()
 
 
 def test_a_system_without_threads_is_told_of_and_what_can_wait_waits(monkeypatch: pytest.MonkeyPatch) -> None:
-    workers = Workers(Crew())
+    jobs = JobQueue(ThreadPool())
     with monkeypatch.context() as patch:
         patch.setattr(threading.Thread, "start", Mock(side_effect=RuntimeError("can't start new thread")))
         with pytest.raises(RuntimeError, match="can't start"):
-            workers.submit(lambda: None)
+            jobs.submit(lambda: None)
     release = threading.Event()
 
     def hold() -> None:
         release.wait(LIMIT)
 
-    workers.submit(hold)
+    jobs.submit(hold)
     done: SimpleQueue[str] = SimpleQueue()
     with monkeypatch.context() as patch:
         patch.setattr(threading.Thread, "start", Mock(side_effect=RuntimeError("can't start new thread")))
-        workers.submit(lambda: done.put("late"))
+        jobs.submit(lambda: done.put("late"))
     release.set()
     assert done.get(timeout=LIMIT) == "late"
-    workers.close()
+    jobs.close()
 
 
 def test_the_end_of_the_process_waits_for_a_function_at_work_but_not_for_one_that_hangs() -> None:
@@ -205,7 +205,7 @@ def work():
     threading.Event().wait({seconds})
     print("done", flush=True)
 
-workers.Workers().submit(work)
+workers.JobQueue().submit(work)
 at_work.wait()
 """
     for seconds, expected in ((0.2, "done\n"), (3600, "")):

@@ -224,7 +224,7 @@ class View:
         self._values[slot.name] = value
 
     def payload(self, signal: rs.Signal[Any]) -> Any:
-        clauses = self._driver.engine.policy.clauses(self._rule)
+        clauses = self._driver.engine.policy.rule_plan(self._rule).clauses
         if all(signal not in clause.signals for clause in clauses):
             raise rs.UndeclaredError(f"the condition of {self._rule} does not name {signal}")
         return self._payloads.get(signal.name)

@@ -2,10 +2,10 @@
 
 import pytest
 
-from ravestate.runtime import runner
+from ravestate.runtime import blocking
 
 
 @pytest.fixture(autouse=True)
 def nobody_blocks(monkeypatch: pytest.MonkeyPatch) -> None:
     """Warn of no rule that blocks the loop; the test of these warnings says otherwise."""
-    monkeypatch.setattr(runner, "BLOCKING", float("inf"))
+    monkeypatch.setattr(blocking, "BLOCKING", float("inf"))

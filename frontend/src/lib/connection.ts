@@ -1,5 +1,6 @@
 import { Backoff } from "./backoff";
-import { CLOSED, type ClientFrame, parse, type ServerFrame } from "./protocol";
+import { parse } from "./frames";
+import { CLOSING_CODES, type ClientFrame, type ServerFrame } from "./protocol";
 
 /**
  * - `connecting`: for the first time
@@ -103,9 +104,9 @@ export class Connection {
 
   #closed(code: number): void {
     this.#drop();
-    if (code === CLOSED.ended) this.#become("ended");
-    else if (code === CLOSED.tokenNeeded) this.#become("token");
-    else if (code === CLOSED.notUnderstood) this.#become("refused");
+    if (code === CLOSING_CODES.ended) this.#become("ended");
+    else if (code === CLOSING_CODES.token) this.#become("token");
+    else if (code === CLOSING_CODES.malformed) this.#become("refused");
     else {
       this.#become("lost");
       this.#retry = setTimeout(() => this.start(), this.#backoff.next());

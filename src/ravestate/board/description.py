@@ -13,7 +13,7 @@ from typing import Any, get_origin
 from ravestate.draw.build import build
 from ravestate.draw.graph import Diagram
 from ravestate.policy.completion import UNIT
-from ravestate.policy.plan import Clause, Need, RulePlan, SignalPlan, SlotPlan
+from ravestate.policy.model import Clause, Need, RulePlan, SignalPlan, SlotPlan
 from ravestate.policy.policy import Policy
 
 __all__ = [
@@ -143,8 +143,12 @@ class Description:
     diagram: Diagram
 
     def rule(self, name: str) -> RuleView | None:
-        """The rule of a name, if there is one."""
+        """Return the rule of a name, if there is one."""
         return next((rule for rule in self.rules if rule.name == name), None)
+
+    def signal(self, name: str) -> SignalView | None:
+        """Return the signal of a name, if there is one."""
+        return next((signal for signal in self.signals if signal.name == name), None)
 
 
 def describe(policy: Policy) -> Description:
@@ -193,7 +197,7 @@ def _rule(policy: Policy, plan: RulePlan) -> RuleView:
 
 
 def _clause(policy: Policy, clause: Clause) -> ClauseView:
-    pathways = clause.pathways
+    pathways = policy.pathways.of_clause(clause)
     predicates = len(clause.guards) + sum(len(need.predicates) for need in clause.needs)
     least = sorted(signal.name for signal in pathways[0]) if pathways else []
     return ClauseView(
@@ -219,9 +223,7 @@ def _constraint(need: Need) -> ConstraintView:
 
 
 def _term(policy: Policy, clause: Clause, name: str) -> Term:
-    completed = clause.completed
-    assert completed is not None  # a compiled clause has it
-    completion = completed.completion
+    completion = policy.pathways.completion
     nats = completion.information[completion.place[policy.signal_of[name].index]] / UNIT
     return Term(name, round(len(policy.rule_plans) * math.exp(-nats)), round(nats, 12))
 

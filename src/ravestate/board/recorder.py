@@ -19,7 +19,7 @@ from dataclasses import dataclass
 from itertools import islice
 from weakref import WeakKeyDictionary, ref
 
-from ravestate.board.leisure import Leisure
+from ravestate.board.idle_share import IdleShare
 from ravestate.engine.trace import Born, Record
 from ravestate.runtime.context import Context
 
@@ -89,7 +89,7 @@ class Recorder:
         self._burst = burst
         self._rate = rate
         self._spare = spare
-        self._leisure = Leisure()
+        self._idle_share = IdleShare()
         self._left = 0  # the first record is granted a burst
         self._granted: float | None = None
         self._spike = 0  # the newest that was seen, whether it is still kept or not
@@ -174,7 +174,7 @@ class Recorder:
 
     def _speed(self) -> float:
         """Records a second that it may take now."""
-        return self._rate + self._spare * self._leisure.share()
+        return self._rate + self._spare * self._idle_share.share()
 
 
 class Recorders:

@@ -9,7 +9,7 @@ import sys
 import webbrowser
 from collections.abc import Awaitable, Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from ravestate.cli import agent as agents
 from ravestate.cli import complete
@@ -75,15 +75,9 @@ async def _serve(
     stopped = asyncio.Event()
     with asked_by_signals(stopped.set):
         async with Server(made, beside, inside) as server:
-            token: Any = getattr(made.settings["webio"], "token", None)
-            secret = f"#token={token.get_secret_value()}" if token else ""
-            board = f"{server.address}{inside}{secret}"
-            if talks:
-                sys.stdout.write(f"The agent is at {server.address}{secret}\n")
-            sys.stdout.write(f"The board is at {board} (Ctrl-C ends it)\n")
-            sys.stdout.flush()
+            server.announce({"agent": "", "board": inside} if talks else {"board": inside})
             if browser or (browser is None and _has_browser()):
-                await asyncio.to_thread(webbrowser.open, f"{server.address}{secret}" if talks else board)
+                await asyncio.to_thread(webbrowser.open, server.link("" if talks else inside))
             await _first(stopped.wait, server.until_failed)
 
 

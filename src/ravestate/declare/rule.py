@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, Generic, ParamSpec, TypeVar
+from functools import partial
+from inspect import iscoroutinefunction
+from typing import Any, Generic, ParamSpec, TypeVar, cast
 
 from ravestate.declare.condition import Condition
 from ravestate.declare.settings import Number
@@ -21,7 +23,8 @@ class Rule(Generic[P, R]):
 
     Attributes:
         name: The qualified name, ``module:function``.
-        function: The function: ``async def`` runs on the loop, a plain one in a worker thread.
+        function: The function.
+        is_async: Whether the function is a coroutine function. It runs on the loop, a plain one in a worker thread.
         when: The condition.
         reads: The slots whose values the function may read.
         writes: The slots that the function may write (and read); they decide whom it excludes (L10).
@@ -43,6 +46,7 @@ class Rule(Generic[P, R]):
         "detached",
         "emits",
         "function",
+        "is_async",
         "name",
         "origin",
         "patience",
@@ -74,6 +78,7 @@ class Rule(Generic[P, R]):
     ) -> None:
         self.name = name
         self.function = function
+        self.is_async = _is_async(function)
         self.when = when
         self.reads = reads
         self.writes = writes
@@ -94,3 +99,11 @@ class Rule(Generic[P, R]):
 
     def __repr__(self) -> str:
         return f"<rule {self.name}>"
+
+
+def _is_async(function: object) -> bool:
+    while isinstance(function, partial):
+        function = cast("partial[Any]", function).func
+    return iscoroutinefunction(function) or iscoroutinefunction(
+        vars(type(function)).get("__call__")  # an object with an async call
+    )

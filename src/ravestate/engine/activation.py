@@ -28,7 +28,7 @@ from ravestate.errors import EngineError
 if TYPE_CHECKING:
     from ravestate.engine.group import Group
     from ravestate.engine.spike import Spike
-    from ravestate.policy.plan import Clause
+    from ravestate.policy.model import Clause
 
 __all__ = [
     "CANCEL",

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from ravestate.engine.activation import NEVER, RUNNING, Activation
 from ravestate.engine.horizon import FIRM, NO, Horizon
-from ravestate.policy.plan import Clause, RulePlan
+from ravestate.policy.model import Clause, RulePlan
 
 if TYPE_CHECKING:
     from ravestate.engine.group import Group

@@ -12,7 +12,7 @@ from __future__ import annotations
 from ravestate.engine.activation import Activation
 from ravestate.engine.holdings import Holdings
 from ravestate.engine.spike import Spike
-from ravestate.policy.plan import Clause, SignalPlan
+from ravestate.policy.model import Clause, SignalPlan
 
 __all__ = ["Contests"]
 

@@ -24,7 +24,7 @@ from ravestate.engine.slots import ABSENT, equal
 from ravestate.engine.spike import Spike
 from ravestate.engine.waves import Waves
 from ravestate.errors import EngineError, RuleError, RuleTimeout, UndeclaredError, nearest
-from ravestate.policy.plan import RulePlan, SlotPlan
+from ravestate.policy.model import RulePlan, SlotPlan
 from ravestate.policy.policy import Policy
 
 __all__ = ["DEFAULT_PATIENCE", "Engine"]

@@ -42,7 +42,7 @@ from ravestate.engine.group import Group
 from ravestate.engine.spike import Spike
 from ravestate.engine.trace import Tracer
 from ravestate.engine.watch import Watch
-from ravestate.policy.plan import Clause, Need, RulePlan, SignalPlan, SlotPlan
+from ravestate.policy.model import Clause, Need, RulePlan, SignalPlan, SlotPlan
 from ravestate.policy.policy import Policy
 
 __all__ = ["Holdings"]

@@ -22,7 +22,7 @@ import sys
 from typing import TYPE_CHECKING
 
 from ravestate.engine.activation import RUNNING, Activation
-from ravestate.policy.plan import Clause, Need
+from ravestate.policy.model import Clause, Need
 
 if TYPE_CHECKING:
     from ravestate.engine.group import Group

@@ -12,7 +12,7 @@ from ravestate.engine.effects import Cancel, CancelReason, Spiked
 from ravestate.engine.group import Group
 from ravestate.engine.spike import Spike
 from ravestate.engine.watch import Watch
-from ravestate.policy.plan import Need, SignalPlan
+from ravestate.policy.model import Need, SignalPlan
 
 __all__ = ["Pool"]
 

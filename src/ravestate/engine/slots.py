@@ -13,7 +13,7 @@ from ravestate.engine.group import Group
 from ravestate.engine.pool import Pool
 from ravestate.engine.spike import Spike
 from ravestate.errors import RuleError, UndeclaredError
-from ravestate.policy.plan import SlotPlan
+from ravestate.policy.model import SlotPlan
 
 __all__ = ["ABSENT", "Slots", "equal"]
 

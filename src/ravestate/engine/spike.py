@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from ravestate.policy.plan import SignalPlan
+from ravestate.policy.model import SignalPlan
 
 if TYPE_CHECKING:
     from ravestate.engine.activation import Activation

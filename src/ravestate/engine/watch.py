@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ravestate.engine.activation import NEVER, Activation
 from ravestate.engine.spike import Spike
-from ravestate.policy.plan import Clause
+from ravestate.policy.model import Clause
 
 __all__ = ["Watch"]
 

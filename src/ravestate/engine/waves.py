@@ -23,7 +23,7 @@ from ravestate.engine.group import Group
 from ravestate.engine.horizon import FIRM, Horizon
 from ravestate.engine.slots import Slots
 from ravestate.engine.watch import Watch
-from ravestate.policy.plan import Clause, SlotPlan
+from ravestate.policy.model import Clause, SlotPlan
 from ravestate.policy.policy import Policy
 
 __all__ = ["Waves"]

@@ -63,3 +63,7 @@ def __getattr__(name: str) -> Any:
     if name not in BUILT_IN:
         raise AttributeError(f"there is no built-in module {name!r}{nearest(name, BUILT_IN)}", name=name)
     return import_module(f"ravestate.modules.{BUILT_IN[name]}.{name}")
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from ravestate.policy.components import components
-from ravestate.policy.plan import Clause, Need, RulePlan, SignalPlan
+from ravestate.policy.model import Clause, Need, RulePlan, SignalPlan
 
 __all__ = ["Causes"]
 

@@ -81,7 +81,7 @@ def build(
     if found:
         raise DeclarationErrors(found)
     find_kin(numbered.plans, causes)
-    assign_utilities(names.signals, numbered.plans, causes)
+    completion = assign_utilities(names.signals, numbered.plans, causes)
     find_contests(names.signals)
     return Policy(
         modules=tuple(modules),
@@ -90,6 +90,7 @@ def build(
         slot_plans=tuple(names.slots),
         rule_plans=tuple(numbered.plans),
         causes=causes,
+        completion=completion,
         refers=numbers.refers,
         settings=settings,
     )

@@ -16,7 +16,7 @@ from collections.abc import Iterator, Sequence
 from ravestate.declare.signal import Signal
 from ravestate.policy.causes import Causes
 from ravestate.policy.components import components
-from ravestate.policy.plan import RulePlan, SignalPlan
+from ravestate.policy.model import RulePlan, SignalPlan
 
 __all__ = ["UNIT", "Completion", "each"]
 

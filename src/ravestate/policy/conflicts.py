@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ravestate.policy.plan import Clause, RulePlan
+from ravestate.policy.model import Clause, RulePlan
 from ravestate.policy.policy import Policy
 
 __all__ = ["Conflict", "Conflicts", "find_conflicts"]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from ravestate.policy.causes import Causes
-from ravestate.policy.plan import Clause, Need, RulePlan, SignalPlan, SlotPlan
+from ravestate.policy.model import Clause, Need, RulePlan, SignalPlan, SlotPlan
 
 __all__ = ["connect", "find_contests", "find_kin"]
 

@@ -9,7 +9,7 @@ from itertools import islice
 from ravestate.declare.core import startup
 from ravestate.policy.completion import each
 from ravestate.policy.conflicts import Conflicts
-from ravestate.policy.plan import Clause, RulePlan
+from ravestate.policy.model import Clause, RulePlan
 from ravestate.policy.policy import Policy
 from ravestate.policy.wording import few
 

@@ -11,7 +11,7 @@ from ravestate.declare.module import Module
 from ravestate.declare.signal import Signal
 from ravestate.declare.slot import Slot
 from ravestate.errors import DeclarationError, nearest
-from ravestate.policy.plan import SignalPlan, SlotPlan
+from ravestate.policy.model import SignalPlan, SlotPlan
 
 __all__ = ["Names"]
 

@@ -14,7 +14,7 @@ from typing import Any
 
 from ravestate.declare.signal import Signal
 from ravestate.policy.completion import Completion
-from ravestate.policy.plan import Clause, Need
+from ravestate.policy.model import Clause, Need
 
 __all__ = ["MAX_PATHWAYS", "MAX_UNIONS", "Pathways"]
 
@@ -39,16 +39,19 @@ class _Entangled(Exception):
 class Pathways:
     """The pathways of a policy; those of signals are remembered."""
 
-    __slots__ = ("_known", "_unions", "_within", "completion")
+    __slots__ = ("_known", "_of_clauses", "_unions", "_within", "completion")
 
     def __init__(self, completion: Completion) -> None:
         self.completion = completion
+        self._of_clauses: dict[Clause, tuple[frozenset[Signal[Any]], ...]] = {}
         self._known: dict[int, Costs] = {}
         self._within: dict[tuple[int, int], Costs] = {}  # by place and what of its cycle is on the way
         self._unions = 0
 
     def of_clause(self, clause: Clause) -> tuple[frozenset[Signal[Any]], ...]:
         """The pathways of a clause, the least first, then the cheapest; at most `MAX_PATHWAYS`."""
+        if clause in self._of_clauses:
+            return self._of_clauses[clause]
         self._unions = 0
         try:
             found = _run(self._of_needs(clause.needs))
@@ -58,7 +61,9 @@ class Pathways:
             self._within.clear()
         found[clause.least] = -1
         ordered = sorted(found, key=lambda pathway: (found[pathway], pathway))
-        return tuple(self.completion.signals(pathway) for pathway in ordered[:MAX_PATHWAYS])
+        pathways = tuple(self.completion.signals(pathway) for pathway in ordered[:MAX_PATHWAYS])
+        self._of_clauses[clause] = pathways
+        return pathways
 
     def _of_needs(self, needs: Iterable[Need]) -> Finding:
         found: Costs = {0: 0}

@@ -12,7 +12,9 @@ from ravestate.declare.signal import Signal
 from ravestate.declare.slot import Slot
 from ravestate.errors import DeclarationError, DeclarationErrors, nearest
 from ravestate.policy.causes import Causes
-from ravestate.policy.plan import Clause, RulePlan, SignalPlan, SlotPlan
+from ravestate.policy.completion import Completion
+from ravestate.policy.model import ClauseView, RulePlan, SignalPlan, SlotPlan
+from ravestate.policy.pathways import Pathways
 
 if TYPE_CHECKING:
     from ravestate.policy.conflicts import Conflict
@@ -37,6 +39,7 @@ class Policy:
         "declared",
         "guarded",
         "modules",
+        "pathways",
         "plan_of",
         "refers",
         "rule_plans",
@@ -59,6 +62,7 @@ class Policy:
         slot_plans: tuple[SlotPlan, ...],
         rule_plans: tuple[RulePlan, ...],
         causes: Causes,
+        completion: Completion,
         refers: bool,
         settings: Mapping[str, Any],
     ) -> None:
@@ -68,6 +72,7 @@ class Policy:
         self.slot_plans = slot_plans
         self.rule_plans = rule_plans
         self.causes = causes
+        self.pathways = Pathways(completion)
         self.refers = refers
         self.settings = settings
         clauses = [clause for rule in rule_plans for clause in (*rule.clauses, *rule.until)]
@@ -118,16 +123,31 @@ class Policy:
         """
         return max((clause.utility for clause in self.rule_plan(rule).clauses), default=0.0)
 
-    def clauses(self, rule: str | Rule[Any, Any]) -> tuple[Clause, ...]:
-        """The clauses of a rule: each with ``.signals`` (declared), ``.pathways`` (completed), ``.utility`` (nats).
+    def clauses(self, rule: str | Rule[Any, Any]) -> tuple[ClauseView, ...]:
+        """Return the clauses of a rule: for each its signals, its pathways and its utility.
 
-        There may be exponentially many pathways. They are worked out when they are asked for: the one with the least
-        information first, then the cheapest, 256 at most; only the first where cycles are too entangled for that.
+        Args:
+            rule: The rule, or its qualified name.
 
         Raises:
             DeclarationError: The policy has no such rule.
+
+        Example:
+            >>> import ravestate as rs
+            >>> demo = rs.Module("demo")
+            >>> heard, word = demo.signal("heard"), demo.signal("word")
+            >>> @demo.rule(when=heard, emits=word)
+            ... async def listen(ctx): ...
+            >>> @demo.rule(when=word)
+            ... async def answer(ctx): ...
+            >>> (clause,) = rs.compile(demo).clauses("demo:answer")
+            >>> clause.signals, [sorted(map(str, pathway)) for pathway in clause.pathways]
+            ((demo:word,), [['demo:heard', 'demo:word']])
         """
-        return self.rule_plan(rule).clauses
+        return tuple(
+            ClauseView(clause.signals, self.pathways.of_clause(clause), clause.utility)
+            for clause in self.rule_plan(rule).clauses
+        )
 
     def conflicts(self) -> tuple[Conflict, ...]:
         """The pairs of rules that exclude each other for a common cause (L10): who wins, by how many nats.

@@ -10,9 +10,9 @@ from ravestate.declare.core import activity, pressure
 from ravestate.declare.rule import Rule
 from ravestate.errors import DeclarationError
 from ravestate.policy.clauses import Conjunction, normal_form
+from ravestate.policy.model import Clause, Need, RulePlan, SignalPlan
 from ravestate.policy.names import Names
 from ravestate.policy.numbers import Numbers
-from ravestate.policy.plan import Clause, Need, RulePlan, SignalPlan
 
 __all__ = ["Rules"]
 
@@ -144,4 +144,4 @@ class Rules:
                     + (" (max_age is 5 s unless you say otherwise)" if constraint.max_age_ == 5.0 else "")
                 )
             )
-        return Need(clause, index, constraint, signal, low, high)
+        return Need(clause, index, signal, low, high, constraint.is_detached, constraint.predicates)

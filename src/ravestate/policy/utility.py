@@ -8,20 +8,25 @@ from collections.abc import Sequence
 from ravestate.policy.causes import Causes
 from ravestate.policy.completion import UNIT, Completion
 from ravestate.policy.least import Least
-from ravestate.policy.pathways import Pathways
-from ravestate.policy.plan import NO_INFORMATION, RulePlan, SignalPlan
+from ravestate.policy.model import RulePlan, SignalPlan
 
-__all__ = ["PREDICATE", "assign_utilities"]
+__all__ = ["NO_INFORMATION", "PREDICATE", "assign_utilities"]
 
 PREDICATE = math.log(2)
 """Nats that a ``where`` or ``holds`` predicate adds: it halves the prior (L9)."""
 
+NO_INFORMATION = 1e-9
+"""Nats at which a clause without information (U = 0) competes, so that its weight and cooldown still count."""
 
-def assign_utilities(signals: Sequence[SignalPlan], rules: Sequence[RulePlan], causes: Causes) -> None:
-    """Give every clause its utility, its base and the way to its pathways, and mark cyclic clauses."""
+
+def assign_utilities(signals: Sequence[SignalPlan], rules: Sequence[RulePlan], causes: Causes) -> Completion:
+    """Set the utility, the base and the least pathway of every clause, and mark cyclic clauses.
+
+    Returns:
+        The graph in which clauses are completed, for all other pathways.
+    """
     completion = Completion(signals, rules, causes)
     least = Least(completion)
-    pathways = Pathways(completion)
     of = causes.components.of
     for rule in rules:
         # What a rule raises leads to what its clauses want: to raise what leads there too makes a cycle.
@@ -37,4 +42,4 @@ def assign_utilities(signals: Sequence[SignalPlan], rules: Sequence[RulePlan], c
             # Rounded, as predicates add what is no multiple of the unit.
             clause.utility = round(cost / UNIT + predicates * PREDICATE, 12)
             clause.base = (clause.utility or NO_INFORMATION) * rule.weight
-            clause.completed = pathways
+    return completion

@@ -15,15 +15,15 @@ from ravestate.declare.rule import Rule
 from ravestate.declare.signal import Signal
 from ravestate.declare.slot import Slot
 from ravestate.declare.wording import spelt
-from ravestate.engine.effects import Ended
 from ravestate.engine.engine import DEFAULT_PATIENCE, Engine
-from ravestate.engine.events import AddRule, Emit, Event, Start, Stop, Wipe, Write
+from ravestate.engine.events import Emit, Event, Start, Stop, Wipe, Write
 from ravestate.engine.explain import Explanation, explain
 from ravestate.engine.snapshot import snapshot
 from ravestate.engine.trace import Record
 from ravestate.errors import DeclarationError, EngineError, UndeclaredError, nearest
 from ravestate.policy.compile import compile_policy
 from ravestate.policy.policy import Policy
+from ravestate.runtime.hooks import Hooks
 from ravestate.runtime.journal import Taken
 from ravestate.runtime.runner import Runner
 from ravestate.settings import load_settings
@@ -91,27 +91,31 @@ class Context:
         self._journal = journal
         self._runner: Runner | None = None
         self._stopping: asyncio.Event | None = None
-        self._on_ended: Callable[[Ended], None] | None = None
-        self._on_failed: Callable[[str, BaseException], None] | None = None
-        self._listeners: dict[str, Callable[[Any], None]] = {}
 
     # ------------------------------------------------------------------------------------ life
 
     async def __aenter__(self) -> Context:
+        await self.start()
+        return self
+
+    async def start(self, hooks: Hooks | None = None) -> None:
+        """Start the context, as ``async with`` does; `stop` ends it.
+
+        Args:
+            hooks: Functions that follow what happens, e.g. for a simulation.
+
+        Raises:
+            EngineError: The context was started before.
+        """
         if self._runner is not None:
             raise EngineError("a context runs once: make another one of the same policy")
-        engine = Engine(self._policy, patience=self._patience, report_ends=self._on_ended is not None)
+        hooks = hooks or Hooks()
+        engine = Engine(self._policy, patience=self._patience, report_ends=hooks.on_ended is not None)
         self._stopping = asyncio.Event()
         loop = asyncio.get_running_loop()
-        self._runner = Runner(engine, loop, self.settings, self._seed, self.ask_to_stop)
+        self._runner = Runner(engine, loop, self.settings, self._seed, self.ask_to_stop, hooks, self._journal)
         self._attach()
-        self._runner.on_event = self._journal
-        self._runner.on_ended = self._on_ended
-        self._runner.on_failed = self._on_failed
-        for signal, listener in self._listeners.items():
-            self._runner.listen(signal, listener)
         self._runner.receive(Start())
-        return self
 
     async def __aexit__(self, *_: object) -> None:
         await self.stop()
@@ -123,10 +127,10 @@ class Context:
         runner = self._running()
         self.ask_to_stop()
         runner.resume()
-        known = runner.alive()
+        known = runner.waits.alive()
         runner.receive(Stop())
         try:
-            await runner.wait_for_others(known, grace)
+            await runner.waits.until_others_end(known, grace)
             await runner.close()
         except asyncio.CancelledError:
             await runner.close(at_once=True)
@@ -151,9 +155,13 @@ class Context:
         if runner.fault is not None:
             raise runner.fault
 
-    async def quiet(self) -> None:
-        """Wait until no rule, apart from those in the background, runs or is kept waiting."""
-        await self._running().quiet()
+    async def quiet(self, slot: Slot[Any] | None = None) -> None:
+        """Wait until no foreground rule runs or waits for consent.
+
+        Args:
+            slot: Wait only for rules that may write this slot, or cause another rule to write it.
+        """
+        await self._running().quiet(None if slot is None else slot.name)
 
     # ------------------------------------------------------------------------------------ its clock
 
@@ -214,7 +222,7 @@ class Context:
         Raises:
             DeclarationErrors: The rule does not fit.
         """
-        self._running().receive(AddRule(self.policy.with_rule(rule, self.settings)))
+        self._running().add_rule(rule)
 
     async def next(self, signal: Signal[T], timeout: float | None = None) -> T:  # noqa: ASYNC109  # the public name
         """The payload of the next spike of a signal.
@@ -232,21 +240,11 @@ class Context:
         runner = self._running()
         if runner.closed:
             raise runner.fault or EngineError(f"the context has ended: there will be no {signal.name}")
-        future: asyncio.Future[Any] = runner.loop.create_future()
-        runner.futures.setdefault(signal.name, []).append(future)
-        runner.engine.watched[signal.name] = 1
         try:
-            return await (future if timeout is None else asyncio.wait_for(future, timeout))
+            async with asyncio.timeout(timeout):
+                return await runner.listeners.next(signal.name)
         except TimeoutError:
             raise TimeoutError(f"no {signal.name} within {timeout:g} s") from None
-        finally:
-            waiting = runner.futures.get(signal.name, [])
-            if future in waiting:
-                waiting.remove(future)
-                if not waiting:
-                    del runner.futures[signal.name]
-                    if signal.name not in runner.listeners:
-                        runner.engine.watched.pop(signal.name, None)
 
     # ------------------------------------------------------------------------------------ looking in
 
@@ -275,19 +273,17 @@ class Context:
                 observer(record)
 
         if self._runner is not None:
-            self._runner.engine.tracer = (
-                tell_all if len(observers) > 1 else observers[0] if observers else None
-            )
+            self._runner.trace(tell_all if len(observers) > 1 else observers[0] if observers else None)
 
     @property
     def policy(self) -> Policy:
         """The policy, with the rules that were added to this context."""
-        return self._policy if self._runner is None else self._runner.engine.policy
+        return self._policy if self._runner is None else self._runner.policy
 
     @property
     def now(self) -> float:
         """Seconds since the context began."""
-        return self._running().now()
+        return self._running().now
 
     def read(self, slot: Slot[T]) -> T:
         """The present value of a slot.
@@ -296,7 +292,7 @@ class Context:
             UndeclaredError: The policy does not have the slot.
         """
         self._known(slot, self.policy.slots, "slot")
-        return self._running().engine.read(self.policy.slot_of[slot.name].index)
+        return self._running().read(slot.name)
 
     def explain(self, rule: str | Rule[Any, Any]) -> Explanation:
         """Why a rule runs, waits, or did not fire (L25); its history too if the context keeps its trace.
@@ -304,15 +300,15 @@ class Context:
         Raises:
             DeclarationError: The policy has no such rule.
         """
-        runner = self._running()
-        runner.engine.advance(max(runner.engine.now, runner.now()))
-        return explain(runner.engine, self.policy.rule_plan(rule), self.trace)
+        return explain(self._running().engine_now(), self.policy.rule_plan(rule), self.trace)
 
     def snapshot(self) -> dict[str, Any]:
         """Everything that is alive, as plain data that JSON can carry."""
-        runner = self._running()
-        runner.engine.advance(max(runner.engine.now, runner.now()))
-        return snapshot(runner.engine)
+        return snapshot(self._running().engine_now())
+
+    def plain_functions(self) -> list[str]:
+        """Return the names of the rules whose plain functions are at work, one for each run."""
+        return self._running().plain_functions()
 
     def _running(self) -> Runner:
         if self._runner is None:

@@ -1,4 +1,4 @@
-"""What a rule function is given: its view of the context, and the only way to act (L3, L13)."""
+"""The argument of every rule function: its view of the context, and its only way to act (L3, L13)."""
 
 from __future__ import annotations
 
@@ -6,23 +6,57 @@ import logging
 import random
 from collections.abc import ItemsView, Iterator, KeysView, Mapping, ValuesView
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, Generic, NoReturn, TypeVar, overload
+from typing import Any, Generic, NoReturn, Protocol, TypeVar, overload
 
 from ravestate.declare.rule import Rule
 from ravestate.declare.signal import Signal
 from ravestate.declare.slot import Collection, Slot
 from ravestate.declare.wording import spelt
-from ravestate.engine.events import Discard, Emit, Store, Wipe, Write
+from ravestate.engine.effects import Run
+from ravestate.engine.events import Discard, Emit, Event, Store, Wipe, Write
 from ravestate.errors import RavestateError, RuleError, RunEnded, UndeclaredError, nearest
+from ravestate.policy.policy import Policy
+from ravestate.runtime.clock import Clock
 
-if TYPE_CHECKING:
-    from ravestate.engine.effects import Run
-    from ravestate.runtime.runner import Runner
-
-__all__ = ["Items", "RuleContext"]
+__all__ = ["Host", "Items", "RuleContext"]
 
 T = TypeVar("T")
 V = TypeVar("V")
+
+
+class Host(Protocol):
+    """What a rule context needs of the context that it belongs to.
+
+    Attributes:
+        settings: The settings of each module, by its name.
+        random: The source of random numbers for rules.
+        clock: The context's clock.
+    """
+
+    settings: Mapping[str, Any]
+    random: random.Random
+    clock: Clock
+
+    @property
+    def policy(self) -> Policy:
+        """The policy, with the rules that were added."""
+        ...
+
+    def receive(self, event: Event) -> None:
+        """Give the engine an event; from any thread."""
+        ...
+
+    def add_rule(self, rule: Rule[Any, Any]) -> None:
+        """Add a rule to the policy; from any thread."""
+        ...
+
+    def stop(self, failure: RavestateError | None) -> None:
+        """Ask the context to end, perhaps because of a failure."""
+        ...
+
+    async def quiet(self) -> None:
+        """Wait until no rule of the foreground runs or is kept waiting."""
+        ...
 
 
 class RuleContext:
@@ -32,18 +66,20 @@ class RuleContext:
     writes it, which takes effect, and signals, at once.
     """
 
-    __slots__ = ("_payloads", "_run", "_runner", "_values", "ended", "rule", "told")
+    __slots__ = ("_host", "_payloads", "_values", "cancelled", "ended", "rule", "run")
 
-    def __init__(self, runner: Runner, effect: Run) -> None:
-        self._runner = runner
-        self._run = effect.run
+    def __init__(self, host: Host, effect: Run) -> None:
+        self._host = host
+        self.run = effect.run
+        """The number of the run."""
         self.rule = effect.rule
+        """The rule."""
         self._payloads = effect.payloads
         self._values: dict[str, Any] = effect.values  # type: ignore[assignment]  # made for this run alone
-        self.told = ""
-        """Why the function was told to end; it may still write while it cleans up."""
+        self.cancelled = ""
+        """Why the function was cancelled, if it was; it may still write while it cleans up."""
         self.ended = ""
-        """Why the run is over although the function is not (a thread cannot be stopped); empty while it is not."""
+        """Why the run is over, if it is. The function may go on, because a thread cannot be stopped."""
 
     @overload
     def __getitem__(self, slot: Collection[V]) -> Items[V]: ...
@@ -86,7 +122,7 @@ class RuleContext:
         elif slot.kind == "flag":
             value = bool(value)  # type: ignore[assignment]  # its kind says so
         self._values[slot.name] = value
-        self._runner.receive(Write(slot.name, value, self._run))
+        self._host.receive(Write(slot.name, value, self.run))
 
     @overload
     def payload(self, signal: Signal[T]) -> T: ...
@@ -101,7 +137,7 @@ class RuleContext:
         try:
             return self._payloads[signal.name]
         except (KeyError, AttributeError):
-            plan = self._runner.engine.policy.rule_plan(self.rule)
+            plan = self._host.policy.rule_plan(self.rule)
             names = {need.signal.name for clause in plan.clauses for need in clause.needs}
             if getattr(signal, "name", None) in names:
                 return None
@@ -125,12 +161,12 @@ class RuleContext:
             self._refuse("emitted", "emits", signal, self.rule.emits)
         if self.ended:
             self._alive()
-        self._runner.receive(Emit(signal.name, payload, self._run))
+        self._host.receive(Emit(signal.name, payload, self.run))
 
     def wipe(self, signal: Signal[Any]) -> None:
         """Withdraw the live spikes of a signal and all that they have caused (L20)."""
         self._alive()
-        self._runner.receive(Wipe(signal.name, self._run))
+        self._host.receive(Wipe(signal.name, self.run))
 
     def add_rule(self, rule: Rule[Any, Any]) -> None:
         """Add a rule to this context alone, over the signals and slots that it has.
@@ -139,15 +175,15 @@ class RuleContext:
             DeclarationErrors: The rule does not fit.
         """
         self._alive()
-        self._runner.add_rule(rule)
+        self._host.add_rule(rule)
 
     async def sleep(self, seconds: float) -> None:
         """Wait on the context's clock."""
-        await self._runner.clock.sleep(seconds)
+        await self._host.clock.sleep(seconds)
 
     async def quiet(self) -> None:
         """Wait until no rule, apart from those in the background, runs or is kept waiting."""
-        await self._runner.quiet()
+        await self._host.quiet()
 
     def stop(self, failure: RavestateError | None = None) -> None:
         """Ask the context to end: ``rs.shutdown`` is raised, and what runs is cancelled after it.
@@ -155,18 +191,17 @@ class RuleContext:
         Args:
             failure: Why it cannot go on, where that is no end in order; ``rs.run`` raises it when all has ended.
         """
-        self._runner.fault = self._runner.fault or failure
-        self._runner.ask_to_stop()
+        self._host.stop(failure)
 
     @property
     def now(self) -> float:
         """Seconds since the context began."""
-        return self._runner.now()
+        return self._host.clock.now()
 
     @property
     def settings(self) -> Any:
         """The settings of the rule's module."""
-        return self._runner.settings.get(self.rule.name.split(":", 1)[0])
+        return self._host.settings.get(self.rule.name.split(":", 1)[0])
 
     @property
     def log(self) -> logging.Logger:
@@ -176,7 +211,7 @@ class RuleContext:
     @property
     def random(self) -> random.Random:
         """Random numbers from the context's seed: the only ones that a rule should use."""
-        return self._runner.random
+        return self._host.random
 
     def _alive(self) -> None:
         if self.ended:
@@ -232,7 +267,7 @@ class Items(Mapping[str, V], Generic[V]):
             UndeclaredError: The rule does not declare ``writes`` of the collection.
         """
         self._own()[key] = item
-        self._ctx._runner.receive(Store(self._slot.name, key, item, self._ctx._run))  # pyright: ignore[reportPrivateUsage]
+        self._ctx._host.receive(Store(self._slot.name, key, item, self._ctx.run))  # pyright: ignore[reportPrivateUsage]
 
     def remove(self, key: str) -> None:
         """Remove an item if it is there; signals ``removed`` and ``changed``.
@@ -241,7 +276,7 @@ class Items(Mapping[str, V], Generic[V]):
             UndeclaredError: The rule does not declare ``writes`` of the collection.
         """
         self._own().pop(key, None)
-        self._ctx._runner.receive(Discard(self._slot.name, key, self._ctx._run))  # pyright: ignore[reportPrivateUsage]
+        self._ctx._host.receive(Discard(self._slot.name, key, self._ctx.run))  # pyright: ignore[reportPrivateUsage]
 
     def _own(self) -> dict[str, V]:
         """What may be changed: until the first change, the rule has what others have as well."""

@@ -1,10 +1,10 @@
-"""Simulated contexts: the real runtime, in virtual time."""
+"""Simulated contexts: the real runtime in virtual time."""
 
 from __future__ import annotations
 
 import asyncio
 from collections import deque
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from types import ModuleType, TracebackType
 from typing import Any, TypeVar
@@ -15,12 +15,16 @@ from ravestate.declare.signal import Signal
 from ravestate.declare.slot import Slot
 from ravestate.engine.effects import Ended
 from ravestate.engine.engine import DEFAULT_PATIENCE
+from ravestate.engine.events import Event
 from ravestate.engine.explain import Explanation
 from ravestate.engine.trace import Record
 from ravestate.errors import EngineError
 from ravestate.loading.spec import AgentSpec
+from ravestate.modules import BUILT_IN
 from ravestate.policy.policy import Policy
 from ravestate.runtime.context import Context
+from ravestate.runtime.hooks import Hooks
+from ravestate.runtime.journal import Taken
 from ravestate.testing.virtual_loop import VirtualLoop
 
 __all__ = ["Simulation", "simulate"]
@@ -39,6 +43,7 @@ class Simulation:
         seed: The seed of random choices; fixed, so that tests repeat.
         patience: As for `Context` (seconds).
         trace: Whether to keep every decision.
+        journal: As for `Context`.
 
     Attributes:
         context: The context, with everything that has no shortcut here.
@@ -69,8 +74,11 @@ class Simulation:
         seed: int | None = 0,
         patience: float = DEFAULT_PATIENCE,
         trace: bool = True,
+        journal: Callable[[Event | Taken, float], None] | None = None,
     ) -> None:
-        self.context = Context(*modules, settings=settings, seed=seed, patience=patience, trace=trace)
+        self.context = Context(
+            *modules, settings=settings, seed=seed, patience=patience, trace=trace, journal=journal
+        )
         self.said: list[str] = []
         self.fired: list[str] = []
         self.failures: list[tuple[str, BaseException]] = []
@@ -88,6 +96,8 @@ class Simulation:
     ) -> Simulation:
         """Simulate the agent of an agent file, as ``ravestate run -f`` reads it.
 
+        The built-in platforms (`conio`, `webio`) and their settings are left out: a test speaks through `say`.
+
         Args:
             path: The agent file. Its modules are relative to its folder.
             settings: Settings by module, before the environment's and the file's.
@@ -99,10 +109,12 @@ class Simulation:
             UsageError: The file or something in it is wrong. The message has all mistakes.
         """
         spec = AgentSpec.from_file(Path(path))
+        platforms = {name for name, folder in BUILT_IN.items() if folder == "platform"}
+        spec.settings = {name: values for name, values in spec.settings.items() if name not in platforms}
         for module, values in (settings or {}).items():
             spec.settings[module] = {**spec.settings.get(module, {}), **values}
         return cls(
-            *spec.modules,
+            *(module for module in spec.modules if module.name not in platforms),
             settings=spec.settings,
             seed=next((s for s in (seed, spec.seed) if s is not None), 0),
             patience=spec.patience if patience is None else patience,
@@ -120,17 +132,15 @@ class Simulation:
             )
         loop = self._loop = VirtualLoop()
         context = self.context
-        context._on_ended = self._ended  # pyright: ignore[reportPrivateUsage]  # a friend of the context
-        context._on_failed = self._failed  # pyright: ignore[reportPrivateUsage]
-        if OUTPUT in context.policy.signals:
-            context._listeners[OUTPUT] = self.said.append  # pyright: ignore[reportPrivateUsage]
+        hooks = Hooks(
+            on_ended=self._ended,
+            on_failed=self._failed,
+            on_endless=loop.give_up,
+            listeners={OUTPUT: self.said.append} if OUTPUT in context.policy.signals else {},
+        )
         try:
-            loop.run_until_complete(context.__aenter__())
-            runner = context._runner  # pyright: ignore[reportPrivateUsage]
-            assert runner is not None  # entering makes it
-            runner.serial = True
-            runner.on_endless = loop.give_up
-            loop.busy = lambda: [rule.name for rule in runner.threads.values()]
+            loop.run_until_complete(context.start(hooks))
+            loop.busy = context.plain_functions
             self.settle()
         except BaseException:
             loop.close()
@@ -148,7 +158,7 @@ class Simulation:
             loop.close()
 
     def say(self, text: str) -> None:
-        """The user says something: `put` of ``rawio.input``."""
+        """Say something as the user: `put` of ``rawio.input``."""
         from ravestate.modules import rawio
 
         self.put(rawio.input, text)
@@ -164,7 +174,7 @@ class Simulation:
         self.settle()
 
     def wipe(self, signal: Signal[Any]) -> None:
-        """Withdraw a signal's spikes and all that they have caused, and settle."""
+        """Withdraw a signal's spikes and all their effects, and settle."""
         self.context.wipe(signal)
         self.settle()
 
@@ -174,7 +184,7 @@ class Simulation:
         self.settle()
 
     def advance(self, seconds: float) -> None:
-        """Let virtual time pass; settles before and after."""
+        """Let virtual seconds pass; settle before and after."""
         if seconds < 0:
             raise ValueError(f"advance({seconds!r}): time does not run backwards")
         loop = self._running()
@@ -182,7 +192,7 @@ class Simulation:
         loop.run_to(loop.time() + seconds)
 
     def settle(self) -> None:
-        """Do all that can be done at this moment."""
+        """Do everything that can be done at this moment."""
         loop = self._running()
         loop.run_to(loop.time())
 
@@ -193,19 +203,19 @@ class Simulation:
 
     @property
     def trace(self) -> deque[Record]:
-        """What has happened; empty with ``trace=False``."""
+        """Every decision so far; empty with ``trace=False``."""
         return self.context.trace
 
     def read(self, slot: Slot[T]) -> T:
-        """The present value of a slot."""
+        """Return the present value of a slot."""
         return self.context.read(slot)
 
     def explain(self, rule: str | Rule[Any, Any]) -> Explanation:
-        """Why a rule runs, waits, or did not fire."""
+        """Return why a rule runs, waits, or did not fire."""
         return self.context.explain(rule)
 
     def snapshot(self) -> dict[str, Any]:
-        """Everything that is alive, as plain data."""
+        """Return everything that is alive, as plain data."""
         return self.context.snapshot()
 
     def _ended(self, ended: Ended) -> None:
@@ -222,3 +232,4 @@ class Simulation:
 
 
 simulate = Simulation
+"""Simulate modules: ``with simulate(module) as sim``. `Simulation` has the arguments."""

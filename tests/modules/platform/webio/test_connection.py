@@ -275,6 +275,7 @@ def test_frames_on_the_wire_are_what_the_reference_shows() -> None:
                 "agent": "Elske",
                 "last": 0,
                 "writing": True,
+                "suggestions": ["Hello!", "Who are you?", "What can you do?"],
             }
             hello = await visit.next()
             visit.say("hi", id="a1")

@@ -97,6 +97,11 @@ def test_markdown_is_read_as_it_is_seen(tmp_path: Path) -> None:
     }
 
 
+def test_headings_and_html_as_other_readers_of_markdown_see_them(tmp_path: Path) -> None:
+    text = "Pumps\n=====\n\n<div>\nIt runs &amp; runs.\n</div>\n<script>no_text()</script>\n\n<!-- hidden\nlines -->\nA ![red lamp](lamp.png) is lit.\n"
+    assert passages(write(tmp_path / "a.md", text)) == {"Pumps": ["It runs & runs.", "A red lamp is lit."]}
+
+
 HTML = """<!DOCTYPE html><html><head><title>Tram  lines</title><style>p {}</style></head><body>
 <nav>Home | About us and so on</nav><h1>Line 7</h1><p>It runs to the <b>beach</b>,
 every ten minutes.</p><!-- nobody sees this --><script>alert("nor this here")</script>
@@ -228,7 +233,8 @@ def test_another_ending(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "library"), [("a.html", "bs4"), ("a.pdf", "pypdf"), ("a.zim", "libzim.reader")]
+    ("name", "library"),
+    [("a.html", "bs4"), ("a.md", "markdown_it"), ("a.pdf", "pypdf"), ("a.zim", "libzim.reader")],
 )
 def test_without_its_library_the_message_says_what_to_install(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str, library: str

@@ -188,7 +188,7 @@ def test_events_in_any_shape_are_understood(converse: Conversation) -> None:
         await talk.head()
         event = b'data:{"choices":[{"delta":{"content":"\xc3\xa4","reasoning":"hm"}}]}\r\n\r\n'
         await talk.raw(b": ping\r\n\r\n" + event[:40])
-        await talk.raw(event[40:] + b'event: x\ndata: {"choices": [], "usage": {}}\n')
+        await talk.raw(event[40:] + b'event: x\ndata: {"choices": [],\ndata: "usage": {}}\n\n')
         await talk.raw(b'data: {"choices":[{"delta":{"content":null},"finish_reason":"length"}]}')
 
     assert converse(answer) == ["ä"]
@@ -257,7 +257,6 @@ PIECE = 'data: {"choices":[{"delta":{"content":"Hi"}}]}\n\n'
         (refusing("200 OK", '{"choices": [{"message": {"content": ["x"]}}]}'), "another form than OpenAI's"),
         (sending(PIECE, "data: {oops\n\n"), "no JSON object: {oops"),
         (sending(PIECE, 'data: {"error": {"message": "out of memory"}}\n\n'), "failed: out of memory"),
-        (sending('error: {"message": "out of memory"}\n\n'), "failed: out of memory"),
         (sending('data: {"choices": "x"}\n\n'), "another form than OpenAI's"),
         (sending('data: {"choices": [{"delta": "x"}]}\n\n'), "another form than OpenAI's"),
         (sending(PIECE), "broke off before its end"),
@@ -338,7 +337,10 @@ def test_a_key_that_is_none(converse: Conversation) -> None:
         converse(hello, api_key=SecretStr("a\nb"))
 
 
-def test_without_httpx_it_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(sys.modules, "httpx", None)
-    with pytest.raises(PlatformError, match=r"needs httpx: pip install 'ravestate\[wildtalk\]'"):
+@pytest.mark.parametrize("library", ["httpx", "httpx_sse"])
+def test_without_its_libraries_it_says_what_to_install(monkeypatch: pytest.MonkeyPatch, library: str) -> None:
+    monkeypatch.setitem(sys.modules, library, None)
+    with pytest.raises(
+        PlatformError, match=r"needs httpx and httpx-sse: pip install 'ravestate\[wildtalk\]'"
+    ):
         asyncio.run(OpenAIBackend("http://localhost/v1", "tiny").load())

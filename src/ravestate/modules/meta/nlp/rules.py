@@ -10,7 +10,8 @@ from ravestate.errors import PlatformError
 from ravestate.modules import interloc, rawio
 from ravestate.modules._room import give_back
 
-from . import (
+from .analysis import analyse
+from .names import (
     Settings,
     about_agent,
     entities,
@@ -29,7 +30,6 @@ from . import (
     turn,
     yesno,
 )
-from .analysis import analyse
 from .pipeline import pipeline
 
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import ravestate as rs
 from ravestate.errors import DeclarationError, PlatformError
 
-from . import memory
-from . import module as ontology
+from .names import memory
+from .names import module as ontology
 from .node import Node
 
 __all__ = ["bound"]

@@ -17,7 +17,7 @@ from .type_files import read_types
 from .types import Types
 
 if TYPE_CHECKING:
-    from . import Settings
+    from .names import Settings
 
 __all__ = ["default_path", "open_memory", "path_of", "types_in", "types_of"]
 

@@ -7,7 +7,7 @@ import asyncio
 import ravestate as rs
 from ravestate.errors import PlatformError
 
-from . import memory, module
+from .names import memory, module
 from .places import open_memory
 
 

@@ -10,8 +10,8 @@ import ravestate as rs
 from ravestate.errors import RuleError
 from ravestate.modules import rawio
 
-from . import intent, last, module
 from .intents import Intent
+from .names import intent, last, module
 from .phrases import PhraseBook
 
 HERE = "ravestate.modules.meta.verbaliser"

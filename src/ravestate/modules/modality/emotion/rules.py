@@ -5,10 +5,10 @@ from __future__ import annotations
 import ravestate as rs
 from ravestate.modules import interloc, rawio
 
-from . import Settings, affectionate, felt, happy, module, sad, shy, surprised
 from .chance import OCCASIONS, by_chance
 from .emoji import emoji_for
 from .feeling import FEELINGS, Feeling
+from .names import Settings, affectionate, felt, happy, module, sad, shy, surprised
 from .recogniser import recognise
 
 SIGNALS: dict[Feeling, rs.Signal[None]] = {

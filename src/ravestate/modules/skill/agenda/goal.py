@@ -15,8 +15,8 @@ from ravestate.declare.condition import Condition, Constraint
 from ravestate.modules import rawio, verbaliser
 from ravestate.modules.meta.verbaliser.intents import Intent
 
-from . import goals, opportunity
 from .conditions import negated, watching
+from .names import goals, opportunity
 from .state import OPEN, GoalState, Status
 
 __all__ = ["Goal", "goal"]

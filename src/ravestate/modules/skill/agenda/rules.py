@@ -5,7 +5,8 @@ from __future__ import annotations
 import ravestate as rs
 from ravestate.modules import idle, rawio
 
-from . import Settings, goals, module, opportunity, topics
+from .goal import goal
+from .names import Settings, goals, module, opportunity, topics
 
 
 @module.rule(when=idle.bored, reads=(goals, topics), emits=opportunity)
@@ -33,8 +34,6 @@ def adopt_wishes(ctx: rs.RuleContext) -> None:
 
     In a thread: each rule costs the loop some milliseconds, and others are to have their turn between two.
     """
-    from .goal import goal
-
     settings: Settings = ctx.settings
     own = rs.Module(module.name)
     for wish in settings.goals:

@@ -13,11 +13,11 @@ from ravestate.modules import idle, interloc, nlp, ontology, rawio, verbaliser
 from ravestate.modules._room import give_back
 from ravestate.modules.meta.verbaliser.intents import Intent
 
-from . import Settings, asked, clock, life, module, mood, prompted, remarked
 from .asking import returns
 from .itself import recall, settle
 from .life import Fact, Life
 from .life_file import read_life
+from .names import Settings, asked, clock, life, module, mood, prompted, remarked
 from .remarks import remark_in
 from .router import Match, Miss, router_of
 from .telling import telling, without_question

@@ -4,14 +4,11 @@ from __future__ import annotations
 
 import threading
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from ravestate.modules._folders import user_folder
 
 from .answering import Answerer
-
-if TYPE_CHECKING:
-    from . import Settings
+from .names import Settings
 
 __all__ = ["answerer_of", "path_of"]
 

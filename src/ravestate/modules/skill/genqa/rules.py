@@ -10,8 +10,8 @@ from ravestate.errors import DeclarationError, DeclarationErrors, PlatformError
 from ravestate.modules import nlp, verbaliser
 from ravestate.modules._room import give_back
 
-from . import Settings, before, found, module
 from .answering import Answer, Answerer
+from .names import Settings, before, found, module
 from .places import answerer_of
 from .question import asks_in_short, is_vague
 from .referring import Before, completed, other_wordings

@@ -5,15 +5,14 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from contextlib import aclosing
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import ravestate as rs
 from ravestate.modules import verbaliser
 
 from .answering import Answer
-
-if TYPE_CHECKING:
-    from . import Settings
+from .names import Settings, found
+from .names import module as genqa
 
 __all__ = ["intent_of", "is_supported", "prompt", "wording_rule"]
 
@@ -59,9 +58,6 @@ def wording_rule(settings: Settings) -> rs.Rule[Any, Any]:
     from ravestate.modules import wildtalk
     from ravestate.modules.skill.wildtalk.backend import Message
     from ravestate.modules.skill.wildtalk.utterance import Utterance
-
-    from . import found
-    from . import module as genqa
 
     module = rs.Module("genqa-wording", requires=[genqa, wildtalk, verbaliser])
 

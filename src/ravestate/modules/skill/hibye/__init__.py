@@ -2,14 +2,7 @@
 
 from __future__ import annotations
 
-import ravestate as rs
-from ravestate.modules import interloc, rawio, verbaliser
+from . import rules as rules
+from .names import module, parted
 
 __all__ = ["module", "parted"]
-
-module = rs.Module("hibye", requires=[rawio, interloc, verbaliser])
-
-parted: rs.Slot[float | None] = module.slot("parted", None)
-"""When the agent said goodbye last, in seconds since the context began."""
-
-from . import rules as rules  # noqa: E402  # they use what is declared above

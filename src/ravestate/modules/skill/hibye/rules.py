@@ -6,7 +6,7 @@ import ravestate as rs
 from ravestate.modules import interloc, rawio, verbaliser
 from ravestate.modules.meta.verbaliser.intents import Intent
 
-from . import module, parted
+from .names import module, parted
 from .words import is_farewell, is_greeting
 
 JUST_NOW = 60.0

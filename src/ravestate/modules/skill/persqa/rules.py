@@ -8,8 +8,8 @@ import ravestate as rs
 from ravestate.errors import RavestateError
 from ravestate.modules import idle, interloc, nlp, ontology, rawio, verbaliser
 
-from . import Settings, facts, module, noted, reply, talk, who
 from .acquaintance import Acquaintance, Noted
+from .names import Settings, facts, module, noted, reply, talk, who
 from .profile import Facts
 from .replies import asking, memorable, stating
 from .response import respond_to

@@ -5,15 +5,18 @@ from __future__ import annotations
 import asyncio
 import json
 from collections.abc import AsyncGenerator, Mapping, Sequence
+from contextlib import aclosing
+from importlib import import_module
+from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any, cast
 
 from ravestate.errors import PlatformError
 
 from .backend import Message, Progress
-from .sse import Events, EventTooLong
 
 if TYPE_CHECKING:
     import httpx
+    from httpx_sse import ServerSentEvent
     from pydantic import SecretStr
 
 __all__ = ["OpenAIBackend"]
@@ -162,9 +165,11 @@ class OpenAIBackend:
         try:
             import anyio
             import httpx
+
+            import_module("httpx_sse")  # `_events` needs it, on the loop
         except ImportError as error:
             raise PlatformError(
-                "wildtalk with a server needs httpx: pip install 'ravestate[wildtalk]'"
+                "wildtalk with a server needs httpx and httpx-sse: pip install 'ravestate[wildtalk]'"
             ) from error
         if self._key and not (self._key.isascii() and self._key.isprintable()):
             raise PlatformError(
@@ -194,37 +199,51 @@ class OpenAIBackend:
                 f"wildtalk: {self._place} answers with {kind!r}, not with a stream of events: it is no "
                 f"OpenAI-compatible API. Such an address mostly ends in /v1"
             )
-        events, finished = Events(), False
-        clock = asyncio.get_running_loop().time
-        spoken = clock()
-        try:
-            async for received in answer.aiter_bytes():
-                payloads = events.feed(received)
-                if payloads:
-                    spoken = clock()
-                elif (
-                    clock() - spoken > self._read_timeout
-                ):  # comments that keep the connection open say nothing
-                    raise self._stalled()
-                for payload in payloads:
-                    if payload == "[DONE]":
-                        return
-                    document = self._document(payload)
-                    if piece := self._text(document, "delta"):
-                        yield piece
-                    finished = finished or _finished(document)
-        except EventTooLong as error:
-            raise PlatformError(
-                f"wildtalk: {self._place} sent {error}: it is no OpenAI-compatible API"
-            ) from error
-        for payload in events.finish():  # a last line without a line end
-            if payload != "[DONE]" and (piece := self._text(self._document(payload), "delta")):
-                yield piece
-            finished = True
+        finished = False
+        async with aclosing(self._events(answer)) as events:
+            while True:
+                try:
+                    async with asyncio.timeout(
+                        self._read_timeout
+                    ):  # a comment that only keeps alive is no event
+                        event = await anext(events, None)
+                except TimeoutError as error:
+                    raise self._stalled() from error
+                if event is None:
+                    break
+                if event.data == "[DONE]":
+                    return
+                document = self._document(event.data)
+                if piece := self._text(document, "delta"):
+                    yield piece
+                finished = finished or _finished(document)
         if not finished:
             raise PlatformError(
                 f"wildtalk: the answer from {self._place} broke off before its end: look into the server's log"
             )
+
+    def _events(self, answer: httpx.Response) -> AsyncGenerator[ServerSentEvent, None]:
+        from httpx_sse import EventSource
+
+        # The stand-in lends `EventSource` the text: with a limit, and also where the server names no content type.
+        bounded = SimpleNamespace(
+            headers={"content-type": "text/event-stream"}, aiter_text=lambda: self._bounded(answer)
+        )
+        return EventSource(cast("httpx.Response", bounded)).aiter_sse()
+
+    async def _bounded(self, answer: httpx.Response) -> AsyncGenerator[str, None]:
+        """Yield the text of `answer`, and the empty line that ends its last event; refuse an endless line."""
+        length = 0
+        async for text in answer.aiter_text():
+            _, ended, rest = text.rpartition("\n")
+            length = len(rest) + (0 if ended else length)
+            if length > _BODY_LIMIT:
+                raise PlatformError(
+                    f"wildtalk: {self._place} sent a line of more than {_BODY_LIMIT} characters: it is no "
+                    f"OpenAI-compatible API"
+                )
+            yield text
+        yield "\n\n"
 
     def _document(self, payload: str) -> dict[str, Any]:
         try:

@@ -9,11 +9,11 @@ import ravestate as rs
 from ravestate.errors import PlatformError
 from ravestate.modules import interloc, rawio
 
-from . import Settings, history, model, module, trouble
 from .backend import Backend, Message, Role
 from .facts import asks_for_fact
 from .history import History
 from .llama import LlamaBackend, checked_model
+from .names import Settings, history, model, module, trouble
 from .openai import OpenAIBackend
 from .progress import ProgressBar
 from .transformers import TransformersBackend

@@ -1,0 +1,74 @@
+"""The rules that notice silence, delay and the wish for quiet."""
+
+from __future__ import annotations
+
+import ravestate as rs
+from ravestate.modules import rawio
+
+from .names import Settings, asked, bored, hushed, impatient, module
+from .words import asks_for_quiet, last_question, takes_leave
+
+
+@module.rule(
+    when=rs.activity.false.max_age(None) | rs.startup.detached(),
+    reads=(rs.activity, rawio.input, asked),
+    emits=bored,
+    until=rs.activity.true | rawio.typing,
+    detached=True,
+    background=True,
+)
+async def notice_silence(ctx: rs.RuleContext) -> rs.Resign | None:
+    """Nothing holds a spike or runs, and that lasts: say so, unless it is what the user wants."""
+    settings: Settings = ctx.settings
+    if ctx[rs.activity]:
+        return rs.Resign("there is something to do")
+    if asks_for_quiet(ctx[rawio.input]) or takes_leave(ctx[rawio.input]):
+        return rs.Resign("the user wants quiet")
+    await ctx.sleep(max(settings.bored_after, settings.answer_time if ctx[asked] else 0.0))
+    ctx.emit(bored)
+    return None
+
+
+@module.rule(
+    when=rawio.typing.max_age(None),
+    emits=bored,
+    until=rs.activity.true | rawio.typing | rawio.input.changed,
+    detached=True,
+    background=True,
+)
+async def notice_unfinished_line(ctx: rs.RuleContext) -> None:
+    """The user began to write, and does not go on: that is silence, too, but a longer one."""
+    await ctx.sleep(max(ctx.settings.bored_after, ctx.settings.writing_time))
+    ctx.emit(bored)
+
+
+@module.rule(
+    when=rs.pressure.true.min_age(Settings.impatient_after).max_age(None),
+    emits=impatient,
+    detached=True,
+    background=True,
+)
+async def notice_delay(ctx: rs.RuleContext) -> None:
+    """A ready rule is kept waiting: say so."""
+    ctx.emit(impatient)
+
+
+@module.rule(when=rawio.input.changed.where(asks_for_quiet), emits=hushed, background=True)
+async def notice_wish_for_quiet(ctx: rs.RuleContext) -> None:
+    """The user has enough: say so."""
+    ctx.emit(hushed)
+
+
+def _has_words(text: str) -> bool:
+    return any(map(str.isalpha, text))
+
+
+@module.rule(
+    when=rawio.output.changed.where(_has_words).max_age(None).detached(),
+    writes=asked,
+    detached=True,
+    background=True,
+)
+async def notice_question(ctx: rs.RuleContext) -> None:
+    """Keep in mind what the agent asks: an answer takes its time."""
+    ctx[asked] = last_question(ctx.payload(rawio.output.changed))
