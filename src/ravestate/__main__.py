@@ -1,0 +1,5 @@
+"""``python -m ravestate``: the command line."""
+
+from ravestate.cli import script
+
+raise SystemExit(script())
