@@ -1,5 +1,7 @@
-"""``python -m ravestate``: the command line."""
+"""The command line, as ``python -m ravestate``."""
+
+import sys
 
 from ravestate.cli import script
 
-raise SystemExit(script())
+sys.exit(script())

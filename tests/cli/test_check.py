@@ -25,7 +25,7 @@ def test_findings_are_told_and_are_no_faults(folder: Path, capsys: Capture) -> N
         """
         import ravestate as rs
         module = rs.Module("odd")
-        go, lost, out = module.signal("go"), module.signal("lost"), module.slot("out")
+        go, lost, out = module.signal("go", input=True), module.signal("lost"), module.slot("out")
 
         @module.rule(when=go, writes=out, emits=lost)
         async def first(ctx): ...

@@ -1,10 +1,13 @@
 """Findings: what compiles but is probably not meant."""
 
+import inspect
 from typing import Any
 
 import pytest
 
 import ravestate as rs
+from ravestate import modules
+from ravestate.modules import BUILT_IN
 
 
 async def nothing(ctx: rs.RuleContext) -> None:
@@ -16,14 +19,14 @@ class Scene:
 
     def __init__(self) -> None:
         self.module = rs.Module("m")
-        self.heard = self.module.signal("heard")
+        self.heard = self.module.signal("heard", input=True)
         self.out = self.module.slot("out", "")
 
     def rule(self, name: str, when: rs.Condition, **options: Any) -> None:
         self.module.rule(when=when, name=name, **options)(nothing)
 
-    def findings(self) -> dict[tuple[str, str], str]:
-        return {(f.kind, f.subject): str(f) for f in rs.compile(self.module).findings()}
+    def findings(self, source: Any = None) -> dict[tuple[str, str], str]:
+        return {(f.kind, f.subject): str(f) for f in rs.compile(self.module).findings(source)}
 
 
 @pytest.fixture
@@ -44,7 +47,7 @@ def test_a_rule_that_only_writing_from_outside_can_start(scene: Scene) -> None:
     scene.rule("loop", mood.changed, writes=mood, detached=True)
     scene.rule("fine", scene.heard, writes=scene.out)
     found = scene.findings()
-    assert list(found) == [("unreachable", "m:loop")]
+    assert list(found) == [("unreachable", "m:loop"), ("loop", "m:loop")]
     text = found["unreachable", "m:loop"]
     assert text.startswith("unreachable: rule m:loop runs only if m:mood:changed comes from outside")
     assert text.endswith("declare it with input=True if it does")
@@ -108,7 +111,7 @@ def test_one_clause_that_may_win_is_enough(scene: Scene) -> None:
 
 
 def test_ties_are_found_and_say_who_goes_first(scene: Scene) -> None:
-    a, b = scene.module.signal("a"), scene.module.signal("b")
+    a, b = scene.module.signal("a", input=True), scene.module.signal("b", input=True)
     scene.rule("left", scene.heard & a, writes=scene.out)
     scene.rule("right", scene.heard & b, writes=scene.out)
     found = scene.findings()
@@ -125,7 +128,7 @@ def test_a_weight_says_so_also_where_there_is_no_information(scene: Scene) -> No
 
 
 def test_a_cooldown_without_a_rival_holds_nothing_back(scene: Scene) -> None:
-    bored = scene.module.signal("bored")
+    bored = scene.module.signal("bored", input=True)
     scene.rule("chat", scene.heard, writes=scene.out)
     scene.rule("nag", bored, writes=scene.out, cooldown=300.0)
     scene.rule("blink", bored, cooldown=1.0)
@@ -155,7 +158,7 @@ def test_findings_come_in_order_of_weight(scene: Scene) -> None:
     scene.rule("same", scene.heard, writes=scene.out)
     scene.rule("loop", mood.changed, writes=mood, detached=True)
     kinds = [kind for kind, _ in scene.findings()]
-    assert kinds == ["unreachable", "never-wins", "tie", "unheard"]
+    assert kinds == ["unreachable", "loop", "never-wins", "tie", "unheard"]
 
 
 def test_of_two_rules_at_startup_one_would_only_run_if_the_other_resigned(scene: Scene) -> None:
@@ -211,3 +214,108 @@ def test_the_winner_that_is_named_is_the_best(scene: Scene) -> None:
     scene.rule("best", scene.heard, writes=scene.out, weight=3)
     scene.rule("last", scene.heard, writes=scene.out)
     assert "runs only when m:best resigns" in scene.findings()["never-wins", "m:last"]
+
+
+def test_signals_that_no_rule_raises(scene: Scene) -> None:
+    """A plain signal that comes from outside says so with input=True; a slot may be written from outside."""
+    question, stop = scene.module.signal("question"), scene.module.signal("stop")
+    scene.rule("answer", question | scene.out.changed, until=stop)
+    found = scene.findings()
+    assert list(found) == [("unraised", "m:question"), ("unraised", "m:stop")]
+    assert found["unraised", "m:question"] == (
+        "unraised: signal m:question has listeners (m:answer), and no rule raises it; if it comes from outside, "
+        "declare it with input=True"
+    )
+
+
+# ---------------------------------------------------------------------------------------- loops (L23)
+
+
+def test_detached_rules_that_set_each_other_off(scene: Scene) -> None:
+    one, other = scene.module.signal("one"), scene.module.signal("other")
+    scene.rule("start", scene.heard, emits=one)
+    scene.rule("ping", one, emits=other, detached=True)
+    scene.rule("pong", other, emits=one, detached=True)
+    found = scene.findings()
+    assert list(found) == [("loop", "m:ping")]
+    assert found["loop", "m:ping"] == (
+        "loop: rules m:ping, m:pong set each other off by m:other, m:one, without end and without time passing (L23): "
+        "write .min_age(seconds) behind one of these signals"
+    )
+
+
+def test_a_detached_constraint_makes_a_loop_too(scene: Scene) -> None:
+    tick = scene.module.signal("tick")
+    scene.rule("again", tick.detached() | scene.heard, emits=tick)
+    text = scene.findings()["loop", "m:again"]
+    assert text.startswith("loop: rule m:again sets itself off by m:tick, without end")
+
+
+@pytest.mark.parametrize("end", ["group", "min_age", "input", "where", "holds"])
+def test_loops_that_end_or_take_time(scene: Scene, end: str) -> None:
+    one, other = scene.module.signal("one"), scene.module.signal("other")
+    wanted: dict[str, rs.Condition] = {
+        "group": one,
+        "min_age": one.min_age(1),
+        "input": one & scene.heard,
+        "where": one.where(bool),
+        "holds": one & scene.out.holds(bool),
+    }
+    scene.rule("start", scene.heard, emits=one)
+    scene.rule("ping", wanted[end], emits=other, detached=end != "group")
+    scene.rule("pong", other, emits=one)
+    assert scene.findings() == {}
+
+
+@pytest.mark.parametrize("kind", ["async", "plain"])
+def test_a_rule_of_a_loop_that_awaits_takes_time(scene: Scene, kind: str) -> None:
+    tick = scene.module.signal("tick")
+
+    async def wait(ctx: rs.RuleContext) -> None:
+        await ctx.sleep(1)
+        ctx.emit(tick)
+
+    def work(ctx: Any) -> None:
+        ctx.sleep(1)
+        ctx.emit(tick)
+
+    function: Any = wait if kind == "async" else work
+    scene.module.rule(when=scene.heard | tick, emits=tick, detached=True)(function)
+    assert scene.findings() == {}
+
+
+# ---------------------------------------------------------------------------------------- source
+
+
+def test_source_is_examined_on_demand_only(scene: Scene) -> None:
+    @scene.module.rule(when=scene.heard)
+    async def say(ctx: rs.RuleContext) -> None:
+        ctx[scene_out] = "hello"
+
+    scene_out = scene.out
+    assert scene.findings() == {}
+    ((kind, subject), text), *others = scene.findings(inspect.getsource).items()
+    assert (kind, subject, others) == ("undeclared", "m:say", [])
+    line = say.function.__code__.co_firstlineno + 2
+    assert text == (
+        f"undeclared: rule m:say ({say.origin}) writes m:out (line {line}) without declaring it: write writes=out"
+    )
+
+
+def test_a_forgotten_await(scene: Scene) -> None:
+    @scene.module.rule(when=scene.heard, name="later")
+    async def later(ctx: rs.RuleContext) -> None:
+        ctx.sleep(1)  # type: ignore[unused-coroutine]
+
+    @scene.module.rule(when=scene.heard, name="plain")
+    def plain(ctx: rs.RuleContext) -> None:
+        ctx.sleep(1)  # type: ignore[unused-coroutine]
+
+    found = scene.findings(inspect.getsource)
+    assert found["await", "m:later"].endswith("without effect: write await ctx.sleep(...)")
+    assert found["await", "m:plain"].endswith("without effect: write await ctx.sleep(...) in an async def")
+
+
+def test_the_built_in_modules_together_have_no_false_finding() -> None:
+    policy = rs.compile(*(getattr(modules, name) for name in BUILT_IN))
+    assert {finding.kind for finding in policy.findings(inspect.getsource)} <= {"unheard"}

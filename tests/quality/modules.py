@@ -60,7 +60,7 @@ NOT_ABOUT_ITSELF = ("time", "date", "privacy")
 
 
 def agentqa(text: str) -> str:
-    """By agentqa, which is told by nlp whether it is a question."""
+    """Classify with agentqa, which needs nlp's verdict whether the text is a question."""
     found = _router().route(text, question=_seen(text).question is not None)
     topic = found.topic if isinstance(found, Match) else "-"
     return {"abilities": "can_do", **dict.fromkeys(NOT_ABOUT_ITSELF, "-")}.get(topic, topic)

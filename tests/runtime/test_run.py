@@ -1,12 +1,14 @@
 """Running until told to end: by a rule, by one Ctrl-C in order, by a second at once."""
 
 import asyncio
+import gc
 import os
 import signal
 import subprocess
 import sys
 import textwrap
 import threading
+import warnings
 from pathlib import Path
 
 import pytest
@@ -14,7 +16,8 @@ import pytest
 import ravestate as rs
 from ravestate.modules import rawio
 from ravestate.runtime.agent import Agent
-from ravestate.runtime.run import run_context
+from ravestate.runtime.run import run_context, run_servers
+from runtime.on_loop import on_loop, turns
 
 LIMIT = 20
 
@@ -192,6 +195,49 @@ def test_signal_handlers_are_there_while_it_runs_and_gone_after_it(number: signa
 
     asyncio.run(main())
     assert signal.getsignal(number) is before
+
+
+@on_loop
+async def test_a_cancellation_from_outside_is_not_swallowed() -> None:
+    ends: list[str] = []
+    m = rs.Module("m")
+
+    @m.rule(when=rs.shutdown)
+    async def end(ctx: rs.RuleContext) -> None:
+        ends.append("farewell")
+
+    running = asyncio.create_task(run_context(rs.Context(m)))
+    await turns()
+    running.cancel()
+    with pytest.raises(asyncio.CancelledError):
+        await running
+    assert running.cancelled() and ends == ["farewell"]
+
+
+@on_loop
+async def test_a_timeout_around_a_context_or_a_server_is_a_timeout() -> None:
+    ends: list[str] = []
+
+    async def stay(_: Agent) -> None:
+        try:
+            await asyncio.get_running_loop().create_future()
+        finally:
+            ends.append("stay")
+
+    for running in (run_context(rs.Context(rs.Module("m"))), run_servers(Agent(rs.Module("m")), [stay])):
+        with pytest.raises(TimeoutError):
+            async with asyncio.timeout(0.001):
+                await running
+    assert ends == ["stay"]
+
+
+@on_loop
+async def test_run_in_a_running_loop_is_refused_and_leaves_no_coroutine() -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        with pytest.raises(rs.EngineError, match=r"rs.run starts an event loop.*async with rs.Context"):
+            rs.run(rs.Module("m"))
+        gc.collect()  # a coroutine that nobody awaits complains when it is deleted
 
 
 AGENT = """

@@ -466,23 +466,86 @@ async def test_a_plain_function_may_resign(how: str) -> None:
         assert talk.failures == []
 
 
+class Greeter:
+    async def __call__(self, ctx: rs.RuleContext) -> None:
+        await self.greet(ctx)
+
+    async def greet(self, ctx: rs.RuleContext) -> None:
+        await asyncio.sleep(0)
+        ctx[ctx.rule.writes[0]] = threading.current_thread().name
+
+
+class Heir(Greeter):
+    """A class that inherits its call."""
+
+
+class Caller:
+    def __call__(self, ctx: rs.RuleContext) -> None:
+        ctx[ctx.rule.writes[0]] = threading.current_thread().name
+
+
+async def with_more(word: str, ctx: rs.RuleContext) -> None:
+    await Greeter().greet(ctx)
+
+
+def plain_with_more(word: str, ctx: rs.RuleContext) -> None:
+    Caller()(ctx)
+
+
+@pytest.mark.parametrize(
+    "function",
+    [
+        functools.partial(with_more, "word"),
+        functools.partial(functools.partial(with_more), "word"),
+        functools.partial(Greeter()),
+        Greeter(),
+        Heir(),
+        Greeter().greet,
+    ],
+)
 @on_loop
-async def test_partials_and_objects_may_be_rules() -> None:
+async def test_a_partial_an_object_or_a_method_may_be_an_async_rule(function: Any) -> None:
     talk = Talk()
-
-    class Greeter:
-        async def __call__(self, ctx: rs.RuleContext) -> None:
-            ctx[talk.said] = "object"
-
-    async def with_more(word: str, ctx: rs.RuleContext) -> None:
-        ctx[talk.note] = word
-
-    talk.rule(Greeter(), name="greeter")
-    talk.rule(functools.partial(with_more, "partial"), name="partial", writes=talk.note)
+    rule = talk.rule(function, name="greets")
+    assert rule.is_async
     async with rs.Context(talk.module) as context:
-        assert await talk.ask(context) == "object"
-        assert context.read(talk.note) == "partial"
+        assert await talk.ask(context) == threading.main_thread().name
         assert talk.failures == []
+
+
+@pytest.mark.parametrize(
+    "function", [functools.partial(plain_with_more, "word"), Caller(), Caller().__call__]
+)
+@on_loop
+async def test_a_partial_an_object_or_a_method_may_be_a_plain_rule(function: Any) -> None:
+    talk = Talk()
+    rule = talk.rule(function, name="calls")
+    assert not rule.is_async
+    async with rs.Context(talk.module) as context:
+        assert (await talk.ask(context)).startswith("ravestate-")
+        assert talk.failures == []
+
+
+@on_loop
+async def test_wiping_what_a_plain_partial_stands_on_leaves_it_alone() -> None:
+    """A thread cannot be stopped, so its run goes on; the rule's declaration knows that it is a plain one."""
+    talk = Talk()
+    begun, release = threading.Event(), threading.Event()
+
+    def slow(word: str, ctx: rs.RuleContext) -> None:
+        begun.set()
+        release.wait(LIMIT)
+        ctx[talk.said] = word
+
+    talk.rule(functools.partial(slow, "done"), name="slow")
+    async with rs.Context(talk.module) as context:
+        answer = asyncio.create_task(context.next(talk.said.changed))
+        context.put(talk.heard, "hello")
+        await asyncio.to_thread(begun.wait)
+        context.wipe(talk.heard.changed)
+        await turns()
+        release.set()
+        assert await answer == "done"
 
 
 @on_loop

@@ -21,7 +21,7 @@ COMMANDS = {
     "chat": "talk with the complete agent on the console",
     "run": "run an agent from modules or an agent file",
     "board": "talk with an agent on a web page and look inside it, or into a recorded trace",
-    "check": "print an agent's faults, ties, rules that can never win, and signals without a listener",
+    "check": "print an agent's faults, and findings such as ties, endless loops and undeclared writes",
     "graph": "draw the Signal-Rule-Slot diagram of the complete agent or of another",
     "nlp": "show what the agent sees in a text: words, names, triples, yes or no, signals",
     "memory": "list, show, export and forget what an agent knows",

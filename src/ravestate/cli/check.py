@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import inspect
 import shutil
 import sys
 import textwrap
@@ -41,8 +42,9 @@ def run(options: argparse.Namespace) -> int:
     # A built-in module may offer signals and cooldowns that this agent does not need.
     findings = [
         f
-        for f in policy.findings()
-        if f.kind not in ("unheard", "cooldown") or f.subject.split(":")[0] not in BUILT_IN
+        for f in policy.findings(inspect.getsource)
+        if f.kind not in ("unheard", "unraised", "cooldown")
+        or not {name.split(":")[0] for name in (f.subject, *f.rules)} <= set(BUILT_IN)
     ]
     for finding in findings:
         _print(str(finding))

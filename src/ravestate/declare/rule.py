@@ -104,6 +104,5 @@ class Rule(Generic[P, R]):
 def _is_async(function: object) -> bool:
     while isinstance(function, partial):
         function = cast("partial[Any]", function).func
-    return iscoroutinefunction(function) or iscoroutinefunction(
-        vars(type(function)).get("__call__")  # an object with an async call
-    )
+    call = getattr(type(function), "__call__", None)  # noqa: B004  # an object's own or inherited call
+    return iscoroutinefunction(function) or iscoroutinefunction(call)

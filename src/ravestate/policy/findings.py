@@ -9,8 +9,10 @@ from itertools import islice
 from ravestate.declare.core import startup
 from ravestate.policy.completion import each
 from ravestate.policy.conflicts import Conflicts
+from ravestate.policy.loops import endless_loops
 from ravestate.policy.model import Clause, RulePlan
 from ravestate.policy.policy import Policy
+from ravestate.policy.source import Source, acts_of, undeclared
 from ravestate.policy.wording import few
 
 __all__ = ["MAX_PEERS", "Finding", "find_all"]
@@ -25,31 +27,79 @@ class Finding:
     """One remark on a policy.
 
     Attributes:
-        kind: ``"unreachable"``, ``"never-wins"``, ``"tie"``, ``"cooldown"`` or ``"unheard"``.
+        kind: ``"undeclared"``, ``"await"``, ``"unreachable"``, ``"unraised"``, ``"loop"``, ``"never-wins"``, ``"tie"``,
+            ``"cooldown"`` or ``"unheard"``.
         subject: The qualified name of the rule or signal.
-        message: What is the matter, and what to write instead.
+        message: The remark, with the text to write instead.
+        rules: The listeners of a signal that no rule raises.
     """
 
     kind: str
     subject: str
     message: str
+    rules: tuple[str, ...] = ()
 
     def __str__(self) -> str:
         return f"{self.kind}: {self.message}"
 
 
-def find_all(policy: Policy) -> tuple[Finding, ...]:
-    """All findings: unreachable rules first, then rules that never win, ties, cooldowns without effect, unheard signals.
+def find_all(policy: Policy, source: Source | None = None) -> tuple[Finding, ...]:
+    """Return all findings, those that break an agent first; at most one of each kind for a rule.
 
-    A rule has one finding of each kind at most, so that there are never more than a few for each rule.
+    Args:
+        policy: The policy.
+        source: Returns the source of a rule's function, such as ``inspect.getsource``; without it, no finding rests on
+            source.
     """
     return (
+        *(_in_source(policy, source) if source else ()),
         *_unreachable(policy),
+        *_unraised(policy),
+        *_loops(policy),
         *_never_wins(policy),
         *_ties(policy),
         *_cooldowns(policy),
         *_unheard(policy),
     )
+
+
+def _in_source(policy: Policy, source: Source) -> Iterator[Finding]:
+    for rule in policy.rule_plans:
+        acts = acts_of(rule, source)
+        where = f"rule {rule.name} ({rule.rule.origin})"
+        if faults := list(undeclared(rule, acts)):
+            yield Finding("undeclared", rule.name, f"{where} {'; it '.join(faults)}")
+        for method, line in islice(acts.forgotten.items(), 1):
+            mend = f"write await ctx.{method}(...)" + ("" if rule.rule.is_async else " in an async def")
+            yield Finding(
+                "await", rule.name, f"{where} calls ctx.{method} in line {line} without effect: {mend}"
+            )
+
+
+def _unraised(policy: Policy) -> Iterator[Finding]:
+    for signal in policy.signal_plans:
+        waiting = [need.clause.rule.name for need in (*signal.listeners, *signal.watchers)]
+        raised = signal.slot is not None or signal.signal.input or policy.causes.all_causes[signal.index]
+        if waiting and not raised:
+            yield Finding(
+                "unraised",
+                signal.name,
+                f"signal {signal.name} has listeners ({few(waiting)}), and no rule raises it; if it comes from outside, "
+                "declare it with input=True",
+                tuple(waiting),
+            )
+
+
+def _loops(policy: Policy) -> Iterator[Finding]:
+    for rules, signals in endless_loops(policy):
+        names = few(rule.name for rule in rules)
+        who = f"rule {names} sets itself" if len(rules) == 1 else f"rules {names} set each other"
+        yield Finding(
+            "loop",
+            rules[0].name,
+            f"{who} off by {few(signals)}, without end and without time passing (L23): write .min_age(seconds) behind "
+            "one of these signals",
+        )
 
 
 def _unreachable(policy: Policy) -> Iterator[Finding]:

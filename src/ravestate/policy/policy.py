@@ -19,6 +19,7 @@ from ravestate.policy.pathways import Pathways
 if TYPE_CHECKING:
     from ravestate.policy.conflicts import Conflict
     from ravestate.policy.findings import Finding
+    from ravestate.policy.source import Source
 
 __all__ = ["Policy"]
 
@@ -158,14 +159,18 @@ class Policy:
 
         return find_conflicts(self)
 
-    def findings(self) -> tuple[Finding, ...]:
-        """What is allowed but probably not meant: rules that cannot run or win, ties, signals nobody hears.
+    def findings(self, source: Source | None = None) -> tuple[Finding, ...]:
+        """Return remarks on probable mistakes: rules that cannot run or win, endless loops, ties, signals without listeners.
 
-        A rule has one finding of a kind at most; of several ties that with the rule declared first.
+        A rule has at most one finding of each kind; of several ties, the one with the rule declared first.
+
+        Args:
+            source: Returns the source of a rule's function, such as ``inspect.getsource``. With it, the findings name
+                undeclared reads, writes and emits, and a forgotten ``await``.
         """
         from ravestate.policy.findings import find_all
 
-        return find_all(self)
+        return find_all(self, source)
 
     def diagram(self, format: Literal["svg", "dot", "mermaid"] = "svg") -> str:
         """The Signal-Rule-Slot diagram in the paper's notation, as text of the format.

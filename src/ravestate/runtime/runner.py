@@ -189,7 +189,9 @@ class Runner:
         if began != self._instant:
             self._rounds = 0
         self._instant = began
-        if self._hooks.on_endless is not None and self._rounds > ENDLESS:
+        if self._hooks.on_endless is not None and (
+            self._rounds > ENDLESS or self.engine.late_turns > ENDLESS // 20
+        ):
             self.closed = True
             self._hooks.on_endless(self._last_run)
             return False

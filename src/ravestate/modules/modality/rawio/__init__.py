@@ -26,7 +26,7 @@ written to `output` at its end."""
 speaking = module.flag("speaking")
 """Whether an utterance is being made, piece by piece."""
 
-typing = module.signal("typing", keep="latest")
+typing = module.signal("typing", input=True, keep="latest")
 """The user has pressed a key: a line is being written. Platforms that notice it say so, with each key or now and then."""
 
 picture: rs.Slot[Any] = module.slot("picture", None, always=True, input=True)
