@@ -358,7 +358,7 @@ async def test_the_trace_is_kept_or_told_or_neither() -> None:
             await context.quiet()
             kept = [type(record).__name__ for record in context.trace]
             assert ("Started" in kept) == (trace is True)
-            assert ("ran" in str(context.explain(echo))) == (trace is True)
+            assert ("finished" in str(context.explain(echo))) == (trace is True)
     assert "Started" in [type(record).__name__ for record in told]
 
 

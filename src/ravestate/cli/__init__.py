@@ -118,15 +118,9 @@ class CommandParser(argparse.ArgumentParser):
 
 
 def _log(verbosity: int) -> None:
-    """Send log records to the current ``sys.stderr``: a console may replace it later."""
     import logging
-
-    class Handler(logging.Handler):
-        def emit(self, record: logging.LogRecord) -> None:
-            print(self.format(record), file=sys.stderr)
 
     logging.basicConfig(
         level=[logging.WARNING, logging.INFO, logging.DEBUG][min(verbosity, 2)],
-        handlers=[Handler()],
         format="%(levelname)s %(name)s: %(message)s",
     )

@@ -190,7 +190,7 @@ class Runner:
             self._rounds = 0
         self._instant = began
         if self._hooks.on_endless is not None and (
-            self._rounds > ENDLESS or self.engine.late_turns > ENDLESS // 20
+            self._rounds > ENDLESS or engine.late_turns > ENDLESS // 20
         ):
             self.closed = True
             self._hooks.on_endless(self._last_run)

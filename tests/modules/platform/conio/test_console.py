@@ -223,7 +223,7 @@ def test_a_disk_that_is_full_is_a_failure_and_a_broken_pipe_is_none() -> None:
 
     assert asyncio.run(ended_by(BrokenPipeError(errno.EPIPE, "Broken pipe"))) is None
     failure = asyncio.run(ended_by(OSError(errno.ENOSPC, "No space left on device")))
-    assert str(failure) == "conio: what the agent says cannot be written: No space left on device"
+    assert str(failure) == "conio: the agent's words cannot be written: No space left on device"
 
 
 @pytest.mark.skipif(os.name != "posix", reason="pipes of the shell")

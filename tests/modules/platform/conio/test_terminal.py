@@ -170,14 +170,22 @@ def test_what_was_streamed_stays_above_the_line_that_was_typed(rest: list[str], 
     assert play(scene) == printed  # nothing is printed twice
 
 
-def test_what_others_print_goes_above_as_well(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("redirected", [False, True])
+def test_other_prints_go_above_the_prompt_unless_they_are_redirected(
+    monkeypatch: pytest.MonkeyPatch, redirected: bool
+) -> None:
+    class Stream(io.StringIO):
+        def isatty(self) -> bool:
+            return not redirected
+
     async def scene(terminal: Terminal, keys: PipeInput, paper: Paper) -> None:
         assert sys.stdout is not before
-        assert sys.stderr is sys.stdout
+        assert sys.stderr is (stderr if redirected else sys.stdout)
 
-    before = sys.stdout
+    before, stderr = sys.stdout, Stream()
+    monkeypatch.setattr(sys, "stderr", stderr)
     play(scene)
-    assert sys.stdout is before
+    assert sys.stdout is before and sys.stderr is stderr
 
 
 def test_a_terminal_that_is_gone_ends_it() -> None:
