@@ -13,10 +13,10 @@ from hypothesis import strategies as st
 from draw.examples import EDGE_KINDS, games, many_rules, prompting, question_answering, star
 from draw.test_layout import check, laid_out
 from ravestate.declare.module import Module
-from ravestate.draw.bounded import bounded, shaped
+from ravestate.draw.bounded import bounded_layers, fit_to_screen
 from ravestate.draw.build import build
 from ravestate.draw.graph import Diagram, Edge
-from ravestate.draw.simplex import Arc, layers
+from ravestate.draw.simplex import Arc, network_simplex
 
 
 @st.composite
@@ -39,7 +39,7 @@ def graphs(draw: st.DrawFn) -> tuple[int, list[Arc]]:
 @given(graphs(), st.integers(1, 8))
 def test_no_layer_holds_more_and_every_arc_has_its_length(graph: tuple[int, list[Arc]], most: int) -> None:
     count, arcs = graph
-    found = bounded(layers(count, arcs), arcs, most)
+    found = bounded_layers(network_simplex(count, arcs), arcs, most)
     assert max(Counter(found).values()) <= most
     assert min(found) == 0
     for u, v, _, length in arcs:
@@ -48,17 +48,19 @@ def test_no_layer_holds_more_and_every_arc_has_its_length(graph: tuple[int, list
 
 def test_chains_that_have_begun_run_on_before_others_begin() -> None:
     arcs = [(0, head, 1, 1) for head in (1, 3, 5, 7)] + [(head, head + 1, 1, 1) for head in (1, 3, 5, 7)]
-    found = bounded(layers(9, arcs), arcs, 2)
+    found = bounded_layers(network_simplex(9, arcs), arcs, 2)
     assert [found[head] for head in (1, 3, 5, 7)] == [1, 1, 3, 3]
     assert all(found[head + 1] == found[head] + 1 for head in (1, 3, 5, 7))
 
 
 def test_what_is_wide_enough_keeps_its_layers() -> None:
     arcs = [(0, v, 1, 1) for v in range(1, 40)]
-    ranks = layers(40, arcs)
-    assert shaped(ranks, arcs, lambda _: (1000.0, 800.0)) == ranks
-    assert shaped(ranks, arcs, lambda _: (100.0, 700.0)) == ranks  # not wide, but no higher than a screen
-    assert shaped(ranks, arcs, lambda _: (100.0, 2000.0)) == ranks  # folding does not help
+    ranks = network_simplex(40, arcs)
+    assert fit_to_screen(ranks, arcs, lambda _: (1000.0, 800.0)) == ranks
+    assert (
+        fit_to_screen(ranks, arcs, lambda _: (100.0, 700.0)) == ranks
+    )  # not wide, but no higher than a screen
+    assert fit_to_screen(ranks, arcs, lambda _: (100.0, 2000.0)) == ranks  # folding does not help
 
 
 @pytest.mark.parametrize("points", [20, 30, 60, 120])
