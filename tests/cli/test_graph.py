@@ -46,14 +46,14 @@ def test_text_formats(hello: str, capsys: Capture, format: str, begins: str) -> 
         ("a.mermaid", "flowchart"),
     ],
 )
-def test_a_file_s_name_tells_its_format(
+def test_the_name_of_a_file_decides_its_format(
     hello: str, folder: Path, capsys: Capture, name: str, begins: str
 ) -> None:
     assert call(capsys, "graph", hello, "-o", name) == (0, f"wrote {name}\n", "")
     assert (folder / name).read_text(encoding="utf-8").startswith(begins)
 
 
-def test_a_format_goes_before_a_name(hello: str, folder: Path, capsys: Capture) -> None:
+def test_a_given_format_goes_before_the_name(hello: str, folder: Path, capsys: Capture) -> None:
     assert call(capsys, "graph", hello, "-o", "a.txt", "--format", "dot")[0] == 0
     assert (folder / "a.txt").read_text(encoding="utf-8").startswith("digraph")
 

@@ -29,13 +29,13 @@ def test_no_cycle_is_left(edges: list[tuple[int, int, int]]) -> None:
 
 
 @given(edges_of_ten)
-def test_what_is_on_no_cycle_stays(edges: list[tuple[int, int, int]]) -> None:
+def test_an_edge_on_no_cycle_keeps_its_direction(edges: list[tuple[int, int, int]]) -> None:
     forward = [(u, v, w) for u, v, w in edges if u < v]
     assert not any(feedback_arcs(10, forward))
 
 
 @given(edges_of_ten)
-def test_strong_edges_stay_where_weak_ones_break_the_cycle(edges: list[tuple[int, int, int]]) -> None:
+def test_strong_edges_stay_if_weak_ones_break_the_cycle(edges: list[tuple[int, int, int]]) -> None:
     forward = [(u, v, STRONG) for u, v, w in edges if u < v and w >= STRONG]
     weak = [(u, v, 1) for u, v, w in edges if w < STRONG]
     assert not any(feedback_arcs(10, [*forward, *weak])[: len(forward)])

@@ -42,7 +42,7 @@ def test_neighbours_of_a_layer_keep_their_distance(way: str, graph: LayeredGraph
             assert middle[v] - middle[u] >= separation(graph, u, v) - 1e-6
 
 
-def test_a_long_line_that_nothing_hinders_is_straight() -> None:
+def test_a_long_line_without_obstacles_is_straight() -> None:
     sizes = [(50.0, 38.0)] * 6
     chain = [Link(i, i + 1, "condition", False, None) for i in range(4)]
     graph = proper_layering(

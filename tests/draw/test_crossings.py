@@ -8,7 +8,7 @@ pairs = st.lists(st.tuples(st.integers(0, 5), st.integers(6, 11)), max_size=20)
 
 
 @given(pairs)
-def test_crossings_are_counted_as_by_hand(segments: list[tuple[int, int]]) -> None:
+def test_the_count_of_crossings_equals_a_simple_count(segments: list[tuple[int, int]]) -> None:
     after: list[list[int]] = [[] for _ in range(12)]
     for u, v in segments:
         after[u].append(v)
@@ -17,7 +17,7 @@ def test_crossings_are_counted_as_by_hand(segments: list[tuple[int, int]]) -> No
 
 
 @given(pairs)
-def test_arranging_never_makes_it_worse_and_loses_nothing(segments: list[tuple[int, int]]) -> None:
+def test_minimising_never_adds_crossings_and_loses_no_vertex(segments: list[tuple[int, int]]) -> None:
     links = [Link(u, v, "writes", False, None) for u, v in segments]
     graph = proper_layering([0] * 6 + [1] * 6, [(10.0, 10.0)] * 12, links)
     after = graph.neighbours()[1]

@@ -32,7 +32,7 @@ def test_every_arc_spans_its_length_and_layers_begin_at_zero(graph: tuple[int, l
 
 
 @given(connected(4))
-def test_no_other_layers_make_the_arcs_shorter(graph: tuple[int, list[Arc]]) -> None:
+def test_no_other_ranks_make_the_arcs_shorter(graph: tuple[int, list[Arc]]) -> None:
     count, arcs = graph
     best = min(
         cost(list(rank), arcs)

@@ -56,7 +56,7 @@ def greeting(path: Path, **options: object) -> str:
         return said
 
 
-def test_its_modules_and_settings_are_those_of_the_file(agent: Path) -> None:
+def test_it_has_the_modules_and_settings_of_the_file(agent: Path) -> None:
     with simulate.from_file(str(agent)) as sim:
         sim.say("Hello")
         sim.advance(1.9)
@@ -81,7 +81,7 @@ def test_code_goes_before_the_environment_and_that_before_the_file(
     assert greeting(agent, settings={"clerk": {"greeting": "Ahoy."}}).startswith("Ahoy. ")
 
 
-def test_chance_repeats_by_the_seed_of_the_call_or_the_file_or_0(agent: Path) -> None:
+def test_random_choices_repeat_by_the_seed_of_the_call_or_the_file_or_0(agent: Path) -> None:
     usual = greeting(agent)
     assert greeting(agent) == usual == greeting(agent, seed=0)
     agent.write_text(f"{AGENT}\nseed: 7\n", encoding="utf-8")
@@ -96,7 +96,7 @@ def test_the_slots_are_those_that_the_test_imports(agent: Path) -> None:
         assert sim.read(rawio.output) == "Your receipt, please."
 
 
-def test_mistakes_are_told_all_at_once(agent: Path) -> None:
+def test_one_message_has_all_mistakes(agent: Path) -> None:
     agent.write_text("modules: [rawoi, ./gone.py]\nseed: x\n", encoding="utf-8")
     with pytest.raises(UsageError) as caught:
         simulate.from_file(agent)
