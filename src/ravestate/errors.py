@@ -4,6 +4,7 @@
 RavestateError
 ├── DeclarationError(ValueError)      a designer's mistake, found before running
 ├── DeclarationErrors(ExceptionGroup) all such mistakes at once, raised by ``rs.compile``
+├── UsageError                        no such module, file or setting; commands end with exit code 2
 ├── RuleError(RuntimeError)           a rule failed, or broke its declaration
 │   ├── UndeclaredError(LookupError)  a rule touched a slot or a signal that it does not declare
 │   ├── RuleTimeout(TimeoutError)     a run took longer than the rule's ``timeout``
@@ -29,6 +30,7 @@ __all__ = [
     "RuleTimeout",
     "RunEnded",
     "UndeclaredError",
+    "UsageError",
     "nearest",
 ]
 
@@ -59,6 +61,10 @@ class DeclarationErrors(RavestateError, ExceptionGroup[DeclarationError]):
 
 def _count(faults: Sequence[DeclarationError]) -> str:
     return f"{len(faults)} fault" + ("s" if len(faults) != 1 else "") + " in the declarations"
+
+
+class UsageError(RavestateError):
+    """An agent is named wrongly: there is no such module, file or setting. Commands end with exit code 2."""
 
 
 class RuleError(RavestateError, RuntimeError):

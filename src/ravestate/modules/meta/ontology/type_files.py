@@ -21,6 +21,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ravestate.errors import DeclarationError, PlatformError, nearest
+from ravestate.yaml_text import compose_yaml
 
 from .types import KINDS, Kind, Relating, Type, Types
 
@@ -61,7 +62,7 @@ class _Reader:
         """Of each property's name, of types (False) and of relations (True): how it is spelt, its kind, where."""
 
     def read(self, file: str, text: str) -> None:
-        root = _composed(file, text)
+        root = compose_yaml(text, file)
         if root is None:
             return
         for key, name, body in _entries(file, root, "a file of types maps types to what they have"):
@@ -205,24 +206,6 @@ def _text_of_file(file: Path | Traversable) -> str:
         raise DeclarationError(
             f"{file}: this is no text in UTF-8 ({error.reason} at byte {error.start})"
         ) from None
-
-
-def _composed(file: str, text: str) -> yaml.Node | None:
-    """The nodes of a YAML text, which know their lines. No value is made of them, so nothing can run."""
-    import yaml
-
-    try:
-        return yaml.compose(text, Loader=yaml.BaseLoader)
-    except yaml.MarkedYAMLError as error:
-        mark = error.problem_mark or error.context_mark
-        line = "" if mark is None else f":{mark.line + 1}"
-        reason = ", ".join(filter(None, (error.context, error.problem)))
-        raise DeclarationError(f"{file}{line}: this is no YAML ({reason})") from None
-    except yaml.YAMLError as error:  # a character that YAML does not allow; it knows no line
-        line = text.count("\n", 0, getattr(error, "position", 0)) + 1
-        raise DeclarationError(f"{file}:{line}: this is no YAML (a control character)") from None
-    except RecursionError:
-        raise DeclarationError(f"{file}: this is no file of types, but nested without end") from None
 
 
 def _entries(file: str, node: yaml.Node, meaning: str) -> Iterator[tuple[yaml.Node, str, yaml.Node]]:

@@ -34,6 +34,7 @@ from pathlib import Path
 import yaml
 
 from ravestate.errors import DeclarationError, PlatformError, RuleError, nearest
+from ravestate.yaml_text import compose_yaml
 
 __all__ = ["Phrase", "PhraseBook", "Template"]
 
@@ -191,7 +192,7 @@ class PhraseBook:
     # ------------------------------------------------------------------------------- internals
 
     def _merge(self, name: str, text: str) -> None:
-        root = _composed(name, text)
+        root = compose_yaml(text, name)
         if root is None:
             return
         for key, languages in _entries(name, root, "a file of phrases maps intents to languages"):
@@ -279,26 +280,6 @@ def _read(file: Path | Traversable) -> str:
         raise DeclarationError(
             f"{file}: this is no text in UTF-8 ({error.reason} at byte {error.start})"
         ) from None
-
-
-def _composed(name: str, text: str) -> yaml.Node | None:
-    """The nodes of a YAML text, which know their lines. No value is made of them, so nothing can run."""
-    try:
-        return yaml.compose(text, Loader=yaml.BaseLoader)
-    except yaml.MarkedYAMLError as error:
-        mark = error.problem_mark or error.context_mark
-        line = "" if mark is None else f":{mark.line + 1}"
-        reason = ", ".join(filter(None, (error.context, error.problem)))
-        raise DeclarationError(
-            f"{name}{line}: this is no YAML ({reason}). A text with : or # or braces in front wants quotes"
-        ) from None
-    except yaml.YAMLError as error:  # a character that YAML does not allow; it knows no line
-        position = getattr(error, "position", 0)
-        raise DeclarationError(
-            f"{name}:{text.count(chr(10), 0, position) + 1}: this is no YAML (a control character)"
-        ) from None
-    except RecursionError:
-        raise DeclarationError(f"{name}: this is no file of phrases, but nested without end") from None
 
 
 def _kind(node: yaml.Node) -> str:
