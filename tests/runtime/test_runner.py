@@ -12,6 +12,7 @@ import pytest
 import ravestate as rs
 from ravestate.engine.engine import Engine
 from ravestate.engine.trace import Settled
+from ravestate.runtime import runner as runner_file
 from ravestate.runtime.async_rules import GRACE
 from ravestate.testing import simulate
 from runtime.on_loop import on_loop, turns
@@ -745,6 +746,78 @@ async def test_a_loop_of_rules_lets_the_loop_turn() -> None:
         assert count[0] > 0
         context.emit(enough)
         await context.until_stopped()
+
+
+@pytest.mark.parametrize("thread", [False, True])
+@on_loop
+async def test_two_detached_rules_that_raise_each_other_silence_neither_input_nor_timers(
+    thread: bool,
+) -> None:
+    m = rs.Module("m")
+    ping, pong, ask = m.signal("ping"), m.signal("pong"), m.signal("ask", payload=int)
+    answer, later = m.slot("answer", 0), m.signal("later")
+    count, spinning = [0], asyncio.Event()
+
+    @m.rule(when=ping, emits=pong, detached=True)
+    async def hit(ctx: rs.RuleContext) -> None:
+        count[0] += 1
+        if count[0] == 1500:
+            spinning.set()
+        ctx.emit(pong)
+
+    @m.rule(when=pong, emits=ping, detached=True)
+    async def hit_back(ctx: rs.RuleContext) -> None:
+        ctx.emit(ping)
+
+    @m.rule(when=ask, writes=answer)
+    async def reply(ctx: rs.RuleContext) -> None:
+        ctx[answer] = ctx.payload(ask)
+
+    @m.rule(when=ask.min_age(0.01).detached(), emits=later)
+    async def reply_later(ctx: rs.RuleContext) -> None:
+        ctx.emit(later)
+
+    with Records() as log:
+        async with rs.Context(m) as context:
+            context.emit(ping)
+            await spinning.wait()
+            for number in range(1, 4):
+                answers = asyncio.create_task(context.next(answer.changed))
+                timers = asyncio.create_task(context.next(later))
+                await turns(1)
+                if thread:
+                    await asyncio.to_thread(context.emit, ask, number)
+                else:
+                    context.emit(ask, number)
+                assert await answers == number
+                await timers
+            await context.stop(grace=0)
+    assert [
+        message for message in log.messages if "a loop without an end: m:hit, m:hit_back" in message
+    ] == log.messages
+    assert len(log.messages) == 1
+
+
+@on_loop
+async def test_slow_rules_in_a_loop_leave_the_loop_its_turns() -> None:
+    """The loop gets a turn after some time, too, however few rounds there were."""
+    m = rs.Module("m")
+    tick, count = m.signal("tick", keep="latest"), [0]
+
+    @m.rule(when=tick, emits=tick, detached=True)
+    async def slow(ctx: rs.RuleContext) -> None:
+        count[0] += 1
+        clock[0] += 0.01
+        ctx.emit(tick)
+
+    clock = [0.0]
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(runner_file, "perf_counter", lambda: clock[0])
+        async with rs.Context(m) as context:
+            context.emit(tick)
+            await turns(2)
+            assert 0 < count[0] <= 6
+            await context.stop(grace=0)
 
 
 @on_loop
