@@ -5,7 +5,7 @@ import Bar from "../src/board/Bar.svelte";
 import { Board } from "../src/board/board.svelte";
 import Cause from "../src/board/Cause.svelte";
 import type { Address } from "../src/board/link";
-import type { Policy, ServerFrame, TraceRecord } from "../src/board/protocol";
+import type { Description, ServerFrame, TraceRecord } from "../src/board/protocol";
 import Say from "../src/board/Say.svelte";
 import Slots from "../src/board/Slots.svelte";
 import Tools from "../src/board/Tools.svelte";
@@ -34,7 +34,7 @@ const rule = (name: string) => ({
   background: false,
 });
 
-const POLICY: Policy = {
+const POLICY: Description = {
   modules: ["m"],
   rules: [rule("m:talk"), rule("m:answer")],
   signals: [
@@ -327,7 +327,7 @@ test("what only background rules hear does not take the place of what was said",
   const watch = { ...rule("m:watch"), background: true };
   const heard = (name: string, hearers: string[]) => ({ ...POLICY.signals[0], name, slot: null, hearers });
   const signals = [heard("m:typing", ["m:watch"]), heard("m:said", ["m:talk", "m:watch"])];
-  server.tell({ type: "policy", policy: { ...POLICY, rules: [talk, watch], signals } as Policy });
+  server.tell({ type: "policy", policy: { ...POLICY, rules: [talk, watch], signals } as Description });
   const came = (spike: number, signal: string) => ({ ...input(spike, spike, "null"), signal }) as TraceRecord;
   const clock = { missed: 0, behind: 0, now: 9, paused: false };
   server.tell({ type: "records", records: [came(3, "m:typing")], ...clock });
@@ -345,7 +345,7 @@ test("however long somebody writes, what was said before stays the cause", () =>
     { ...POLICY.signals[0], name: "m:said", slot: null, hearers: ["m:talk"] },
   ];
   const rules = [rule("m:talk"), { ...rule("m:watch"), background: true }];
-  server.tell({ type: "policy", policy: { ...POLICY, rules, signals } as Policy });
+  server.tell({ type: "policy", policy: { ...POLICY, rules, signals } as Description });
   const records = [{ ...input(1, 1, "1"), signal: "m:said" }] as TraceRecord[];
   for (let n = 2; n < 200; n++) records.push({ ...input(n, n, "null"), signal: "m:typing" } as TraceRecord);
   server.tell({ type: "records", records, missed: 0, behind: 0, now: 300, paused: false });
@@ -360,7 +360,7 @@ test("a write counts as heard if any of its signals is", () => {
     { ...POLICY.signals[0], name: "m:lit:true", hearers: ["m:watch"] },
   ];
   const rules = [rule("m:talk"), { ...rule("m:watch"), background: true }];
-  server.tell({ type: "policy", policy: { ...POLICY, rules, signals } as Policy });
+  server.tell({ type: "policy", policy: { ...POLICY, rules, signals } as Description });
   const records = [
     { ...input(3, 1, "true"), signal: "m:lit:changed" },
     { ...input(4, 2, "true"), signal: "m:lit:changed" },

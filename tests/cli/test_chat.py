@@ -12,7 +12,7 @@ from cli.examples import HELLO, call, complaints, write
 from ravestate.cli import chat
 from ravestate.cli.complete import COMPLETE
 from ravestate.modules import BUILT_IN
-from ravestate.modules.meta.ontology.places import default_path
+from ravestate.modules.meta.ontology.opening import default_path
 from ravestate.modules.platform.conio.console import history_file
 from ravestate.runtime import run as run_file
 

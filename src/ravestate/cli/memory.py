@@ -35,7 +35,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     forgetting = does.add_parser("forget", help="forget somebody with everything about them")
     forgetting.add_argument("which", metavar="NAME|ID")
     forgetting.add_argument("-y", "--yes", action="store_true", help="do not ask")
-    for action in (listing, showing, exporting, loading, forgetting):
+    resetting = does.add_parser("reset", help="remove all files of the memory, also damaged ones")
+    resetting.add_argument("-y", "--yes", action="store_true", help="do not ask")
+    for action in (listing, showing, exporting, loading, forgetting, resetting):
         _add_place(action, later=True)
 
 
@@ -63,10 +65,12 @@ def _add_place(parser: argparse.ArgumentParser, *, later: bool = False) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Carry the command out; 1 if memory cannot be used."""
-    from ravestate.modules.meta.ontology.places import open_memory, path_of
+    from ravestate.modules.meta.ontology.opening import open_memory, path_of
 
     settings = _settings(options)
     path = path_of(settings)
+    if options.does == "reset":
+        return _reset(path, options)
     if path is not None and not path.exists() and options.does != "load":
         raise RavestateError(
             f"there is no memory yet: {path} does not exist; name another with --path FILE, or an agent's settings "
@@ -180,19 +184,48 @@ def _forget(memory: Memory, options: argparse.Namespace) -> int:
     if not options.yes:
         for one in going:
             print(f"{one.type:<16} {_name(one):<24} {one.id}")
-        try:
-            answer = input(f"Forget {'this' if len(going) == 1 else 'these'}, with all relations? [y/N] ")
-        except EOFError:
-            answer = ""
-            print()
-        if answer.strip().lower() not in ("y", "yes"):
+        if not _confirmed(f"Forget {'this' if len(going) == 1 else 'these'}, with all relations?"):
             print("nothing was forgotten")
             return 1
     print(f"forgot {len(memory.forget(node).result())}")
     return 0
 
 
-# ------------------------------------------------------------------------------------ who, and how shown
+def _reset(path: Path | None, options: argparse.Namespace) -> int:
+    from ravestate.modules.meta.ontology.files import MemoryFiles
+
+    if path is None:
+        raise UsageError("reset removes files, and this memory is on a server: empty its database there")
+    files = MemoryFiles(path)
+    present = files.present()
+    if not present:
+        raise RavestateError(f"there is no memory at {path}; name another with --path FILE")
+    if files.in_use():
+        raise RavestateError(f"memory {path} is in use by another process: end that agent first")
+    if not options.yes:
+        print(*present, sep="\n")
+        if not _confirmed(
+            f"Remove {'this file' if len(present) == 1 else 'these files'}, with all that is known?"
+        ):
+            print("nothing was removed")
+            return 1
+    try:
+        for file in files.remove():
+            print(f"removed {file}")
+    except OSError as error:
+        raise RavestateError(f"cannot remove {error.filename}: {error.strerror}") from None
+    return 0
+
+
+def _confirmed(question: str) -> bool:
+    try:
+        return input(f"{question} [y/N] ").strip().lower() in ("y", "yes")
+    except EOFError:
+        print()
+        return False
+
+
+# ------------------------------------------------------------------------------------ nodes as text
 
 
 def _everything(memory: Memory) -> list[Node]:

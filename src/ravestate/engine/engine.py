@@ -248,7 +248,7 @@ class Engine(Waves):
             self._substitute(run)
         if self.tracer is not None:
             text = reason or (said(exception) if exception is not None else "")
-            self.tracer(trace.Settled(self.now, run.id, rule.name, outcome, text, fired))
+            self.tracer(trace.Settled(self.now, run.id, rule.name, outcome, text, fired, exception))
         if self.report_ends:
             self._out.append(Ended(run.id, rule.name, outcome, fired))
         on_error = event.kind == "failed" and any(

@@ -15,7 +15,7 @@ from ravestate.engine.activation import READY
 
 if TYPE_CHECKING:
     from ravestate.engine.activation import Activation
-    from ravestate.policy.plan import RulePlan
+    from ravestate.policy.model import RulePlan
 
 __all__ = ["MANY", "TURNS", "Lineage", "Loop", "Loops"]
 

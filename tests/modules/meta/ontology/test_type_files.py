@@ -8,7 +8,7 @@ import pytest
 
 from ravestate.errors import DeclarationError, PlatformError
 from ravestate.modules import ontology
-from ravestate.modules.meta.ontology.places import types_of
+from ravestate.modules.meta.ontology.opening import types_of
 from ravestate.modules.meta.ontology.type_files import read_types
 from ravestate.modules.meta.ontology.types import Types
 

@@ -40,7 +40,7 @@ def test_the_page_and_its_files_are_there(served: Served) -> None:
         page = client.get("/")
         assert page.status_code == 200
         assert page.headers["content-type"] == "text/html; charset=utf-8"
-        for name in ("assets/chat.js", "assets/chat.css", "widget.js", "raven.svg"):
+        for name in ("assets/chat.js", "assets/chat.css", "widget.js", "assets/raven.svg"):
             file = client.get(f"/{name}")
             assert (file.status_code, file.headers["content-encoding"]) == (200, "gzip")
             assert client.get(f"/{name}", headers={"if-none-match": file.headers["etag"]}).status_code == 304

@@ -9,11 +9,11 @@ from typing import Any, TypeVar
 from ravestate.errors import RuleError
 
 from .graph import Graph
-from .keeper import Keeper
 from .node import Node, Relation, Value
 from .reply import Reply
 from .store import Store
 from .types import Types
+from .worker import StoreWorker
 
 __all__ = ["Memory"]
 
@@ -33,24 +33,24 @@ class Memory:
     - PlatformError: memory failed: a full disk, a server that went away, a file in use.
     """
 
-    def __init__(self, keeper: Keeper, read_types: Callable[[], Types]) -> None:
+    def __init__(self, worker: StoreWorker, read_types: Callable[[], Types]) -> None:
         """Begin to open memory; operations may be called at once, and wait until it is open.
 
         Args:
-            keeper: What holds the graph, and the thread that may touch it; `close` releases it.
+            worker: What holds the graph, and the thread that may touch it; `close` releases it.
             read_types: Says what there may be in it; called in the thread.
         """
-        self._keeper = keeper
-        self._lock = threading.Lock()  # nothing is asked of the keeper after it was released
+        self._worker = worker
+        self._lock = threading.Lock()  # nothing is asked of the worker after it was released
         self._closed: Reply[None] | None = None
         self._types: Types | None = None
         self._failure: BaseException | None = None
-        self._opened = Reply(keeper.submit(lambda store: self._open(store, read_types)), "Memory.open")
+        self._opened = Reply(worker.submit(lambda store: self._open(store, read_types)), "Memory.open")
 
     @property
     def place(self) -> str:
         """Where it is: a file's path, or a server's address."""
-        return self._keeper.place
+        return self._worker.place
 
     @property
     def types(self) -> Types:
@@ -218,7 +218,7 @@ class Memory:
         """Let go, after all operations before; called again it does nothing. Later operations are refused."""
         with self._lock:
             if self._closed is None:
-                self._closed = Reply(self._keeper.release(), "Memory.close")
+                self._closed = Reply(self._worker.release(), "Memory.close")
             return self._closed
 
     def __repr__(self) -> str:
@@ -243,4 +243,4 @@ class Memory:
         with self._lock:
             if self._closed is not None:
                 raise RuleError(f"memory ({self.place}) is closed: {name} comes too late")
-            return Reply(self._keeper.submit(job), f"Memory.{name}")
+            return Reply(self._worker.submit(job), f"Memory.{name}")

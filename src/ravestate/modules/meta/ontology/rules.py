@@ -8,7 +8,7 @@ import ravestate as rs
 from ravestate.errors import PlatformError
 
 from .names import memory, module
-from .places import open_memory
+from .opening import open_memory
 
 
 @module.rule(when=rs.startup.detached(), writes=memory, detached=True, background=True)

@@ -10,17 +10,17 @@ from typing import TypeVar
 
 from .store import Store
 
-__all__ = ["Keeper"]
+__all__ = ["StoreWorker"]
 
 T = TypeVar("T")
 
-_shared: dict[str, Keeper] = {}
+_shared: dict[str, StoreWorker] = {}
 _closing: dict[str, Future[None]] = {}
 """Stores that are being closed; the next who opens one waits for that."""
 _lock = threading.Lock()
 
 
-class Keeper:
+class StoreWorker:
     """Does jobs on a store, one after the other, in a thread of its own.
 
     A file is kept once in a process, whoever uses it: a second opening of it would not be refused, and ruin it.
@@ -44,13 +44,13 @@ class Keeper:
         threading.Thread(target=self._work, name="ravestate-memory", daemon=True).start()
 
     @classmethod
-    def shared(cls, key: str, make: Callable[[], Store]) -> Keeper:
-        """The keeper of a store that is known in this process by `key`, which is its place, or a new one."""
+    def shared(cls, key: str, make: Callable[[], Store]) -> StoreWorker:
+        """The worker of a store that is known in this process by `key`, which is its place, or a new one."""
         with _lock:
-            keeper = _shared.get(key)
-            if keeper is not None:
-                keeper._users += 1
-                return keeper
+            worker = _shared.get(key)
+            if worker is not None:
+                worker._users += 1
+                return worker
             before = _closing.get(key)
 
             def make_after() -> Store:
@@ -58,9 +58,9 @@ class Keeper:
                     before.exception()
                 return make()
 
-            keeper = _shared[key] = cls(key, make_after)
-            keeper._key = key
-            return keeper
+            worker = _shared[key] = cls(key, make_after)
+            worker._key = key
+            return worker
 
     def submit(self, job: Callable[[Store], T]) -> Future[T]:
         """Have a job done after all those before it."""

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from ravestate.errors import PlatformError
-from ravestate.modules.meta.ontology.keeper import Keeper
+from ravestate.modules.meta.ontology.worker import StoreWorker
 
 
 class Recorder:
@@ -30,42 +30,42 @@ class Recorder:
 
 def test_jobs_are_done_in_order_in_one_thread() -> None:
     log: list[str] = []
-    keeper = Keeper("here", lambda: Recorder(log))  # type: ignore[arg-type, return-value]
-    replies = [keeper.submit(lambda store, n=n: store.touch(str(n))) for n in range(50)]  # type: ignore[misc]
-    threads = keeper.submit(lambda store: store.threads)  # type: ignore[attr-defined]
-    keeper.release().result(20)
+    worker = StoreWorker("here", lambda: Recorder(log))  # type: ignore[arg-type, return-value]
+    replies = [worker.submit(lambda store, n=n: store.touch(str(n))) for n in range(50)]  # type: ignore[misc]
+    threads = worker.submit(lambda store: store.threads)  # type: ignore[attr-defined]
+    worker.release().result(20)
     assert [reply.result() for reply in replies] == [str(n) for n in range(50)]
     assert log == ["open", *map(str, range(50)), "close"]
     assert len(threads.result()) == 1 and threading.get_ident() not in threads.result()
 
 
 def test_what_is_wrong_with_one_job_is_of_no_concern_to_others() -> None:
-    keeper = Keeper("here", lambda: Recorder([]))  # type: ignore[arg-type, return-value]
-    bad = keeper.submit(lambda _: 1 / 0)
-    good = keeper.submit(lambda _: 3)
+    worker = StoreWorker("here", lambda: Recorder([]))  # type: ignore[arg-type, return-value]
+    bad = worker.submit(lambda _: 1 / 0)
+    good = worker.submit(lambda _: 3)
     with pytest.raises(ZeroDivisionError):
         bad.result(20)
     assert good.result(20) == 3
-    keeper.release().result(20)
+    worker.release().result(20)
 
 
 def test_what_cannot_be_opened_fails_every_job() -> None:
     def fail() -> Any:
         raise PlatformError("no such thing")
 
-    keeper = Keeper("here", fail)
+    worker = StoreWorker("here", fail)
     for _ in range(2):
         with pytest.raises(PlatformError, match="no such thing"):
-            keeper.submit(lambda _: 3).result(20)
-    keeper.release().result(20)
+            worker.submit(lambda _: 3).result(20)
+    worker.release().result(20)
 
 
 def test_a_shared_store_is_opened_once_closed_last_and_opened_again_after() -> None:
     log: list[str] = []
     go_on = threading.Event()
 
-    def share() -> Keeper:
-        return Keeper.shared("/nowhere/at/all", lambda: Recorder(log))  # type: ignore[arg-type, return-value]
+    def share() -> StoreWorker:
+        return StoreWorker.shared("/nowhere/at/all", lambda: Recorder(log))  # type: ignore[arg-type, return-value]
 
     first, second = share(), share()
     assert first is second

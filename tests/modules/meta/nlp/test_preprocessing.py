@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ravestate.modules.meta.nlp.reading_copy import reading_copy
+from ravestate.modules.meta.nlp.preprocessing import preprocess
 
 
 @pytest.mark.parametrize(
@@ -19,7 +19,7 @@ from ravestate.modules.meta.nlp.reading_copy import reading_copy
     ],
 )
 def test_like_is_replaced_where_it_is_a_verb(text: str) -> None:
-    assert reading_copy(text) == text.replace("like", "have")
+    assert preprocess(text) == text.replace("like", "have")
 
 
 @pytest.mark.parametrize(
@@ -28,7 +28,7 @@ def test_like_is_replaced_where_it_is_a_verb(text: str) -> None:
      "what is it like", "my aunt, like him", "someone like you", "I likely go", "unlike you"],
 )  # fmt: skip
 def test_and_left_where_it_is_a_preposition(text: str) -> None:
-    assert reading_copy(text) == text
+    assert preprocess(text) == text
 
 
 @given(
@@ -36,6 +36,6 @@ def test_and_left_where_it_is_a_preposition(text: str) -> None:
     | st.lists(st.sampled_from(["I", "like", "LIKE", "do", "not", " ", "’", "\x00", "\ud800"])).map("".join)
 )
 def test_the_copy_is_as_long_as_the_text_and_can_be_encoded(text: str) -> None:
-    copy = reading_copy(text)
+    copy = preprocess(text)
     assert len(copy) == len(text)
     copy.encode()

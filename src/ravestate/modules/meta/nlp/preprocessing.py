@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-__all__ = ["READ_AS", "reading_copy"]
+__all__ = ["READ_AS", "preprocess"]
 
 READ_AS = {"have": "like"}
 """Words of the copy that stand for others of the text, as lemmas. *like* is taken for a preposition all too often, in
@@ -25,11 +25,11 @@ _LIKES = re.compile(
 )
 
 
-def reading_copy(text: str) -> str:
+def preprocess(text: str) -> str:
     """Return the copy of `text`.
 
     Example:
-        >>> reading_copy("do you like\\x00it?")
+        >>> preprocess("do you like\\x00it?")
         'do you have it?'
     """
     copy = text.translate(_UNREADABLE).replace("’", "'")

@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, Any
 
 from ravestate.modules._folders import user_folder
 
-from .keeper import Keeper
 from .memory import Memory
 from .type_files import read_types
 from .types import Types
+from .worker import StoreWorker
 
 if TYPE_CHECKING:
     from .names import Settings
@@ -75,8 +75,8 @@ def open_memory(settings: Settings) -> Memory:
 
     path = path_of(settings)
     if path is None:
-        return Memory(Keeper(str(settings.url), lambda: _server(settings)), read)
-    return Memory(Keeper.shared(str(path), lambda: _file(path)), read)
+        return Memory(StoreWorker(str(settings.url), lambda: _server(settings)), read)
+    return Memory(StoreWorker.shared(str(path), lambda: _file(path)), read)
 
 
 def _file(path: Path) -> Any:

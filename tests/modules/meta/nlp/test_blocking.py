@@ -6,7 +6,7 @@ import threading
 
 import pytest
 
-from ravestate.modules.meta.nlp.hiding import hidden
+from ravestate.modules.meta.nlp.blocking import blocked
 
 
 @pytest.fixture(autouse=True)
@@ -16,7 +16,7 @@ def not_imported(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_it_cannot_be_imported_within_but_after() -> None:
     finders = list(sys.meta_path)
-    with hidden("colorsys"), pytest.raises(ModuleNotFoundError, match="colorsys is hidden here"):
+    with blocked("colorsys"), pytest.raises(ModuleNotFoundError, match="colorsys is hidden here"):
         importlib.import_module("colorsys")
     assert importlib.import_module("colorsys").rgb_to_hsv
     assert sys.meta_path == finders
@@ -24,7 +24,7 @@ def test_it_cannot_be_imported_within_but_after() -> None:
 
 def test_other_threads_see_it() -> None:
     found: list[object] = []
-    with hidden("colorsys"):
+    with blocked("colorsys"):
         thread = threading.Thread(target=lambda: found.append(importlib.import_module("colorsys")))
         thread.start()
         thread.join()
@@ -33,5 +33,5 @@ def test_other_threads_see_it() -> None:
 
 def test_what_is_imported_already_is_had() -> None:
     imported = importlib.import_module("colorsys")
-    with hidden("colorsys"):
+    with blocked("colorsys"):
         assert importlib.import_module("colorsys") is imported

@@ -8,7 +8,7 @@ import pytest
 
 import ravestate as rs
 from ravestate.modules import ontology
-from ravestate.modules.meta.ontology.places import default_path, open_memory, types_of
+from ravestate.modules.meta.ontology.opening import default_path, open_memory, types_of
 
 
 def test_the_users_data_folder_is_that_of_the_platform(
