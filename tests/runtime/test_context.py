@@ -68,7 +68,7 @@ async def test_a_context_runs_once() -> None:
     ],
 )
 def test_nothing_can_be_done_before_it_begins(act: Callable[[rs.Context], object]) -> None:
-    with pytest.raises(rs.EngineError, match=r"has not begun: write `async with rs\.Context"):
+    with pytest.raises(rs.EngineError, match=r"has not started: write `async with rs\.Context"):
         act(rs.Context(policy))
 
 
@@ -76,7 +76,7 @@ def test_nothing_can_be_done_before_it_begins(act: Callable[[rs.Context], object
 async def test_waiting_before_it_begins_is_refused_too() -> None:
     context = rs.Context(policy)
     for wait in (context.next(number), context.quiet(), context.until_stopped(), context.stop()):
-        with pytest.raises(rs.EngineError, match="has not begun"):
+        with pytest.raises(rs.EngineError, match="has not started"):
             await wait
 
 

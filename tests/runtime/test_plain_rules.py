@@ -76,8 +76,8 @@ async def test_hanging_functions_that_use_up_the_workers_are_named_in_one_warnin
             await context.quiet()
             assert log.texts.empty()
     assert re.fullmatch(
-        r"plain functions have waited for a worker thread for up to 60 s: m:answer \(3 runs\)\. All 2 threads are taken "
-        r"by m:hangs \(2 runs, up to 60 s\)\. Give a rule that may hang a timeout=, or write async def",
+        r"plain functions wait for a worker thread: m:answer \(3 runs, up to 60 s\)\. All 2 threads are taken by "
+        r"m:hangs \(2 runs, up to 60 s\)\. Give a rule that may hang a timeout=, or write async def",
         text,
     )
 

@@ -13,6 +13,7 @@ from time import perf_counter
 from typing import Any
 
 from ravestate.declare.rule import Rule
+from ravestate.declare.wording import short
 from ravestate.engine.effects import Cancel, Effect, Ended, Failed, Run, Spiked
 from ravestate.engine.engine import Engine
 from ravestate.engine.events import AddRule, Event, Finish
@@ -22,7 +23,7 @@ from ravestate.errors import EngineError, PlatformError, RavestateError, RunEnde
 from ravestate.policy.policy import Policy
 from ravestate.runtime.async_rules import AsyncRules
 from ravestate.runtime.clock import Clock
-from ravestate.runtime.ending import ending, short
+from ravestate.runtime.ending import ending
 from ravestate.runtime.hooks import Hooks
 from ravestate.runtime.journal import Taken
 from ravestate.runtime.listeners import Listeners
@@ -344,9 +345,9 @@ class Runner:
         self._last_run = rule.name
         ctx = self._contexts[effect.run] = RuleContext(self, effect)
         if rule.is_async:
-            self._async.start(ctx, rule)
+            self._async.start(ctx)
         else:
-            self._plain.start(ctx, rule)
+            self._plain.start(ctx)
 
     def _finish(self, ctx: RuleContext, result: Any, exception: BaseException | None) -> None:
         """Report how a run has ended (L18)."""
