@@ -17,7 +17,7 @@ LIMIT = 20.0
 
 
 class Crowd:
-    """A module with functions that hang until `release` is set, and one that only wants to answer."""
+    """A module with functions that hang until `release` is set, and one that answers."""
 
     def __init__(self) -> None:
         self.module = rs.Module("m")
@@ -38,7 +38,7 @@ class Crowd:
 
 
 class Warnings(logging.Handler):
-    """A queue of what ravestate logs, while it is entered."""
+    """A queue of the messages that ravestate logs while this is entered."""
 
     def __init__(self) -> None:
         super().__init__()

@@ -222,9 +222,7 @@ class Runner:
                     break
             else:
                 self._schedule()
-        except (
-            BaseException
-        ):  # a rule has interrupted the process; the others go on for as long as the loop does
+        except BaseException:  # a rule has interrupted the process: the others go on as long as the loop does
             self._schedule()
             raise
         finally:
@@ -248,15 +246,9 @@ class Runner:
     def _failed(self, effect: Failed) -> None:
         if self._hooks.on_failed is not None:
             self._hooks.on_failed(effect.rule, effect.exception)
-        says_all = isinstance(
-            effect.exception, PlatformError
-        )  # what to mend in the world, not where in the code
-        log.error(
-            "rule %s failed: %s",
-            effect.rule,
-            said(effect.exception),
-            exc_info=None if says_all else effect.exception,
-        )
+        # The message of a platform error says what to mend in the world; a place in the code would not help.
+        trace = None if isinstance(effect.exception, PlatformError) else effect.exception
+        log.error("rule %s failed: %s", effect.rule, said(effect.exception), exc_info=trace)
 
     def _break(self, error: Exception) -> None:
         """End the context and say why: the engine itself has failed, and nothing would work any more."""
