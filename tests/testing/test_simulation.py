@@ -356,7 +356,7 @@ def test_it_is_refused_inside_a_running_loop() -> None:
 def test_it_is_a_context_manager_and_runs_once() -> None:
     sim = simulate()
     for act in (lambda: sim.advance(1), sim.settle, lambda: sim.now):
-        with pytest.raises(rs.EngineError, match="has not begun: write"):
+        with pytest.raises(rs.EngineError, match="has not started: write"):
             act()
     with sim:
         pass
