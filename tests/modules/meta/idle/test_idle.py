@@ -26,7 +26,33 @@ def test_silence_bores_again_and_again_when_somebody_acts_on_it() -> None:
     with simulate(watch) as sim:
         sim.say("hello")
         sim.advance(20.0)
-        assert sim.read(times) == pytest.approx((7.0, 12.0, 17.0, 22.0)[:3])
+        assert sim.read(times) == pytest.approx((7.0, 12.0))
+
+
+def test_after_two_remarks_without_an_answer_the_agent_is_quiet_until_the_user_speaks() -> None:
+    with simulate(watch) as sim:
+        sim.say("hello")
+        sim.advance(3600.0)
+        assert len(sim.read(times)) == 2
+        assert sim.read(idle.unanswered) == 2
+        sim.say("I am back")
+        assert sim.read(idle.unanswered) == 0
+        sim.advance(3600.0)
+        assert len(sim.read(times)) == 4
+
+
+def test_how_often_the_agent_is_bored_in_a_row_is_a_setting() -> None:
+    with simulate(watch, settings={"idle": {"bored_times": 3}}) as sim:
+        sim.advance(3600.0)
+        assert sim.read(times) == pytest.approx((5.0, 10.0, 15.0))
+
+
+def test_a_key_pressed_shows_that_the_user_is_there() -> None:
+    with simulate(watch) as sim:
+        sim.advance(3600.0)
+        sim.emit(rawio.typing)
+        sim.advance(3600.0)
+        assert len(sim.read(times)) == 4
 
 
 def test_activity_puts_boredom_off() -> None:

@@ -3,6 +3,6 @@
 from __future__ import annotations
 
 from . import rules
-from .names import Settings, asked, bored, hushed, impatient, module
+from .names import Settings, asked, bored, hushed, impatient, module, unanswered
 
-__all__ = ["Settings", "asked", "bored", "hushed", "impatient", "module", "rules"]
+__all__ = ["Settings", "asked", "bored", "hushed", "impatient", "module", "rules", "unanswered"]
