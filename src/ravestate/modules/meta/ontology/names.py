@@ -40,7 +40,7 @@ class Settings(rs.Settings):
     @classmethod
     def _can_be_read(cls, types: tuple[Path, ...]) -> tuple[Path, ...]:
         """A mistake in a file is told before anything runs."""
-        from .opening import types_in
+        from .type_files import types_in
 
         try:
             types_in(types)

@@ -16,6 +16,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping
+from functools import lru_cache
+from importlib.resources import files
 from importlib.resources.abc import Traversable
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -27,14 +29,14 @@ from .types import KINDS, Kind, Relating, Type, Types
 if TYPE_CHECKING:
     import yaml
 
-__all__ = ["read_types"]
+__all__ = ["read_types", "types_in"]
 
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,62}")
 OF_A_TYPE = ("is", "has", "relations")
 OF_A_RELATION = ("to", "has")
 
 
-def read_types(files: Iterable[Path | Traversable]) -> Types:
+def read_types(paths: Iterable[Path | Traversable]) -> Types:
     """Read files, in this order, into one.
 
     Raises:
@@ -42,9 +44,34 @@ def read_types(files: Iterable[Path | Traversable]) -> Types:
         PlatformError: A file is missing or cannot be read.
     """
     reader = _Reader()
-    for file in files:
+    for file in paths:
         reader.read(str(file), _text_of_file(file))
     return reader.finish()
+
+
+def types_in(paths: Iterable[Path]) -> Types:
+    """Return the built-in types together with those of files. Files are read once, and again after a change.
+
+    Raises:
+        DeclarationError: A file is no file of types, or contradicts another.
+        PlatformError: A file cannot be read.
+    """
+    return _read(tuple((path.expanduser(), _state_of(path.expanduser())) for path in paths))
+
+
+@lru_cache(maxsize=8)  # each visitor of a page opens memory
+def _read(own: tuple[tuple[Path, object], ...]) -> Types:
+    built_in = files("ravestate.modules.meta.ontology") / "types.yaml"
+    return read_types([built_in, *(path for path, _ in own)])
+
+
+def _state_of(path: Path) -> object:
+    """Return what changes with a file."""
+    try:
+        stat = path.stat()
+    except OSError:  # reading it says so
+        return None
+    return stat.st_ino, stat.st_size, stat.st_mtime_ns
 
 
 class _Reader:
