@@ -15,6 +15,7 @@ from ravestate.modules import emotion
 from ravestate.modules.meta.idle.words import asks_for_quiet, takes_leave
 from ravestate.modules.meta.nlp import Settings
 from ravestate.modules.meta.nlp.analysis import analyse
+from ravestate.modules.meta.nlp.answer import yesno_of
 from ravestate.modules.meta.nlp.pipeline import pipeline
 
 LABELLED = ("questions_rows", "yesno_rows", "intents_rows", "quiet_rows", "emotion_rows")
@@ -40,7 +41,7 @@ def feelings(text: str) -> str:
 
 SEE: dict[str, Callable[[str], str]] = {
     "questions_rows": modules.questions,
-    "yesno_rows": modules.yesno,
+    "yesno_rows": lambda text: modules.yesno_label(yesno_of(text)),
     "intents_rows": intents,
     "quiet_rows": quiet,
     "emotion_rows": feelings,
