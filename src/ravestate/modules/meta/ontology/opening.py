@@ -18,26 +18,26 @@ __all__ = ["default_path", "open_memory", "path_of", "types_of"]
 
 
 def default_path(agent: str) -> Path:
-    """The file of an agent's memory in the user's data folder."""
+    """Return the file of an agent's memory in the user's data folder."""
     return user_folder("data") / agent / "memory.lbug"
 
 
 def types_of(settings: Settings) -> Types:
-    """The types that come with the module, and the user's; see `types_in`."""
+    """Return the built-in types and the user's; see `types_in`."""
     return types_in(settings.types)
 
 
 def path_of(settings: Settings) -> Path | None:
-    """The file of memory, its links resolved; None where memory is on a server."""
+    """Return the file of memory with links resolved; None for a memory on a server."""
     if settings.url is not None:
         return None
     return Path(os.path.realpath((settings.path or default_path(settings.agent)).expanduser()))
 
 
 def open_memory(settings: Settings) -> Memory:
-    """Begin to open memory where the settings say; all of it happens in memory's thread.
+    """Begin to open memory where the settings say, in its own thread.
 
-    What is wrong is raised by ``memory.opened()``.
+    ``memory.opened()`` raises the errors.
     """
 
     def read() -> Types:
@@ -58,6 +58,6 @@ def _file(path: Path) -> Any:
 def _server(settings: Settings) -> Any:
     from .bolt import BoltStore
 
-    assert settings.url is not None  # as asked for above
+    assert settings.url is not None  # `open_memory` has checked it
     password = "" if settings.password is None else settings.password.get_secret_value()
     return BoltStore(settings.url, settings.user, password, settings.database, settings.timeout)
