@@ -1,5 +1,6 @@
 """L16: a rival stands while what it lacks may still come, and nobody waits longer than that."""
 
+import sys
 from typing import Any
 
 import pytest
@@ -541,3 +542,29 @@ def test_patience_does_not_begin_anew_when_a_rival_touches_what_another_gets(pla
         sim.emit(gesture)
         sim.advance(5.0)
         assert moments(sim, out) == [(0.9, "fuse"), (1.4, "alone"), (1.8, "alone")]
+
+
+def test_a_derivation_may_be_deeper_than_the_interpreter_nests_calls(
+    play: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refuse(limit: int) -> None:
+        raise AssertionError(f"the recursion limit is the interpreter's: {limit}")
+
+    m = rs.Module("m")
+    a, out = m.signal("a"), output(m)
+    last, depth = a, sys.getrecursionlimit()
+    for number in range(depth):
+        signal = m.signal(f"s{number}")
+        emitter(m, f"r{number}", last, signal, after=0.0 if number else 2.0)
+        last = signal
+    writer(m, "answer", last, out)
+    writer(m, "fallback", a, out)
+    policy = rs.compile(m)
+    monkeypatch.setattr(sys, "setrecursionlimit", refuse)
+    with play(policy) as sim:
+        sim.emit(a)
+        sim.advance(1.0)
+        assert written(sim, out) == []
+        assert sim.snapshot()["activations"]
+        sim.advance(1.0)
+        assert written(sim, out) == ["answer"]

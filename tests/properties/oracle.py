@@ -10,7 +10,16 @@ from ravestate.engine.activation import NEVER, State
 from ravestate.engine.consent import ask
 from ravestate.engine.effects import Effect, Ended, Run
 
-__all__ = ["Exclusion", "bounded", "consistent", "empty", "pressed_in_time", "still", "waits_for_a_reason"]
+__all__ = [
+    "Exclusion",
+    "bounded",
+    "consistent",
+    "empty",
+    "joined",
+    "pressed_in_time",
+    "still",
+    "waits_for_a_reason",
+]
 
 
 @dataclass
@@ -142,6 +151,27 @@ def waits_for_a_reason(play: Play) -> None:
     assert not stuck or engine.running or due is not None, f"{stuck} wait for nothing that moves"
 
 
+def joined(play: Play) -> None:
+    """No activation lacks a spike that it could have: one that is younger, fits, and is of the right group (L12)."""
+    engine = play.engine
+    for activation in play.active():
+        if activation.state is not State.GATHERING:
+            continue
+        for need in activation.clause.needs:
+            if not need.bit & activation.missing or need.detached:
+                continue
+            held = [
+                spike.group.root()
+                for other, spike in zip(activation.clause.needs, activation.spikes, strict=True)
+                if spike is not None and other.bit & need.kin
+            ]
+            for spike in engine.live.get(need.signal.index, ()):
+                apart = any(group is not spike.group.root() for group in held)
+                assert apart or activation.id > spike.before or not engine._fits(need, spike), (
+                    f"{activation} lacks {need.signal}, and does not take {spike}"
+                )
+
+
 def pressed_in_time(play: Play) -> None:
     """Nobody is under pressure past its patience (L16)."""
     engine = play.engine
@@ -229,6 +259,7 @@ def bounded(play: Play) -> None:
     play.engine.look()
     assert not play.engine._out, "looking has made somebody run"
     consistent(play.engine)
+    joined(play)
     pressed_in_time(play)
     waits_for_a_reason(play)
     engine = play.engine

@@ -27,6 +27,7 @@ from ravestate.errors import EngineError
 
 if TYPE_CHECKING:
     from ravestate.engine.group import Group
+    from ravestate.engine.loops import Lineage
     from ravestate.engine.spike import Spike
     from ravestate.policy.model import Clause
 
@@ -138,6 +139,8 @@ class Activation:
     """When the run has taken too long (seconds)."""
     told: str = ""
     """Why the run was told to end."""
+    lineage: Lineage | None = None
+    """The rules that led to the run, its own included, when an instant has many runs (L23)."""
 
     def __init__(self, id: int, clause: Clause) -> None:
         self.id = id

@@ -92,6 +92,11 @@ class Engine(Waves):
         """When to call `advance` next (seconds), if nothing else happens before."""
         return self._deadlines.next()
 
+    @property
+    def late_turns(self) -> int:
+        """How many further turns loops have had in this instant after everything else that was ready (L23)."""
+        return self._loops.late
+
     def effects(self) -> list[Effect]:
         """What is to be done now; ask again after doing it, until there is nothing."""
         # Until there is something to do: what only tells (of spikes, ends, failures) must not change the waves.
@@ -100,14 +105,20 @@ class Engine(Waves):
                 self.advance(self.now)
             elif self._errors:
                 error = self.policy.signal_of["core:error"]
-                self._birth(error, self._errors.pop(0), (), self._new_group(), None)
+                failure, lineage = self._errors.pop(0)
+                self._birth(error, failure, (), self._new_group(), None, lineage)
             elif self._busy and not self.read(self._activity.index):
                 self._set_flag(self._activity, True)
             elif self._free:
                 self._start_free()
             elif self._line or self._asking or self._dirty or self._stirred:
                 self._consent_round()
-            elif not self._settle_flags():
+            elif self._settle_flags():
+                pass
+            elif (turn := self._loops.next()) is not None:
+                self._enqueue(turn)
+            else:
+                self._loops.rest()
                 break
         out = self._out
         self._out = []
@@ -138,13 +149,13 @@ class Engine(Waves):
         slot = self._collection(event.slot)
         run = self._run(event.run)
         self._mark_write(slot, run)
-        self._change_item(slot, event.key, event.item, run, self._origin(run))
+        self._change_item(slot, event.key, event.item, run)
 
     def on_discard(self, event: events.Discard) -> None:
         slot = self._collection(event.slot)
         run = self._run(event.run)
         self._mark_write(slot, run)
-        self._change_item(slot, event.key, ABSENT, run, self._origin(run))
+        self._change_item(slot, event.key, ABSENT, run)
 
     def on_emit(self, event: events.Emit) -> None:
         signal = self.policy.signal_of.get(event.signal)
@@ -247,7 +258,8 @@ class Engine(Waves):
         if event.kind == "retired":
             self._retire(rule)
         if outcome == "failed":
-            self._fail(rule, exception or RuleError(f"rule {rule.name} failed"), signal=not on_error)
+            failure = exception or RuleError(f"rule {rule.name} failed")
+            self._fail(rule, failure, signal=not on_error, lineage=run.lineage)
 
     def _slot(self, name: str) -> SlotPlan:
         slot = self.policy.slot_of.get(name)

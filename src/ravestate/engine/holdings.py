@@ -39,6 +39,7 @@ from ravestate.engine.deadlines import (
 )
 from ravestate.engine.effects import Effect, Failed
 from ravestate.engine.group import Group
+from ravestate.engine.loops import MANY, Lineage, Loops
 from ravestate.engine.spike import Spike
 from ravestate.engine.trace import Tracer
 from ravestate.engine.watch import Watch
@@ -95,7 +96,9 @@ class Holdings:
         self._watched_by: dict[
             Spike, dict[Watch, None]
         ] = {}  # spikes that watches keep, until they are old enough
-        self._errors: list[RuleFailure] = []  # failures of which ``core:error`` is still to tell
+        # Failures that ``core:error`` has yet to signal, each with the rules that led to it.
+        self._errors: list[tuple[RuleFailure, Lineage | None]] = []
+        self._loops = Loops()
         self._blamed: set[int] = set()  # predicates whose failure has been reported
         self._deadlines = Deadlines(self._stands)
         self._busy = 0  # activations of rules that are not in the background
@@ -190,11 +193,13 @@ class Holdings:
                 self._fail(rule, exception, signal=True)
             return False
 
-    def _fail(self, rule: RulePlan, exception: BaseException, *, signal: bool) -> None:
-        """A rule has failed: it is to be logged, and to be told by ``core:error``."""
+    def _fail(
+        self, rule: RulePlan, exception: BaseException, *, signal: bool, lineage: Lineage | None = None
+    ) -> None:
+        """Have a rule's failure logged and, if it is to `signal`, raise ``core:error`` next."""
         self._out.append(Failed(rule.name, exception))
         if signal:
-            self._errors.append(RuleFailure(rule.name, exception))
+            self._errors.append((RuleFailure(rule.name, exception), lineage))
 
     def _look(self, activation: Activation) -> None:
         """Let an activation look at what is there already: detached needs take what is live, the newest that is old
@@ -308,6 +313,10 @@ class Holdings:
     def _complete(self, activation: Activation) -> None:
         """It is ready: a writer asks for consent, others just start."""
         activation.step(COMPLETE)
+        if self._loops.runs <= MANY or not self._loops.defer(activation):
+            self._enqueue(activation)
+
+    def _enqueue(self, activation: Activation) -> None:
         clause = activation.clause
         if clause.rule.slots and clause.firm_bits:
             self._asking[activation] = None
@@ -368,7 +377,11 @@ class Holdings:
         self._unready(activation)
         for need in needs:
             self.lacking.setdefault(need, {})[activation] = None
+        kin = 0
         for need in needs:
+            kin |= need.kin
+        # A lost spike may have kept out spikes of other groups: its kin may now find theirs, too.
+        for need in (*needs, *(n for n in clause.needs if n.bit & kin)):
             if need.bit & activation.missing:
                 self._rematch(activation, need)
         self._update(activation)

@@ -5,11 +5,12 @@ from __future__ import annotations
 from typing import Any
 
 from ravestate.engine import trace
-from ravestate.engine.activation import CANCEL, NEVER, RUNNING, Activation
+from ravestate.engine.activation import CANCEL, GATHERING, NEVER, RUNNING, Activation
 from ravestate.engine.contests import Contests
 from ravestate.engine.deadlines import WATCH
 from ravestate.engine.effects import Cancel, CancelReason, Spiked
 from ravestate.engine.group import Group
+from ravestate.engine.loops import MANY, Lineage
 from ravestate.engine.spike import Spike
 from ravestate.engine.watch import Watch
 from ravestate.policy.model import Need, SignalPlan
@@ -51,9 +52,35 @@ class Pool(Contests):
         for activation in list(root.members):
             if activation.state < RUNNING and not activation.clause.rule.slotset.isdisjoint(done):
                 self._lose(activation, self._of_group(activation, root), "consumed")
+        self._offer_again(root)
         self._dirty.pop(merged, None)
         self._dirty[root] = None
         return root
+
+    def _offer_again(self, group: Group) -> None:
+        """Offer the spikes of a group that has merged, in their order: until now coherence kept some apart (L12).
+
+        As at its birth, a spike goes to the activations that are older than it, the oldest first.
+        """
+        offers: list[tuple[int, int, int, Activation, Spike]] = []
+        for activation in group.members:
+            if activation.state is not GATHERING or not activation.missing:
+                continue
+            for need in activation.clause.needs:
+                if need.bit & activation.missing and need.kin != need.bit and not need.detached:
+                    offers += [
+                        (spike.id, activation.id, need.index, activation, spike)
+                        for spike in self.live.get(need.signal.index, ())
+                        if activation.id <= spike.before and spike.group.root() is group
+                    ]
+        for _, _, index, activation, spike in sorted(offers, key=_birth_order):
+            need = activation.clause.needs[index]
+            if activation.state is not GATHERING or not need.bit & activation.missing:
+                continue  # an earlier offer has met it
+            if self._coherent(activation, need, spike) and self._fits(need, spike):
+                self._acquire(activation, need, spike)
+                self._stir(activation)
+                self._update(activation)
 
     def _birth(
         self,
@@ -62,6 +89,7 @@ class Pool(Contests):
         parents: tuple[Spike, ...],
         group: Group,
         run: Activation | None,
+        lineage: Lineage | None = None,
     ) -> None:
         """A spike is born, and offered to whoever lacks it (L11, L12)."""
         self._spikes += 1
@@ -76,7 +104,11 @@ class Pool(Contests):
         if not signal.listeners and not (signal.watchers and self._watches):
             return
         rule = -1 if run is None or run.clause.rule.detached else run.clause.rule.index
-        spike = Spike(self._spikes, signal, payload, self.now, group, parents, source, rule)
+        spike = Spike(
+            self._spikes, signal, payload, self.now, group, parents, source, rule, self._activations
+        )
+        if self._loops.runs > MANY:
+            spike.lineage = lineage if run is None else run.lineage
         live = self.live.get(signal.index)
         if live is None:
             live = self.live[signal.index] = {}
@@ -179,3 +211,7 @@ class Pool(Contests):
 
 def _age(activation: Activation) -> int:
     return activation.id
+
+
+def _birth_order(offer: tuple[int, int, int, Activation, Spike]) -> tuple[int, int, int]:
+    return offer[:3]

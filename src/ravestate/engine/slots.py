@@ -9,7 +9,6 @@ from typing import Any, cast
 from ravestate.declare.slot import Entry
 from ravestate.engine import trace
 from ravestate.engine.activation import Activation
-from ravestate.engine.group import Group
 from ravestate.engine.pool import Pool
 from ravestate.engine.spike import Spike
 from ravestate.errors import RuleError, UndeclaredError
@@ -55,8 +54,8 @@ class Slots(Pool):
         key: str,
         item: Any,
         run: Activation | None,
-        origin: tuple[tuple[Spike, ...], Group],
     ) -> None:
+        """Store or remove an item, and signal. An item that is equal to the one there changes nothing (L2)."""
         items = self._unseen.get(slot.index)
         old: Mapping[str, Any] = self.read(slot.index) if items is None else items
         known = old.get(key, ABSENT)
@@ -80,10 +79,11 @@ class Slots(Pool):
             self._unseen.pop(slot.index, None)
             self.tracer(trace.Set(self.now, slot.name, items, 0 if run is None else run.id))
         entry = Entry(key, known if item is ABSENT else item)
+        parents, group = self._origin(run)
         for signal in raised:
             if signal.keep_latest:
                 self._withdraw(signal, "superseded")
-            self._birth(signal, entry, origin[0], origin[1], run)
+            self._birth(signal, entry, parents, group, run)
         if slot.index in self.policy.guarded:
             self._regate(slot)
 
@@ -95,7 +95,7 @@ class Slots(Pool):
         items = cast("Mapping[str, Any]", value)
         old: Mapping[str, Any] = self.read(slot.index)
         for key in [*(k for k in old if k not in items), *items]:
-            self._change_item(slot, key, items.get(key, ABSENT), run, self._origin(run))
+            self._change_item(slot, key, items.get(key, ABSENT), run)
 
     def _watched(self, slot: SlotPlan) -> bool:
         return any(signal.name in self.watched for signal in slot.signals)

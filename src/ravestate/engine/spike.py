@@ -9,6 +9,7 @@ from ravestate.policy.model import SignalPlan
 if TYPE_CHECKING:
     from ravestate.engine.activation import Activation
     from ravestate.engine.group import Group
+    from ravestate.engine.loops import Lineage
 
 __all__ = ["Spike"]
 
@@ -17,20 +18,24 @@ class Spike:
     """Payload, time of birth (seconds), parents, causal group; and who holds it.
 
     Attributes:
+        before: The number of the last activation that is older than the spike.
         source: The number of the run that raised it, 0 if it came from outside.
         holders: The activations that hold it, in the order in which they took it.
         claims: For rules without slots: the activation that runs on it, or None once one has (L10).
         expiring: The times at which holders that are still incomplete give it up for age (seconds).
         refused: Rules that gave it up for good.
+        lineage: The rules that led to it, when an instant has many runs (L23).
     """
 
     __slots__ = (
+        "before",
         "born",
         "claims",
         "expiring",
         "group",
         "holders",
         "id",
+        "lineage",
         "parents",
         "payload",
         "refused",
@@ -49,6 +54,7 @@ class Spike:
         parents: tuple[Spike, ...],
         source: int,
         rule: int,
+        before: int,
     ) -> None:
         self.id = id
         self.signal = signal
@@ -58,6 +64,8 @@ class Spike:
         self.parents = parents
         self.source = source
         self.rule = rule  # index of the rule that raised it, -1 from outside
+        self.before = before
+        self.lineage: Lineage | None = None
         self.holders: dict[Activation, None] = {}
         self.expiring: tuple[float, ...] = ()
         self.refused: set[int] | None = None

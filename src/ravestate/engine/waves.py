@@ -12,6 +12,7 @@ end in this instant has ended.
 from __future__ import annotations
 
 import heapq
+from collections.abc import Sequence
 from typing import Any
 
 from ravestate.engine import trace
@@ -21,9 +22,11 @@ from ravestate.engine.deadlines import PATIENCE, RECHECK, STANDBY, TIMEOUT
 from ravestate.engine.effects import Run
 from ravestate.engine.group import Group
 from ravestate.engine.horizon import FIRM, Horizon
+from ravestate.engine.loops import MANY, TURNS
 from ravestate.engine.slots import Slots
 from ravestate.engine.watch import Watch
-from ravestate.policy.model import Clause, SlotPlan
+from ravestate.errors import RuleError
+from ravestate.policy.model import Clause, RulePlan, SlotPlan
 from ravestate.policy.policy import Policy
 
 __all__ = ["Waves"]
@@ -284,6 +287,9 @@ class Waves(Slots):
                     spike.claims = {}
                 spike.claims[rule.index] = activation
         self.running[activation.id] = activation
+        self._loops.runs += 1
+        if self._loops.runs > MANY and (loop := self._loops.trace(activation)):
+            self._fail(loop[0], RuleError(_endless(loop)), signal=True)
         if rule.timeout is not None:
             activation.deadline = self.now + rule.timeout
             self._deadlines.add(activation.deadline, TIMEOUT, activation)
@@ -317,3 +323,13 @@ class Waves(Slots):
             self._set_flag(self._activity, activity)
             return True
         return False
+
+
+def _endless(rules: Sequence[RulePlan]) -> str:
+    """Return the message about a loop without an end."""
+    names = ", ".join(rule.name for rule in rules)
+    whom = "each other" if len(rules) > 1 else "itself"
+    return (
+        f"a loop without an end: {names} set {whom} off {MANY + TURNS:,} times within one instant; write "
+        ".min_age(seconds) behind a signal of the loop, so that time passes"
+    )

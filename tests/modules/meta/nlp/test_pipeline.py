@@ -150,7 +150,7 @@ def test_one_text_that_cannot_be_read_takes_no_other_along(
             raise ArithmeticError("of all words")
         return text
 
-    monkeypatch.setattr(pipeline_module, "reading_copy", stumble)
+    monkeypatch.setattr(pipeline_module, "preprocess", stumble)
     found = crowd()
     assert [isinstance(one, ArithmeticError) for one in found] == [text == "no" for text in SAID]
     assert reader.read("I like tea")[0].text == "I like tea"

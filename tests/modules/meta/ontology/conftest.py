@@ -15,7 +15,7 @@ from typing import Any
 import pytest
 
 from ravestate.modules import ontology
-from ravestate.modules.meta.ontology.places import open_memory
+from ravestate.modules.meta.ontology.opening import open_memory
 
 PASSWORD = "only-for-these-tests"
 DATABASE = "memory"

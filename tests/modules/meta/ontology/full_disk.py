@@ -8,7 +8,7 @@ from pathlib import Path
 
 from ravestate.errors import PlatformError
 from ravestate.modules import ontology
-from ravestate.modules.meta.ontology.places import open_memory
+from ravestate.modules.meta.ontology.opening import open_memory
 
 
 def allow(size: int) -> None:

@@ -14,7 +14,7 @@ import pytest
 from modules.meta.ontology.conftest import DATABASE, PASSWORD, Open, free_ports
 from ravestate.errors import PlatformError
 from ravestate.modules import ontology
-from ravestate.modules.meta.ontology.places import open_memory
+from ravestate.modules.meta.ontology.opening import open_memory
 
 
 def failure(**settings: Any) -> str:

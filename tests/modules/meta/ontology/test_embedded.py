@@ -20,7 +20,7 @@ from ravestate.errors import PlatformError, RuleError
 from ravestate.modules import ontology
 from ravestate.modules.meta.ontology import embedded
 from ravestate.modules.meta.ontology.embedded import EmbeddedStore
-from ravestate.modules.meta.ontology.places import open_memory
+from ravestate.modules.meta.ontology.opening import open_memory
 
 HERE = Path(__file__).parent
 
@@ -310,7 +310,7 @@ def test_who_is_forgotten_leaves_no_byte_in_any_file(tmp_path: Path, open_here: 
         assert not any(trace in content for trace in (b"Ada Aug", b"Countess", b"Ockham", ada.id.encode()))
     memory.create("Person", name="Eve").result()
     memory.close().result()
-    assert sorted(file.name for file in tmp_path.iterdir()) == ["memory.lbug", "mine.yaml"]
+    assert sorted(file.name for file in tmp_path.iterdir()) == ["memory.lbug", "memory.lbug.sum", "mine.yaml"]
 
     memory = open_here(path=path, types=(types,))
     [eve] = memory.find("Person", name="Eve").result()
@@ -330,7 +330,7 @@ def test_what_cannot_be_written_anew_is_forgotten_all_the_same(
     bob = memory.create("Person", name="Bob").result()
     monkeypatch.setattr(embedded, "copy_database", fail)
     assert memory.forget(ada).result() == [ada]
-    assert "the file still has its bytes: no more space" in caplog.text
+    assert "the file still has their bytes: no more space" in caplog.text
     assert memory.find("Person").result() == [bob]
     monkeypatch.undo()
     memory.update(bob, age=3).result()

@@ -511,7 +511,7 @@ def test_what_comes_after_the_end_is_refused(memory: Memory) -> None:
 def test_what_is_newer_is_left_alone(open_here: Open, place: dict[str, Any]) -> None:
     memory = open_here(**place)
     memory.create("Person", name="Ada").result()
-    keeper = memory._keeper
+    keeper = memory._worker
     keeper.submit(
         lambda store: store.write("MATCH (m:`_ravestate` {`key`: 'format'}) SET m.`value` = 2", {})
     ).result()

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from hypothesis.stateful import Bundle, RuleBasedStateMachine, initialize, invariant, rule
 
 from ravestate.modules import ontology
-from ravestate.modules.meta.ontology.places import open_memory
+from ravestate.modules.meta.ontology.opening import open_memory
 
 Node = ontology.Node
 

@@ -96,7 +96,7 @@ def test_the_loop_does_not_wait_for_memory(tmp_path: Path) -> None:
             while memory is None:
                 await asyncio.sleep(0)
                 memory = context.read(ontology.memory)
-            blocker = memory._keeper.submit(lambda _: held.wait(20))
+            blocker = memory._worker.submit(lambda _: held.wait(20))
             context.emit(ask, "Ada")
             turns = 0
             while turns < 100:  # the loop goes round while memory is held up

@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 
 from ravestate.modules import ontology
-from ravestate.modules.meta.ontology.places import open_memory
+from ravestate.modules.meta.ontology.opening import open_memory
 
 
 def main(path: Path, *, forget: bool) -> None:

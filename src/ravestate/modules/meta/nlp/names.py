@@ -6,10 +6,10 @@ import ravestate as rs
 from ravestate.modules import interloc, rawio
 
 from .answer import YesNo
+from .context_lock import ContextLock
 from .entity import Entity
 from .question_word import QuestionWord
 from .triple import Triple
-from .turn import Turn
 
 __all__ = [
     "Settings",
@@ -47,8 +47,8 @@ text: rs.Slot[str] = module.slot("text", "", always=True)
 """The last utterance, which the other slots are about. Who needs both its words and what they mean stands on this: however
 long it has taken to read them, it is as young as they are."""
 
-turn: rs.Slot[Turn] = module.slot("turn", Turn())
-"""Whose turn it is to be read, of utterances that come at once: the later of them may set the earlier right (*no, Bremen*)."""
+lock: rs.Slot[ContextLock] = module.slot("lock", ContextLock())
+"""Analysis takes one utterance at a time: a later one may correct an earlier one (*no, Bremen*)."""
 
 tokens: rs.Slot[tuple[str, ...]] = module.slot("tokens", (), always=True)
 """The words and marks of the last utterance, as written."""

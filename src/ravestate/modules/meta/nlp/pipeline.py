@@ -11,9 +11,9 @@ from typing import Any
 from ravestate.errors import PlatformError
 from ravestate.modules._loading import LOADING
 
+from .blocking import blocked
 from .entity import Entity
-from .hiding import hidden
-from .reading_copy import READ_AS, reading_copy
+from .preprocessing import READ_AS, preprocess
 from .repair import repaired
 from .tree import Tree, Word
 
@@ -95,7 +95,7 @@ class Pipeline:
         try:
             with self._nlp.memory_zone():  # else each new word is kept for ever
                 # A reading copy is as long as the text, so that places are the same.
-                texts = [reading_copy(order.text) for order in orders]
+                texts = [preprocess(order.text) for order in orders]
                 docs: Any = self._nlp.pipe(texts) if len(texts) > 1 else [self._nlp(texts[0])]
                 found = [_found(order.text, doc) for order, doc in zip(orders, docs, strict=True)]
         except Exception as error:
@@ -121,7 +121,7 @@ class Pipeline:
         try:
             # spaCy's small pipelines need none of these; where one is installed, importing it would take a second
             # more and 190 MB. A pipeline that the user names may well need them.
-            with hidden(*(() if self.name else ("torch", "tensorflow", "mxnet", "cupy"))):
+            with blocked(*(() if self.name else ("torch", "tensorflow", "mxnet", "cupy"))):
                 import spacy
         except ImportError as error:
             raise PlatformError(f"nlp needs spacy: {_INSTALL}") from error

@@ -20,6 +20,7 @@ from .names import (
     intent_play,
     is_question,
     lemmas,
+    lock,
     module,
     pos,
     question,
@@ -27,7 +28,6 @@ from .names import (
     text,
     tokens,
     triples,
-    turn,
     yesno,
 )
 from .pipeline import pipeline
@@ -44,7 +44,7 @@ def load(ctx: rs.RuleContext) -> None:
 
 @module.rule(
     when=rawio.input.changed,
-    reads=(interloc.agent, turn),
+    reads=(interloc.agent, lock),
     writes=(text, tokens, lemmas, pos, tags, entities, triples, question, yesno),
     emits=(is_question, about_agent, intent_play, intent_hi, intent_bye),
 )
@@ -54,7 +54,7 @@ async def understand(ctx: rs.RuleContext) -> None:
     heard = ctx.payload(rawio.input.changed)
     named = "agent_names" in settings.model_fields_set
     names = settings.agent_names if named else (ctx[interloc.agent],)
-    async with ctx[turn]:
+    async with ctx[lock]:
         seen = await asyncio.to_thread(analyse, heard, pipeline(settings.pipeline), names)
     words = seen.tree.words
     ctx[text] = heard

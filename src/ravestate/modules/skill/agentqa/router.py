@@ -11,6 +11,7 @@ from functools import lru_cache
 from importlib import import_module
 from typing import TYPE_CHECKING
 
+from ravestate.modules._bundled import ModelMissing
 from ravestate.modules._loading import LOADING
 from ravestate.modules._sentences import Encoder
 
@@ -82,7 +83,7 @@ class Router:
         """`life`: its topics, and what belongs to none; `encoder`: by default the bundled one."""
         self.life = life
         self._encoder = encoder or Encoder()
-        self._known = frozenset(plain(q) for topic in life.topics.values() for q in topic.questions)
+        self._known = {plain(q): topic.name for topic in life.topics.values() for q in topic.questions}
         self._lock = threading.Lock()
         self._learnt: _Learnt | None = None
 
@@ -114,9 +115,19 @@ class Router:
         candidates, why = about_agent(utterance, (self.life.name, *names), self._known, question=question)
         if not candidates:
             return Miss(why)
-        self.load()
+        try:
+            self.load()
+        except ModelMissing as error:
+            return self._verbatim(candidates) or Miss(str(error))
         assert self._learnt is not None  # it is loaded
         return self._learnt.best(candidates)
+
+    def _verbatim(self, candidates: Sequence[Asked]) -> Match | None:
+        """Return the first candidate that is an example word for word."""
+        for text in (asked.text for asked in candidates):
+            if text in self._known:
+                return Match(self._known[text], text, 1.0, text, 1.0)
+        return None
 
 
 @lru_cache(maxsize=8)
