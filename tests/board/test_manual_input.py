@@ -108,7 +108,7 @@ def test_what_has_no_type_takes_anything_unless_it_holds_what_json_cannot_say(ho
     check_value(free, "new", holds)
     for foreign in (Point(1), [Point(1)], {"a": Point(1)}, {1: 2}, (1, 2), [(1, 2)]):
         with pytest.raises(
-            rs.RavestateError, match=rf"lab:free holds a {type(foreign).__name__}, for which JSON"
+            rs.RavestateError, match=rf"lab:free holds a {type(foreign).__name__}, which JSON"
         ):
             check_value(free, "new", foreign)
         with pytest.raises(rs.RavestateError, match="lab:free holds a"):

@@ -123,7 +123,7 @@ export interface ConstraintView {
   predicates: string[];
 }
 
-/** Nodes and edges in the order in which they are declared. */
+/** Nodes and edges in declaration order. */
 export interface Diagram {
   nodes: Node[];
   edges: Edge[];
@@ -210,15 +210,15 @@ export interface Moment {
 
 /** A slot, a signal, a rule, a folded module, or the junction of a conjunction or disjunction. */
 export interface Node {
-  /** Its name within the diagram. */
+  /** Its unique name within the diagram. */
   id: string;
-  /** What it stands for. */
+  /** Its kind. */
   kind: "slot" | "signal" | "rule" | "module" | "and" | "or";
-  /** What is written in it; empty for a junction. */
+  /** The text in it; empty for a junction. */
   label?: string;
-  /** The module it is declared in; empty for a junction and for a module. */
+  /** The module that declares it; empty for a junction and for a module. */
   module?: string;
-  /** Options worth seeing, such as a weight; empty for none. */
+  /** Options such as a weight, or the number of rules of a module; may be empty. */
   note?: string;
 }
 
