@@ -415,19 +415,9 @@ export interface Hello {
   token?: string;
 }
 
-/** Stop the context's clock. */
-export interface Pause {
-  type: "pause";
-}
-
-/** Do the next thing that is due, on a stopped clock. */
-export interface Step {
-  type: "step";
-}
-
-/** Start the context's clock again. */
-export interface Resume {
-  type: "resume";
+/** Stop the context's clock, do the next thing that is due on a stopped clock, or start it again. */
+export interface Clock {
+  type: "pause" | "step" | "resume";
 }
 
 /** Write a slot. */
@@ -435,6 +425,13 @@ export interface Put {
   type: "put";
   slot: string;
   value?: unknown;
+}
+
+/** Raise a signal. */
+export interface Emit {
+  type: "emit";
+  signal: string;
+  payload?: unknown;
 }
 
 /** How far a rule came for an input, from the furthest to the least far. */
@@ -453,13 +450,6 @@ export type Verdict =
   | "passed"
   | "untouched"
   | "retired";
-
-/** Raise a signal. */
-export interface Emit {
-  type: "emit";
-  signal: string;
-  payload?: unknown;
-}
 
 /** Say something as the visitor. */
 export interface Say {
@@ -491,6 +481,11 @@ export interface Unfold {
   unfolded: string[];
 }
 
+/** A question for a `Pong`. */
+export interface Ping {
+  type: "ping";
+}
+
 /** A policy. |Λ| is the number of its rules. */
 export interface Description {
   modules: string[];
@@ -498,11 +493,6 @@ export interface Description {
   signals: SignalView[];
   slots: SlotView[];
   diagram: Diagram;
-}
-
-/** A question for a `Pong`. */
-export interface Ping {
-  type: "ping";
 }
 
 /** The answer to `Hello`. */
@@ -675,19 +665,7 @@ export interface Pong {
   type: "pong";
 }
 
-export type ClientFrame =
-  | Hello
-  | Pause
-  | Step
-  | Resume
-  | Put
-  | Emit
-  | Say
-  | Look
-  | Explain
-  | Why
-  | Unfold
-  | Ping;
+export type ClientFrame = Hello | Clock | Put | Emit | Say | Look | Explain | Why | Unfold | Ping;
 
 export type ServerFrame =
   | Welcome

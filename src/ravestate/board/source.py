@@ -5,24 +5,22 @@ from __future__ import annotations
 import asyncio
 import secrets
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
-from ravestate.board.description import Description, describe
+from ravestate.board.description import describe
 from ravestate.board.manual_input import check_payload, check_value
 from ravestate.board.protocol import (
     Alive,
     ClientFrame,
+    Clock,
     Emit,
     Explained,
     ExplainedClause,
-    Pause,
     Put,
-    Resume,
     Say,
     State,
-    Step,
     fields_of,
-)  # fmt: skip
+)
 from ravestate.board.recorder import Gap, Recorder
 from ravestate.board.rendering import Rendered, render
 from ravestate.board.trace_file import Recording
@@ -41,65 +39,16 @@ __all__ = ["LiveSource", "RecordedSource", "Source", "gates_of"]
 T = TypeVar("T")
 
 
-class Source(Protocol):
-    """A policy, and its records, numbered from 1.
-
-    Attributes:
-        description: The policy.
-        live: Whether it is a running conversation.
-        first: The number of the oldest record that is kept.
-        last: The number of the newest record.
-        whole: Whether the records reach back to the start without a gap.
-        opens: Evaluates slot predicates; None for a recording.
-    """
-
-    description: Description
-    live: bool
-
-    @property
-    def first(self) -> int: ...
-    @property
-    def last(self) -> int: ...
-    @property
-    def whole(self) -> bool: ...
-    @property
-    def opens(self) -> Opens | None: ...
-
-    def since(self, number: int, most: int) -> list[Record | Gap]:
-        """Return at most `most` records after a number."""
-        ...
-
-    def clock(self) -> tuple[float, bool]:
-        """Return the time (seconds), and whether the clock is stopped."""
-        ...
-
-    def look(self) -> State:
-        """Return the values of the slots and the live activations."""
-        ...
-
-    def explain(self, rule: str) -> Explained:
-        """Return what a rule holds, lacks and waits for.
-
-        Raises:
-            RavestateError: There is no such rule, or no agent.
-        """
-        ...
-
-    async def act(self, command: ClientFrame) -> None:
-        """Carry out a command.
-
-        Raises:
-            RavestateError: It is refused.
-        """
-        ...
-
-
 class LiveSource:
-    """A running conversation.
+    """A running conversation: its policy, and its records, numbered from 1.
 
     Args:
         session: The conversation.
         recorder: The recorder of its context.
+
+    Attributes:
+        description: The policy.
+        opens: Evaluates slot predicates.
     """
 
     live = True
@@ -181,17 +130,17 @@ class LiveSource:
             about = "is ending" if self._session.ended is None else "has ended"
             raise RavestateError(f"this conversation {about}: it takes no more input")
         match command:
-            case Pause():
+            case Clock(type="pause"):
                 context.pause()
                 self._session.notify()
-            case Step():
+            case Clock(type="step"):
                 if not await _outside_of_any_task(context.step):
                     raise RavestateError(
                         "nothing is due: the agent waits for input, or for work outside its clock"
                         if context.paused
                         else "the clock is running: pause it first"
                     )
-            case Resume():
+            case Clock(type="resume"):
                 context.resume()
                 self._session.notify()
             case Put():
@@ -303,3 +252,6 @@ class RecordedSource:
     async def act(self, command: ClientFrame) -> None:
         """Refuse."""
         raise RavestateError(f"this is a recording: there is no agent to take {command.type!r}")
+
+
+Source = LiveSource | RecordedSource
