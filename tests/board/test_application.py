@@ -1,4 +1,4 @@
-"""The board's routes: recordings that are sent to be looked at."""
+"""The board's routes: uploads of recordings."""
 
 import asyncio
 import json
@@ -72,7 +72,7 @@ def test_of_recordings_that_come_together_one_is_read_at_a_time(
 
 
 async def drops(data: bytes, every: float, each: int) -> AsyncGenerator[bytes]:
-    """Data in pieces, with seconds between them."""
+    """Yield data in parts, with seconds between them."""
     for start in range(0, len(data), each):
         yield data[start : start + each]
         await passing(every)
@@ -197,7 +197,7 @@ async def test_a_site_that_may_embed_the_chat_may_not_connect_to_the_board_nor_s
             policy = (await browser.get(path)).headers["content-security-policy"]
             framing[path] = policy.rpartition("; ")[2]
         assert framing.pop("/") == f"frame-ancestors 'self' {site}"
-        assert framing.pop("/board") == f"frame-ancestors 'self' {site}"  # it leads there
+        assert framing.pop("/board") == f"frame-ancestors 'self' {site}"  # it redirects there
         assert set(framing.values()) == {"frame-ancestors 'self'"}
 
 

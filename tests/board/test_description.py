@@ -1,4 +1,4 @@
-"""The description of a policy: utilities add up, and everybody is named on both sides."""
+"""The description of a policy: utilities add up, and both ends of each relation agree."""
 
 import math
 

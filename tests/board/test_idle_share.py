@@ -1,4 +1,4 @@
-"""How much time a process has to spare: a starved one has none."""
+"""The idle share of a process: a starved one has none."""
 
 from pathlib import Path
 
@@ -9,7 +9,7 @@ from ravestate.board.idle_share import IdleShare
 
 
 class Clocks:
-    """Three clocks (seconds), which the test sets forward."""
+    """Three clocks (seconds) under the test's control."""
 
     passed = computed = kept = 0.0
 
@@ -33,7 +33,7 @@ def test_what_was_not_computed_is_to_spare(clocks: Clocks) -> None:
     clocks.on(2.0, computed=0.5)
     assert spare.share() == 0.75
     clocks.on(1.0, computed=1.0)
-    assert spare.share() == 0.0  # since it was last asked
+    assert spare.share() == 0.0  # since the last call
 
 
 def test_a_process_that_other_programs_keep_waiting_has_nothing_to_spare(clocks: Clocks) -> None:

@@ -1,4 +1,4 @@
-"""Inspectors: what they see, ask and do; and what they may not."""
+"""Inspectors: their view, questions and commands, and the limits."""
 
 import json
 from typing import Any
@@ -170,7 +170,7 @@ async def test_a_rule_is_explained_while_it_waits() -> None:
 
 
 async def step_until(look: Look, kind: str, **fields: Any) -> dict[str, Any]:
-    """Do one thing after another until there is such a record."""
+    """Step until there is such a record."""
     for _ in range(20):
         found = look.found(kind, **fields)
         if found is not None:
@@ -197,7 +197,7 @@ async def test_the_clock_is_paused_stepped_and_continued() -> None:
         settled = await step_until(look, "settled", rule="gossip:classify")
         assert settled["time"] == pytest.approx(
             started["time"] + 0.2
-        )  # nothing was due: the clock was set forward
+        )  # nothing was due, so the clock moved
         await passing(30)
         assert not look.found("settled", rule="gossip:talk")
         look.tell("resume")
@@ -430,7 +430,7 @@ async def test_the_diagram_comes_laid_out_folded_or_not() -> None:
 
 
 def names_told(frames: list[dict[str, Any]]) -> list[dict[str, Any]]:
-    """The records of what the agent calls itself that are in some frames."""
+    """Return the records with the agent's name in some frames."""
     records = [record for frame in frames for record in frame.get("records", ())]
     return [record for record in records if record.get("slot") == "interloc:agent"]
 
@@ -449,7 +449,7 @@ async def test_it_is_told_how_the_agent_calls_itself_and_that_a_title_that_was_s
         told: list[dict[str, Any]] = []
         while not names_told(told):
             told += await look.frames("records")
-        look.tell("say", text="Hello")  # and whatever is told of after that
+        look.tell("say", text="Hello")  # later frames, too
         told += await look.frames("records")
         assert "renamed" not in [frame["type"] for frame in told]
 

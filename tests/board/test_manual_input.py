@@ -1,4 +1,4 @@
-"""What is said, written and raised by hand is as sound as what comes from the platform and from rules."""
+"""Input on the board passes the same checks as input from platforms and rules."""
 
 import dataclasses
 import enum
@@ -47,7 +47,7 @@ SLOTS = {slot.name: slot for slot in (text, perhaps, place, free, lamp, people)}
 
 
 def emit(signal: rs.Signal[Any], holds: object = None, **payload: Any) -> None:
-    """Raise a signal by hand."""
+    """Raise a signal on the board."""
     slot = SLOTS.get(signal.name.rpartition(":")[0])
     check_payload(signal, Emit(type="emit", signal=signal.name, **payload), slot, holds)
 
@@ -179,7 +179,7 @@ def test_a_flag_takes_truth_values(value: Any) -> None:
 
 
 async def refusals(look: Look) -> list[str]:
-    """What was refused of what was asked for until now."""
+    """Return the refusals of all commands so far."""
     look.tell("ping")
     found: list[str] = []
     while (frame := await look.next())["type"] != "pong":
@@ -225,7 +225,7 @@ async def test_what_is_said_by_hand_is_what_a_visitor_could_have_said() -> None:
         async with Look(app) as look:
             await look.begin(session=visit.session)
             look.tell("pause")
-            for _ in range(3):  # nothing is recorded in between that could tell them apart
+            for _ in range(3):  # no record in between tells them apart
                 look.tell("say", text="\x1b[2JHello\x00")
             look.tell("say", text="x" * (LONGEST_TEXT + 1))
             look.tell("say", text=" \x00 ")

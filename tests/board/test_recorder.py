@@ -1,4 +1,4 @@
-"""The recorder: bounded in memory and in what it costs, and it says what it has missed."""
+"""The recorder: bounded memory and cost, and a count of missed spikes."""
 
 import contextlib
 import gc
@@ -64,7 +64,7 @@ async def test_beyond_its_rate_it_stops_listening_and_counts_the_spikes_that_it_
             await passing(0.01)
         taken = recorder.last
         await passing(10)
-        context.emit(tick)  # whose number tells how many went unseen
+        context.emit(tick)  # its number shows how many were missed
         await passing(1)
         gaps = [record for record in recorder.records if isinstance(record, Gap)]
         born = [record.spike for record in recorder.records if isinstance(record, Born)]
@@ -72,7 +72,7 @@ async def test_beyond_its_rate_it_stops_listening_and_counts_the_spikes_that_it_
     assert gaps
     assert all(gap.spikes >= 0 for gap in gaps)
     assert recorder.missed == sum(gap.spikes for gap in gaps) > 1000
-    assert len(born) + recorder.missed == born[-1]  # every spike was either seen or counted
+    assert len(born) + recorder.missed == born[-1]  # each spike was recorded or counted
 
 
 @in_virtual_time
@@ -100,7 +100,7 @@ async def test_a_context_has_one_recorder() -> None:
 async def test_a_recorder_goes_with_its_context() -> None:
     recorders = Recorders()
     gone: list[weakref.ref[Any]] = []
-    for length in (5, 300):  # the second is at rest when its context ends
+    for length in (5, 300):  # the second one is idle when its context ends
         context, tick = ticking()
         recorder = recorders.of(context)
         recorder._burst = 100  # pyright: ignore[reportPrivateUsage]
@@ -125,7 +125,7 @@ async def test_all_of_them_together_keep_no_more_than_is_shared_out() -> None:
             await stack.enter_async_context(context)
         for number in range(60):
             for place, (context, tick) in enumerate(made):
-                if place < 15 or number < 2:  # the last five say little
+                if place < 15 or number < 2:  # the last five are short
                     context.emit(tick)
             await passing(1)
             assert sum(len(recorder.records) for recorder in kept) <= 3000 * 1.02 + 20 * BATCH
@@ -152,7 +152,7 @@ async def test_spikes_that_went_unseen_are_counted_although_no_other_is_kept() -
         recorder._rest()  # pyright: ignore[reportPrivateUsage]
         assert isinstance(recorder.records[-1], Gap)
         await passing(1)
-        context.emit(tick)  # nothing went unseen
+        context.emit(tick)  # no spike was missed
         await passing(1)
     assert (recorder.missed, recorder.records[1]) == (0, Gap(1.0, 0))
 

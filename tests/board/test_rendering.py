@@ -1,4 +1,4 @@
-"""Values as they are shown: whole where that is possible, cut where it is not, and never a failure."""
+"""Values as text: whole if possible, else cut, and never an error."""
 
 import json
 
@@ -54,7 +54,7 @@ def endless() -> list[object]:
         ("hello", Rendered('"hello"')),
         (True, Rendered("true")),
         (None, Rendered("null")),
-        ((1, 2), Rendered("(1, 2)", json=False)),  # as a list it would be written back as one
+        ((1, 2), Rendered("(1, 2)", json=False)),  # JSON would make it a list
         ({1: 2}, Rendered("{1: 2}", json=False)),
         (float("inf"), Rendered("inf", json=False)),
         ({1, 2}, Rendered("{1, 2}", json=False)),

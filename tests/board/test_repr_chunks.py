@@ -1,4 +1,4 @@
-"""A repr in pieces: the same text as Python's own, and no more of it than is asked for."""
+"""A repr in chunks: the same text as Python's own, made only as far as it is read."""
 
 import dataclasses
 from collections import Counter, OrderedDict, defaultdict, deque
@@ -192,7 +192,7 @@ def test_what_fails_is_told_in_its_place() -> None:
 
 
 class Watched:
-    """Counts how often it is asked for its repr."""
+    """A value that counts calls of its repr."""
 
     asked = 0
 

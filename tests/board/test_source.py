@@ -1,4 +1,4 @@
-"""What an inspector does to a conversation, and who asked for it being gone."""
+"""Commands to a conversation, and callers that have gone."""
 
 import asyncio
 import contextlib
@@ -38,7 +38,7 @@ def test_who_asked_may_be_gone_when_it_is_done(work: Callable[[], object], by_it
             return work()
 
         asking = asyncio.create_task(_outside_of_any_task(call))
-        if not by_itself:  # after it has asked, and before it is answered
+        if not by_itself:  # between the question and the answer
             asyncio.get_running_loop().call_soon(asking.cancel)
         await passing(1)
         with contextlib.suppress(asyncio.CancelledError):

@@ -1,4 +1,4 @@
-"""Recorded traces: what is written is read again, and what is no trace is refused with the place where it is wrong."""
+"""Recorded traces: files survive a round trip, and errors name the place of the fault."""
 
 import dataclasses
 import json

@@ -1,4 +1,4 @@
-"""Why a rule did not fire: the right reason for each way in which that happens."""
+"""Why a rule did not fire: the right reason in each case."""
 
 import asyncio
 import math
@@ -23,7 +23,7 @@ from ravestate.testing import Simulation, simulate
 
 
 class Stage:
-    """Two inputs, an output, and the usual rules to ask about."""
+    """Two inputs, an output, and the usual rules."""
 
     def __init__(self) -> None:
         self.module = rs.Module("demo")
@@ -49,7 +49,7 @@ def ask(sim: Simulation, rule: str, signal: str = "demo:input:changed", number: 
     found = why_not(
         sim.trace, describe(policy), f"demo:{rule}", spike_of(sim, signal, number), gates_of(policy)
     )
-    assert str(found)  # it can always be said
+    assert str(found)  # there is always a text
     return found
 
 
@@ -211,7 +211,7 @@ def test_who_only_looks_at_a_cause_is_not_who_had_answered_it(stage: Stage, told
         kept = [data_of(record) for record in sim.trace]
         for record in kept:
             if record["kind"] == "passed" and not told:
-                del record["by"], record["run"]  # as it was before these were told
+                del record["by"], record["run"]  # as in older files
         records = [record for record in map(record_of, kept) if not isinstance(record, Gap)]
         spike = spike_of(sim, "demo:input:changed")
         found = why_not(records, describe(sim.context.policy), "demo:too_late", spike)
@@ -554,7 +554,7 @@ def test_a_trace_that_begins_later_says_so(stage: Stage) -> None:
 
 
 def shut_while_waiting(stage: Stage) -> rs.Slot[bool]:
-    """One with a gate waits for a better one, which lacks a signal; both write the same slot."""
+    """Declare a rule with a slot predicate that waits for a better rule, which lacks a signal."""
     lit = stage.module.slot("lit", True)
 
     @stage.module.rule(when=stage.input.changed & lit.holds(bool), writes=stage.output)
@@ -589,7 +589,7 @@ def test_a_gate_that_shut_while_it_waited_is_not_another_that_answered(stage: St
         "nats ahead); then demo:lit.holds(bool) was false; "
         "demo:input:changed reached its maximum age of 5 s at 5.000 s"
     )
-    assert unseen.verdict == "gated"  # from a recording, which has no predicates to try
+    assert unseen.verdict == "gated"  # a recording has no predicates to evaluate
 
 
 def test_one_that_waited_and_lost_to_another_while_its_gate_was_shut_was_gated(stage: Stage) -> None:
@@ -645,7 +645,7 @@ def test_what_raised_a_spike_of_another_cause_has_no_part_in_the_answer(stage: S
 
 
 def two_runs(stage: Stage) -> None:
-    """A rule that hears what two others raise: its run for what the second raised begins first, and resigns."""
+    """Declare a rule that hears two others. Its run for the second one's signal starts first, and resigns."""
     soon, late = stage.module.signal("soon"), stage.module.signal("late")
     asked: list[float] = []
 
@@ -689,7 +689,7 @@ def test_a_trace_that_does_not_tell_the_run_names_the_rule_alone(stage: Stage) -
         kept = [data_of(record) for record in sim.trace]
         for record in kept:
             if record["kind"] == "gaveup":
-                del record["run"]  # as it was before runs were told
+                del record["run"]  # as in older files
         records = [record for record in map(record_of, kept) if not isinstance(record, Gap)]
         spike = spike_of(sim, "demo:input:changed")
         found = why_not(records, describe(sim.context.policy), "demo:talk", spike)
@@ -698,7 +698,7 @@ def test_a_trace_that_does_not_tell_the_run_names_the_rule_alone(stage: Stage) -
 
 
 def many(stage: Stage, ticks: int, slow: float) -> Simulation:
-    """One cause, for which a rule answers many times, and another one loses as often."""
+    """Declare a cause that one rule answers many times, while another rule loses as often."""
     tick = stage.module.signal("tick")
 
     @stage.module.rule(when=stage.touch, emits=tick)
@@ -719,7 +719,7 @@ def many(stage: Stage, ticks: int, slow: float) -> Simulation:
 
 
 def steps(work: Callable[[], object]) -> int:
-    """How many lines of Python are run by a piece of work, its loops counted by their turns."""
+    """Count the lines of Python that some work runs."""
     count = 0
 
     def watch(frame: FrameType, event: str, arg: object) -> Any:

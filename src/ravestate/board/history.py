@@ -61,6 +61,11 @@ class Attempt:
             return self.settled.time
         return self.gave_up[-1].time if self.over and self.gave_up else None
 
+    @property
+    def spikes(self) -> Iterable[int]:
+        """The spikes of its run; without a run, those that it took."""
+        return [held.spike for held in self.held] if self.started is None else self.started.spikes
+
     def take(self, record: t.Held) -> None:
         """Note a spike that the activation took."""
         self.held.append(record)
@@ -170,9 +175,7 @@ class History:
 
     def _is_taken(self, attempt: Attempt, signals: Collection[str]) -> bool:
         """Return whether an attempt took a spike of one of these signals in the group."""
-        started = attempt.started
-        spikes = [held.spike for held in attempt.held] if started is None else started.spikes
-        return any(spike in self.group and self.born[spike].signal in signals for spike in spikes)
+        return any(spike in self.group and self.born[spike].signal in signals for spike in attempt.spikes)
 
     def before(self, run: int) -> str:
         """Return the rule that raised a spike that a run took of this group; empty if none did, or the trace lacks it."""
@@ -193,10 +196,8 @@ class History:
         return written[number - 1] if number else None
 
     def _is_ours(self, attempt: Attempt) -> bool:
-        started = attempt.started
-        return any(held.spike in self.group for held in attempt.held) or (
-            started is not None and any(spike in self.group for spike in started.spikes)
-        )
+        held = (one.spike for one in attempt.held)
+        return any(spike in self.group for spike in (*held, *attempt.spikes))
 
     def _attempt(self, id: int, record: t.Held | t.Started) -> Attempt:
         attempt = self._runs.get(id)

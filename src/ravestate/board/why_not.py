@@ -50,21 +50,6 @@ def why_not(
 
     Raises:
         LookupError: The policy has no such rule, or the trace no such spike.
-
-    Example:
-        >>> import ravestate as rs
-        >>> from ravestate.board.description import describe
-        >>> from ravestate.testing import simulate
-        >>> door = rs.Module("door")
-        >>> bell, key = door.signal("bell"), door.signal("key")
-        >>> @door.rule(when=bell & key)
-        ... async def unlock(ctx): ...
-        >>> with simulate(door) as sim:
-        ...     sim.emit(bell)
-        ...     sim.advance(6)
-        ...     spike = next(record.spike for record in sim.trace if getattr(record, "signal", "") == "door:bell")
-        ...     print(why_not(sim.trace, describe(sim.context.policy), "door:unlock", spike).verdict)
-        lacked
     """
     view = description.rule(rule)
     if view is None:

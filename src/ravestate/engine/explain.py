@@ -133,7 +133,10 @@ def _clause(engine: Engine, clause: Clause) -> ClauseState:
     return ClauseState(
         clause.source,
         tuple(signal.name for signal in clause.signals),
-        tuple(tuple(sorted(signal.name for signal in pathway)) for pathway in engine.policy.pathways.of_clause(clause)),
+        tuple(
+            tuple(sorted(signal.name for signal in pathway))
+            for pathway in engine.policy.pathways.of_clause(clause)
+        ),
         clause.utility,
         engine.effective(clause),
         tuple((str(guard), engine.opens(slot, guard)) for slot, guard in clause.guards),
@@ -173,12 +176,9 @@ def _activation(engine: Engine, activation: Activation) -> ActivationState:
 
 
 def words_of(record: Record, others: str = "", behind: str = "") -> str:
-    """Say what a record means for the rule that it names; empty for a record that names none.
+    """Say what a record means for its rule; empty for a record without one.
 
-    Args:
-        record: From a trace.
-        others: The rules that a waiting activation waits for, if more is known of them than their names.
-        behind: The rule that raised what another rule took, if that is known.
+    `others` describes the rules that it waits for, and `behind` is the rule that raised the answering rule's input.
     """
     match record:
         case Held():
@@ -228,12 +228,7 @@ def latest(until: float | None) -> str:
 
 
 def join(names: Iterable[str]) -> str:
-    """Join names to a list in a sentence.
-
-    Example:
-        >>> join(["a", "b", "c"])
-        'a, b and c'
-    """
+    """Join names to a list in a sentence: ``a, b and c``."""
     *first, last = [*names] or [""]
     return f"{', '.join(first)} and {last}" if first else last
 
