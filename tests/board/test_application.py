@@ -78,7 +78,7 @@ async def drops(data: bytes, every: float, each: int) -> AsyncGenerator[bytes]:
         await passing(every)
 
 
-def test_who_sends_slowly_holds_nobody_up(trace: bytes) -> None:
+def test_a_slow_upload_delays_no_other(trace: bytes) -> None:
     @in_virtual_time
     async def test() -> None:
         clock = asyncio.get_running_loop().time
@@ -95,7 +95,7 @@ def test_who_sends_slowly_holds_nobody_up(trace: bytes) -> None:
     test()
 
 
-def test_more_than_a_few_at_once_are_told_to_try_again(trace: bytes) -> None:
+def test_more_than_a_few_uploads_at_once_are_refused(trace: bytes) -> None:
     @in_virtual_time
     async def test() -> None:
         async with board() as app, client(app) as browser:
@@ -116,7 +116,7 @@ def test_more_than_a_few_at_once_are_told_to_try_again(trace: bytes) -> None:
 
 
 @in_virtual_time
-async def test_what_comes_for_too_long_is_refused_and_leaves_the_way_free() -> None:
+async def test_an_upload_that_takes_too_long_is_refused() -> None:
     clock = asyncio.get_running_loop().time
     async with board() as app, client(app) as browser:
         for _ in range(2):
@@ -133,9 +133,7 @@ async def test_what_comes_for_too_long_is_refused_and_leaves_the_way_free() -> N
             assert clock() - before == pytest.approx(application.LONGEST)  # pyright: ignore[reportUnknownMemberType]
 
 
-def test_what_is_too_large_is_refused_and_the_next_one_is_taken(
-    trace: bytes, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_recording_that_is_too_large_is_refused(trace: bytes, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(application, "LARGEST", len(trace))
 
     @in_virtual_time
@@ -152,14 +150,14 @@ def test_what_is_too_large_is_refused_and_the_next_one_is_taken(
     test()
 
 
-def test_what_the_page_exports_at_most_can_be_sent_back(trace: bytes) -> None:
+def test_the_largest_export_can_be_uploaded(trace: bytes) -> None:
     records = json.loads(trace)["records"]
     a_record = len(json.dumps(records)) / len(records)
     assert 1.5 * a_record * 125_000 < application.LARGEST  # names and payloads are longer elsewhere
 
 
 @in_virtual_time
-async def test_who_goes_away_in_the_middle_leaves_the_way_free() -> None:
+async def test_an_aborted_upload_delays_no_other() -> None:
     async with board() as app, client(app) as browser:
         scope = {
             "type": "http", "asgi": {"version": "3.0"}, "http_version": "1.1", "method": "POST", "scheme": "http",

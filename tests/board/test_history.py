@@ -88,7 +88,7 @@ def test_the_value_of_a_slot_is_the_last_that_was_written_by_then() -> None:
     assert history.value("m:y", 9.0) is None
 
 
-def test_what_is_given_up_in_one_instant_was_not_lacking_before() -> None:
+def test_spikes_lost_in_one_instant_were_not_lacking_before() -> None:
     held = [Held(0.0, 7, "m:r", 0, 1, "m:s", ("m:t", "m:u")), Held(1.0, 7, "m:r", 0, 2, "m:t", ("m:u",))]
     lost = [GaveUp(2.0, 7, "m:r", spike, signal, "age") for spike, signal in ((1, "m:s"), (2, "m:t"))]
     history = History([born(1, "m:s"), born(2, "m:t"), *held, *lost], 1)

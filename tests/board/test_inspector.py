@@ -39,7 +39,7 @@ async def test_it_sees_the_policy_and_what_happens_from_the_beginning() -> None:
 
 
 @in_virtual_time
-async def test_the_chat_page_is_told_where_to_look_inside() -> None:
+async def test_the_chat_page_gets_the_address_of_the_board() -> None:
     async with board() as app, Visit(app) as visit:
         assert (await visit.hello())["inside"] == "board/"
 
@@ -97,7 +97,7 @@ def test_of_many_conversations_the_newest_are_listed_and_the_one_that_is_looked_
 
 
 @in_virtual_time
-async def test_who_names_no_conversation_is_not_shown_one_that_is_ending() -> None:
+async def test_the_default_conversation_is_not_one_that_is_ending() -> None:
     slow = rs.Module("slow", requires=(rawio, interloc))
 
     @slow.rule(when=interloc.users.removed, writes=rawio.output)
@@ -195,9 +195,7 @@ async def test_the_clock_is_paused_stepped_and_continued() -> None:
         started = await step_until(look, "started", rule="gossip:classify")
         assert started["time"] < 1
         settled = await step_until(look, "settled", rule="gossip:classify")
-        assert settled["time"] == pytest.approx(
-            started["time"] + 0.2
-        )  # nothing was due, so the clock moved
+        assert settled["time"] == pytest.approx(started["time"] + 0.2)  # nothing was due, so the clock moved
         await passing(30)
         assert not look.found("settled", rule="gossip:talk")
         look.tell("resume")
@@ -256,7 +254,7 @@ async def test_slots_are_written_and_signals_raised_by_hand() -> None:
         ([], "a frame is an object"),
     ],
 )  # fmt: skip
-def test_what_it_says_wrongly_is_told_and_harms_nobody(frame: Any, words: str) -> None:
+def test_a_wrong_command_gets_an_error(frame: Any, words: str) -> None:
     @in_virtual_time
     async def test() -> None:
         async with board() as app, Look(app) as look:
@@ -272,7 +270,7 @@ def test_what_it_says_wrongly_is_told_and_harms_nobody(frame: Any, words: str) -
 
 
 @in_virtual_time
-async def test_what_is_no_frame_is_told() -> None:
+async def test_a_malformed_frame_gets_an_error() -> None:
     async with board() as app, Look(app) as look:
         await look.begin()
         for text in ("{", b"\x00", "[" * 5000, '{"type": []}'):
@@ -290,7 +288,7 @@ async def test_what_is_no_frame_is_told() -> None:
         ({"type": "hello", "v": 1, "recording": "lost"}, 4404),
     ],
 )
-def test_what_cannot_be_looked_at_closes_the_connection(first: dict[str, Any], code: int) -> None:
+def test_a_wrong_hello_closes_the_connection(first: dict[str, Any], code: int) -> None:
     @in_virtual_time
     async def test() -> None:
         async with board() as app, Look(app) as look:
@@ -303,7 +301,7 @@ def test_what_cannot_be_looked_at_closes_the_connection(first: dict[str, Any], c
 
 
 @in_virtual_time
-async def test_what_is_too_large_closes_the_connection_first_or_later() -> None:
+async def test_a_frame_that_is_too_large_closes_the_connection() -> None:
     async with board() as app:
         async with Look(app) as look:
             look.tell("hello", v=1, token="x" * channel.LONGEST)
@@ -319,7 +317,7 @@ async def test_what_is_too_large_closes_the_connection_first_or_later() -> None:
 
 
 @in_virtual_time
-async def test_who_says_nothing_is_not_waited_for() -> None:
+async def test_a_silent_client_is_dropped() -> None:
     async with board() as app, Look(app) as look:
         assert (await look.next())["code"] == "silent"
         await look.next()
@@ -341,7 +339,7 @@ async def test_the_board_asks_for_the_same_token_and_origin() -> None:
 
 
 @in_virtual_time
-async def test_a_browser_that_stops_reading_holds_nobody_up_and_misses_what_is_forgotten() -> None:
+async def test_a_browser_that_stops_reading_delays_nothing_and_misses_records() -> None:
     ticks = rs.Module("ticks", requires=(rawio,))
     tick = ticks.signal("tick")
 
@@ -368,7 +366,7 @@ async def test_a_browser_that_stops_reading_holds_nobody_up_and_misses_what_is_f
 
 
 @in_virtual_time
-async def test_who_asks_on_and_on_and_does_not_read_is_dropped() -> None:
+async def test_a_client_that_asks_without_reading_is_dropped() -> None:
     async with board() as app, Look(app) as look:
         await look.begin()
         look.reading.clear()
@@ -403,7 +401,7 @@ async def test_huge_and_strange_values_are_cut() -> None:
 
 
 @in_virtual_time
-async def test_a_rule_that_is_added_is_told() -> None:
+async def test_a_new_rule_is_announced() -> None:
     async with board() as app, Look(app) as look:
         await look.begin()
         (session,) = app.state.sessions
@@ -436,7 +434,7 @@ def names_told(frames: list[dict[str, Any]]) -> list[dict[str, Any]]:
 
 
 @in_virtual_time
-async def test_it_is_told_how_the_agent_calls_itself_and_that_a_title_that_was_set_stays() -> None:
+async def test_the_agents_name_is_announced_and_a_fixed_title_stays() -> None:
     async with board(title=None) as app, Look(app) as look:
         assert (await look.begin())["title"] == "Ravestate"
         look.tell("put", slot="interloc:agent", value="Robin")
@@ -455,7 +453,7 @@ async def test_it_is_told_how_the_agent_calls_itself_and_that_a_title_that_was_s
 
 
 @in_virtual_time
-async def test_the_end_of_a_conversation_is_told() -> None:
+async def test_the_end_of_a_conversation_is_announced() -> None:
     async with board() as app, Visit(app) as visit, Look(app) as look:
         await visit.hello()
         await look.begin(session=visit.session)

@@ -70,7 +70,7 @@ def emit(signal: rs.Signal[Any], holds: object = None, **payload: Any) -> None:
         (lamp.true, {"payload": True}),
     ],
 )
-def test_what_a_signal_carries_is_raised(signal: rs.Signal[Any], payload: dict[str, Any]) -> None:
+def test_a_fitting_payload_is_raised(signal: rs.Signal[Any], payload: dict[str, Any]) -> None:
     emit(signal, **payload)
 
 
@@ -96,15 +96,13 @@ def test_what_a_signal_carries_is_raised(signal: rs.Signal[Any], payload: dict[s
         (people.changed, {}, r"write the slot"),
     ],
 )  # fmt: skip
-def test_what_a_signal_does_not_carry_is_refused(
-    signal: rs.Signal[Any], payload: dict[str, Any], words: str
-) -> None:
+def test_a_wrong_payload_is_refused(signal: rs.Signal[Any], payload: dict[str, Any], words: str) -> None:
     with pytest.raises(rs.RavestateError, match=words):
         emit(signal, **payload)
 
 
 @pytest.mark.parametrize("holds", [None, 7, float("inf"), "x", [1], {"a": {"b": [1, 2]}}, "x" * 10**6])
-def test_what_has_no_type_takes_anything_unless_it_holds_what_json_cannot_say(holds: object) -> None:
+def test_an_untyped_slot_takes_any_json_unless_its_value_is_beyond_json(holds: object) -> None:
     check_value(free, "new", holds)
     for foreign in (Point(1), [Point(1)], {"a": Point(1)}, {1: 2}, (1, 2), [(1, 2)]):
         with pytest.raises(
@@ -119,7 +117,7 @@ def test_a_collection_is_written_whatever_its_items_are() -> None:
     check_value(people, {"ada": 1}, {"ada": Point(1)})
 
 
-def test_what_json_cannot_write_to_a_slot_is_told_to_be_so() -> None:
+def test_a_type_beyond_json_is_refused() -> None:
     with pytest.raises(rs.RavestateError, match="lab:place takes Point, which JSON cannot express"):
         check_value(place, {"x": 1}, None)
     check_value(place, None, Point(1))  # its default
@@ -219,7 +217,7 @@ async def test_the_page_of_a_visitor_cannot_be_taken_away() -> None:
 
 
 @in_virtual_time
-async def test_what_is_said_by_hand_is_what_a_visitor_could_have_said() -> None:
+async def test_say_takes_the_texts_of_visitors() -> None:
     async with board() as app, Visit(app) as visit:
         await visit.hello()
         async with Look(app) as look:

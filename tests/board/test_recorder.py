@@ -26,7 +26,7 @@ def ticking() -> tuple[rs.Context, rs.Signal[None]]:
 
 
 @in_virtual_time
-async def test_records_are_numbered_and_read_by_whoever_has_not_seen_them() -> None:
+async def test_records_are_numbered_and_read_once_by_each_inspector() -> None:
     context, tick = ticking()
     recorder = Recorder(context, whole=True)
     async with context:
@@ -158,7 +158,7 @@ async def test_spikes_that_went_unseen_are_counted_although_no_other_is_kept() -
 
 
 @in_virtual_time
-async def test_what_is_taken_up_to_the_first_spike_after_a_gap_is_taken_once() -> None:
+async def test_records_up_to_the_first_spike_after_a_gap_are_taken_once() -> None:
     context, tick = ticking()
     recorder = Recorder(context, burst=3, rate=0, spare=0)  # a record at a time
     async with context:
@@ -172,7 +172,7 @@ async def test_what_is_taken_up_to_the_first_spike_after_a_gap_is_taken_once() -
 
 
 @in_virtual_time
-async def test_what_is_shortened_while_it_does_not_listen_misses_no_more_for_that() -> None:
+async def test_shortening_during_a_gap_misses_no_more() -> None:
     context, tick = ticking()
     recorder = Recorder(context, burst=60, rate=0, spare=0)
     async with context:
@@ -209,7 +209,7 @@ async def test_a_spike_that_there_was_no_room_to_keep_was_seen() -> None:
 
 
 @in_virtual_time
-async def test_a_gap_counts_as_a_record_for_who_watches_how_much_there_is() -> None:
+async def test_a_gap_counts_as_a_record() -> None:
     context, _ = ticking()
     grown: list[int] = []
     recorder = Recorder(context, rate=0, spare=0, grown=lambda: grown.append(recorder.last))
@@ -231,9 +231,7 @@ def test_the_longest_are_shortened_to_one_length(lengths: list[int], in_all: int
 
 
 @given(st.lists(st.integers(0, 1000), min_size=1), st.integers(0, 5000))
-def test_what_is_kept_is_within_what_is_shared_out_and_nearly_fills_it(
-    lengths: list[int], spare: int
-) -> None:
+def test_the_kept_records_nearly_fill_the_limit(lengths: list[int], spare: int) -> None:
     in_all = len(lengths) + spare
     kept = sum(min(length, _fair(lengths, in_all)) for length in lengths)
     assert min(sum(lengths), in_all - len(lengths)) <= kept <= in_all

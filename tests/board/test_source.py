@@ -16,7 +16,7 @@ def fail() -> None:
 
 
 @in_virtual_time
-async def test_what_is_called_outside_of_any_task_answers_who_asked() -> None:
+async def test_a_call_outside_of_any_task_returns_its_result() -> None:
     assert await _outside_of_any_task(asyncio.current_task) is None
     with pytest.raises(ValueError, match="no"):
         await _outside_of_any_task(fail)
@@ -24,7 +24,7 @@ async def test_what_is_called_outside_of_any_task_answers_who_asked() -> None:
 
 @pytest.mark.parametrize("work", [int, fail], ids=["done", "failed"])
 @pytest.mark.parametrize("by_itself", [False, True], ids=["before", "by it"])
-def test_who_asked_may_be_gone_when_it_is_done(work: Callable[[], object], by_itself: bool) -> None:
+def test_the_caller_may_be_gone_when_a_call_is_done(work: Callable[[], object], by_itself: bool) -> None:
     @in_virtual_time
     async def test() -> None:
         said: list[Any] = []

@@ -182,7 +182,7 @@ def test_it_never_took_the_spike_as_its_cause_was_answered(stage: Stage) -> None
 
 
 @pytest.mark.parametrize("told", [True, False], ids=["as it is told", "as far as an older trace tells"])
-def test_who_only_looks_at_a_cause_is_not_who_had_answered_it(stage: Stage, told: bool) -> None:
+def test_a_detached_rule_has_not_answered_the_cause(stage: Stage, told: bool) -> None:
     later = stage.module.signal("later")
 
     @stage.module.rule(when=stage.input.changed.detached(), writes=stage.output)
@@ -219,7 +219,7 @@ def test_who_only_looks_at_a_cause_is_not_who_had_answered_it(stage: Stage, told
     assert found.words == "it did not take demo:later: demo:answer had already answered this cause"
 
 
-def test_of_causes_that_merge_later_the_one_that_was_answered_is_told(stage: Stage) -> None:
+def test_for_causes_that_merge_later_the_answering_rule_is_named(stage: Stage) -> None:
     other, late = stage.module.slot("other", ""), stage.module.signal("late")
 
     @stage.module.rule(when=stage.touch, writes=stage.output)
@@ -283,7 +283,7 @@ def test_it_lacked_an_input_until_its_spike_was_too_old(stage: Stage) -> None:
     assert found.missing[0].words == "demo:touch is an input and did not arrive"
 
 
-def test_what_may_come_from_outside_as_well_as_from_a_rule_is_told_so(stage: Stage) -> None:
+def test_a_missing_input_that_rules_may_raise_is_named_as_both(stage: Stage) -> None:
     rung = stage.module.signal("rung", input=True)
 
     @stage.module.rule(when=stage.touch, emits=rung)
@@ -337,7 +337,7 @@ def test_a_predicate_on_a_slot_was_false(stage: Stage) -> None:
     assert found.words.startswith("it had all its spikes, but demo:awake.holds(bool) was false")
 
 
-def test_a_gate_that_was_shut_is_told_from_a_better_rule(stage: Stage) -> None:
+def test_a_false_predicate_is_distinguished_from_a_better_rule(stage: Stage) -> None:
     awake = stage.module.flag("awake")
 
     @stage.module.rule(when=stage.input.changed & awake.holds(bool), writes=stage.output)
@@ -371,7 +371,7 @@ def test_its_spike_was_too_young(stage: Stage) -> None:
     assert "demo:input:changed must be 3 s old, so not before 3.000 s" in found.words
 
 
-def test_who_answered_is_told_with_the_rule_that_raised_what_it_heard(stage: Stage) -> None:
+def test_the_answering_rule_is_named_with_the_source_of_its_input(stage: Stage) -> None:
     conversation(stage, is_question=True, slow=2.0)
     with stage.run() as sim:
         sim.put(stage.input, "?")
@@ -381,7 +381,7 @@ def test_who_answered_is_told_with_the_rule_that_raised_what_it_heard(stage: Sta
     assert found.moments[-1].rules == ("demo:qa",)
 
 
-def test_what_it_waits_for_is_told_once_however_often_it_was_asked(stage: Stage) -> None:
+def test_repeated_waits_appear_once(stage: Stage) -> None:
     @stage.module.rule(when=stage.input.changed, emits=stage.touch)
     async def notice(ctx: rs.RuleContext) -> None:
         await ctx.sleep(1)
@@ -471,7 +471,7 @@ def test_another_input_has_another_answer(stage: Stage) -> None:
     assert all(moment.time == 1.0 for moment in found.moments)
 
 
-def test_the_signal_of_another_cause_is_told_apart(stage: Stage) -> None:
+def test_a_signal_of_another_cause_is_distinguished(stage: Stage) -> None:
     question = stage.module.signal("question")
 
     @stage.module.rule(when=stage.input.changed.where(lambda text: "?" in text), emits=question)
@@ -532,7 +532,7 @@ def test_a_running_rule_runs(stage: Stage) -> None:
     assert (found.verdict, found.words) == ("running", "it has been running since 0.000 s")
 
 
-def test_what_is_not_there_cannot_be_asked_about(stage: Stage) -> None:
+def test_an_unknown_rule_or_spike_is_refused(stage: Stage) -> None:
     conversation(stage, is_question=False)
     with stage.run() as sim:
         sim.put(stage.input, "x")
@@ -610,7 +610,7 @@ def test_one_that_waited_and_lost_to_another_while_its_gate_was_shut_was_gated(s
     assert "then demo:lit.holds(bool) was false; demo:plain answered this cause at 1.000 s" in found.words
 
 
-def test_what_it_waits_for_while_its_gate_is_open_is_told_though_there_is_a_gate(stage: Stage) -> None:
+def test_a_wait_with_a_true_predicate_names_the_rivals(stage: Stage) -> None:
     shut_while_waiting(stage)
     with stage.run() as sim:
         sim.put(stage.input, "x")
@@ -620,7 +620,7 @@ def test_what_it_waits_for_while_its_gate_is_open_is_told_though_there_is_a_gate
         assert ask(sim, "gated").verdict == "outrun"
 
 
-def test_what_raised_a_spike_of_another_cause_has_no_part_in_the_answer(stage: Stage) -> None:
+def test_a_rule_of_another_cause_has_no_part_in_the_answer(stage: Stage) -> None:
     boot, ready = stage.module.signal("boot"), stage.module.signal("ready")
 
     @stage.module.rule(when=boot, emits=ready)
@@ -669,7 +669,7 @@ def two_runs(stage: Stage) -> None:
     async def talk(ctx: rs.RuleContext) -> None: ...
 
 
-def test_of_two_runs_the_one_that_answered_is_told_not_the_one_that_resigned(stage: Stage) -> None:
+def test_the_run_that_answered_is_named_not_the_one_that_resigned(stage: Stage) -> None:
     two_runs(stage)
     with stage.run() as sim:
         sim.put(stage.input, "x")
@@ -682,7 +682,7 @@ def test_of_two_runs_the_one_that_answered_is_told_not_the_one_that_resigned(sta
     assert "demo:second" not in str(found)
 
 
-def test_a_trace_that_does_not_tell_the_run_names_the_rule_alone(stage: Stage) -> None:
+def test_a_trace_without_runs_names_the_rule_alone(stage: Stage) -> None:
     two_runs(stage)
     with stage.run() as sim:
         sim.put(stage.input, "x")
@@ -751,7 +751,7 @@ def test_the_cost_grows_as_the_history_does(slow: float) -> None:
     assert cost(200) < 2.3 * cost(100)
 
 
-def test_of_many_moments_the_first_and_the_last_are_told_and_how_many_are_not(stage: Stage) -> None:
+def test_the_middle_of_many_moments_is_left_out(stage: Stage) -> None:
     with many(stage, 300, 1.0) as sim:
         sim.emit(stage.touch)
         sim.advance(3)
@@ -764,7 +764,7 @@ def test_of_many_moments_the_first_and_the_last_are_told_and_how_many_are_not(st
     assert [moment.time for moment in found.moments] == sorted(moment.time for moment in found.moments)
 
 
-def test_a_run_of_which_the_beginning_went_unseen_is_told_all_the_same(stage: Stage) -> None:
+def test_a_run_with_a_missing_start_is_reported(stage: Stage) -> None:
     conversation(stage, is_question=False)
     with stage.run() as sim:
         sim.put(stage.input, "x")

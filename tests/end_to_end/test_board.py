@@ -216,7 +216,7 @@ async def test_why_not_is_answered_with_the_right_reason(stage: Stage) -> None:
 
 
 @on_stage
-async def test_utility_is_told_in_nats_and_how_it_is_made_up(stage: Stage) -> None:
+async def test_the_rule_panel_shows_the_parts_of_the_utility(stage: Stage) -> None:
     async with served() as host, stage.open(f"{host.address}board/") as page:
         await name(page, "keeper:answer").click()
         table = page.locator(".clause table")
@@ -251,7 +251,7 @@ async def test_the_clock_pauses_steps_and_goes_on_while_the_view_is_another_thin
 
 
 @on_stage
-async def test_time_is_stepped_forward_to_what_is_due(stage: Stage) -> None:
+async def test_a_step_moves_the_clock_to_the_next_deadline(stage: Stage) -> None:
     async with served() as host, stage.open(f"{host.address}board/") as page:
         await page.get_by_role("tab", name="Signals").click()
         await page.get_by_role("button", name="Emit keeper:rung").click()
@@ -350,7 +350,7 @@ async def test_a_lost_connection_comes_back_with_the_history(stage: Stage) -> No
 
 
 @on_stage
-async def test_the_diagram_folds_unfolds_and_shows_what_is_going_on(stage: Stage) -> None:
+async def test_the_diagram_folds_unfolds_and_lights_up(stage: Stage) -> None:
     async with served() as host, stage.open(f"{host.address}board/") as page:
         await page.get_by_role("button", name="Diagram").click()
         await expect(node(page, "rule keeper:answer")).to_be_visible()
@@ -431,7 +431,7 @@ async def test_a_policy_of_more_than_a_hundred_rules_can_be_read(stage: Stage) -
 
 
 @on_stage
-async def test_what_came_of_the_newest_input_leads_to_the_rules_and_back(stage: Stage) -> None:
+async def test_the_result_of_the_newest_input_links_to_its_rules(stage: Stage) -> None:
     async with served() as host, stage.open(f"{host.address}board/") as page:
         await say(page, "Since when?")
         await until_lane(page, "keeper:answer", "done")
@@ -552,7 +552,7 @@ async def test_the_keyboard_reaches_every_rule_of_the_diagram(stage: Stage) -> N
 
 
 @on_stage
-async def test_a_thousand_events_a_second_do_not_stutter_and_hold_nobody_up(stage: Stage) -> None:
+async def test_a_thousand_events_a_second_do_not_stutter_or_delay_the_agent(stage: Stage) -> None:
     async with served() as host, stage.open(f"{host.address}board/") as page:
         await expect(page.locator(".status")).to_have_text("live")
         (session,) = host.sessions
