@@ -36,7 +36,7 @@ def running() -> tuple[Engine, int]:
         (events.Store("m:lit", "key", 1), "m:lit is no collection"),
         (events.Discard("m:lit", "key"), "m:lit is no collection"),
         (events.AddRule(rs.compile(rs.Module("other"))), r"make it by with_rule\(\)"),
-        (events.Finish(999, "done"), "run 999 is over, or never was"),
+        (events.Finish(999, "done"), "run 999 is over, or never began"),
         (cast("Any", "go"), "'go' is no event"),
     ],
 )

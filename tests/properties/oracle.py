@@ -237,7 +237,7 @@ def consistent(engine: Any) -> None:
             for slot, holders in group.taken.items():
                 assert holders is None or (holders and all(h.state >= State.RUNNING for h in holders)), slot
     known = set(activations)
-    for where in (engine.waiting, engine.gated, engine.benches, engine.running.values()):
+    for where in (engine.waiting, engine.gated, engine.alternatives, engine.running.values()):
         assert known.issuperset(where)
     for need, lacking in engine.lacking.items():
         assert lacking, f"an empty set of those who lack {need} is kept"
@@ -285,7 +285,17 @@ def empty(play: Play) -> None:
     """Nothing is left (L23)."""
     engine = play.engine
     assert not engine.running, f"{engine.running} run"
-    for name in ("active", "live", "lacking", "gated", "waiting", "benches", "_free", "_asking", "_dirty"):
+    for name in (
+        "active",
+        "live",
+        "lacking",
+        "gated",
+        "waiting",
+        "alternatives",
+        "_free",
+        "_asking",
+        "_dirty",
+    ):
         assert not getattr(engine, name), f"{name}: {getattr(engine, name)}"
     for name in ("_watches", "_errors", "_out"):
         assert not getattr(engine, name), f"{name}: {getattr(engine, name)}"
