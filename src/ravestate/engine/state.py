@@ -89,7 +89,7 @@ class State:
         self._loops = Loops()
         self._blamed: set[int] = set()  # the ids of predicates whose failure was reported
         self._deadlines = Deadlines(self._stands)
-        self._busy = 0  # activations of rules that are not in the background
+        self._busy: int = 0  # activations of rules that are not in the background
         self._activations: int = 0  # how many numbers are given
         self._spikes = 0
         self._groups = 0
