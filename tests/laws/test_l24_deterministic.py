@@ -17,7 +17,7 @@ from ravestate.engine.engine import Engine
 from ravestate.engine.snapshot import snapshot
 from ravestate.engine.trace import Record
 from ravestate.runtime.journal import Journal, replay
-from ravestate.testing import Simulation, simulate
+from ravestate.testing import simulate
 from scenarios.driver import Driver
 
 TESTS = Path(__file__).parents[1]
@@ -144,8 +144,7 @@ def test_a_spurious_advance_changes_nothing(seed: int) -> None:
 @pytest.mark.parametrize("seed", range(3))
 def test_a_record_can_be_replayed(seed: int) -> None:
     policy, journal = rs.compile(everything()), Journal()
-    context = rs.Context(policy, seed=0, trace=True, journal=journal)
-    with Simulation(context) as sim:
+    with simulate(policy, journal=journal) as sim:
         tell(sim, seed)
         sim.advance(60.0)
         live, records = sim.snapshot(), list(sim.trace)

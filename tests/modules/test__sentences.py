@@ -1,4 +1,4 @@
-"""The sentence models: what they say, that they are shared, and what is told when they are missing."""
+"""The sentence models: their results, their sharing, and the messages when a model is missing."""
 
 import importlib.util
 import os
@@ -26,7 +26,7 @@ def test_like_sentences_lie_near_each_other() -> None:
 
 
 def test_order_and_company_change_nothing() -> None:
-    """Sentences are run in batches by length; each gets its own vector all the same."""
+    """The model reads sentences in batches by length; each has its own vector all the same."""
     texts = [
         "Yes.",
         "a much longer sentence about the weather in the north of the country " * 9,
@@ -46,7 +46,7 @@ def test_the_answer_has_the_highest_score() -> None:
     assert scores.argmax() == 1
 
 
-def test_nothing_gives_nothing() -> None:
+def test_an_empty_list_gives_an_empty_list() -> None:
     assert Encoder().encode([]).shape == (0, 384)
     assert Reranker().score("Why?", []).shape == (0,)
 
@@ -95,13 +95,13 @@ def test_threads_may_ask_at_once() -> None:
         np.testing.assert_allclose(got[index], scores, atol=1e-4)
 
 
-def test_nothing_is_loaded_before_it_is_asked(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_model_loads_at_its_first_use(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(model, "SentenceModel", lambda folder: pytest.fail("loaded"))
     Encoder()
     Reranker("/nowhere")
 
 
-def test_a_folder_of_ones_own_is_taken(tmp_path: Path) -> None:
+def test_a_folder_of_the_user(tmp_path: Path) -> None:
     own = tmp_path / "own"
     shutil.copytree(folder_of(None, "bge_small_en"), own)
     (own / "1_Pooling").mkdir()
@@ -141,7 +141,7 @@ def test_without_a_library_the_message_says_what_to_install(
         SentenceModel(tmp_path)
 
 
-def test_a_folder_that_is_none_is_named() -> None:
+def test_the_message_names_a_missing_folder() -> None:
     with pytest.raises(rs.PlatformError, match="'/nowhere' is no folder"):
         Reranker("/nowhere").load()
 
@@ -151,15 +151,15 @@ def test_a_folder_without_the_files_says_which_is_missing(tmp_path: Path) -> Non
         Reranker(tmp_path).load()
 
 
-def test_a_broken_file_is_an_error_of_ours(tmp_path: Path) -> None:
+def test_a_broken_file_is_a_platform_error(tmp_path: Path) -> None:
     (tmp_path / "model.onnx").write_bytes(b"no model")
     (tmp_path / "tokenizer.json").write_text("{}", encoding="utf-8")
     with pytest.raises(rs.PlatformError, match="cannot be loaded"):
         Encoder(tmp_path).load()
 
 
-def test_nothing_is_reported_to_anybody(tmp_path: Path) -> None:
-    """onnxruntime keeps a record of its use in the user's folders, and sends it to its makers, unless it is told not to."""
+def test_onnxruntime_reports_nothing(tmp_path: Path) -> None:
+    """By default, onnxruntime keeps a record of its use in the user's folders, and sends it to its makers."""
     program = "from ravestate.modules._sentences import Encoder; Encoder().encode(['Hello.'])"
     environment = {k: v for k, v in os.environ.items() if not k.startswith(("ORT_", "XDG_"))}
     subprocess.run([sys.executable, "-c", program], env={**environment, "HOME": str(tmp_path)}, check=True)

@@ -125,7 +125,7 @@ def test_an_import_that_fails_raises_no_alarm() -> None:
     assert acts(broken) == (Acts(), [])
 
 
-def test_the_cell_of_a_name_that_is_not_there_yet_raises_no_alarm() -> None:
+def test_a_closure_without_its_value_yet_raises_no_alarm() -> None:
     def work(ctx: Any) -> None:
         ctx[later] = 1
 

@@ -11,7 +11,7 @@ from pathlib import Path
 from quality.measure import Reply, labelled
 from ravestate.modules import emotion
 from ravestate.modules import genqa as genqa_module
-from ravestate.modules.meta.nlp import QuestionWord, Settings
+from ravestate.modules.meta.nlp import QuestionWord, Settings, YesNo
 from ravestate.modules.meta.nlp.analysis import Analysis, analyse
 from ravestate.modules.meta.nlp.pipeline import pipeline
 from ravestate.modules.skill.agentqa.life import Life
@@ -41,7 +41,11 @@ def questions(text: str) -> str:
 
 def yesno(text: str) -> str:
     """By nlp."""
-    answer = _seen(text).yesno
+    return yesno_label(_seen(text).yesno)
+
+
+def yesno_label(answer: YesNo) -> str:
+    """Return the label of an answer."""
     if answer.unsure:
         return "unsure"
     if answer.yes:

@@ -86,7 +86,7 @@ def test_a_rule_that_sleeps_too_long_is_named(
 ) -> None:
     (text,) = warnings_of(machine, caplog, first_step, compute=0.01, sleep=5.0)
     assert re.match(
-        rf"rule m:work \({HERE}:\d+\) blocked the loop for 5000 ms by waiting: await what takes", text
+        rf"rule m:work \({HERE}:\d+\) blocked the loop for 5000 ms by sleeping: make it a plain", text
     )
 
 

@@ -17,7 +17,7 @@ LIMIT = 20.0
 
 
 class Crowd:
-    """A module with functions that hang until `release` is set, and one that only wants to answer."""
+    """A module with functions that hang until `release` is set, and one that answers."""
 
     def __init__(self) -> None:
         self.module = rs.Module("m")
@@ -38,7 +38,7 @@ class Crowd:
 
 
 class Warnings(logging.Handler):
-    """A queue of what ravestate logs, while it is entered."""
+    """A queue of the messages that ravestate logs while this is entered."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -76,8 +76,8 @@ async def test_hanging_functions_that_use_up_the_workers_are_named_in_one_warnin
             await context.quiet()
             assert log.texts.empty()
     assert re.fullmatch(
-        r"plain functions have waited for a worker thread for up to 60 s: m:answer \(3 runs\)\. All 2 threads are taken "
-        r"by m:hangs \(2 runs, up to 60 s\)\. Give a rule that may hang a timeout=, or write async def",
+        r"plain functions wait for a worker thread: m:answer \(3 runs, up to 60 s\)\. All 2 threads are taken by "
+        r"m:hangs \(2 runs, up to 60 s\)\. Give a rule that may hang a timeout=, or write async def",
         text,
     )
 

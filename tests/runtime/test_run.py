@@ -1,4 +1,4 @@
-"""Running until told to end: by a rule, by one Ctrl-C in order, by a second at once."""
+"""Running until a rule or Ctrl-C ends the agent in order, or a second Ctrl-C at once."""
 
 import asyncio
 import gc
@@ -58,7 +58,7 @@ def test_options_are_those_of_a_context() -> None:
     assert told[:2] == told[2:] and told[0] == "b"
 
 
-def test_a_platform_that_serves_many_users_is_given_the_agent_and_makes_the_contexts() -> None:
+def test_a_platform_with_many_users_gets_the_agent_and_makes_the_contexts() -> None:
     told: list[object] = []
 
     async def serve(agent: Agent) -> None:
@@ -115,7 +115,7 @@ def test_an_interrupt_ends_a_server_in_order() -> None:
     assert ends == ["stay"]
 
 
-def test_a_rule_may_say_that_it_cannot_go_on() -> None:
+def test_a_rule_may_end_the_agent_with_a_failure() -> None:
     m = rs.Module("m")
     told: list[str] = []
 
@@ -143,13 +143,13 @@ def leaver(*requires: rs.Module) -> rs.Module:
     return m
 
 
-def test_an_agent_that_nobody_can_talk_to_says_so(caplog: pytest.LogCaptureFixture) -> None:
+def test_a_warning_says_that_no_user_can_talk_to_the_agent(caplog: pytest.LogCaptureFixture) -> None:
     rs.run(leaver(rawio.module))
     (record,) = caplog.records
     assert "no rule writes rawio:input; name a platform too, e.g. conio" in record.getMessage()
 
 
-def test_an_agent_with_a_platform_or_without_talk_says_nothing(caplog: pytest.LogCaptureFixture) -> None:
+def test_an_agent_with_a_platform_or_without_talk_causes_no_warning(caplog: pytest.LogCaptureFixture) -> None:
     rs.run(leaver())
     platform = leaver(rawio.module)
 

@@ -1,4 +1,4 @@
-"""``ravestate memory``: what an agent knows, listed, shown, exported, loaded, forgotten."""
+"""``ravestate memory``: list, show, export, load, forget, and reset."""
 
 from __future__ import annotations
 
@@ -20,19 +20,19 @@ __all__ = ["add_arguments", "run"]
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """The command's options."""
+    """Add the command's options."""
     _add_place(parser)
     does = parser.add_subparsers(dest="does", metavar="WHAT", required=True)
-    listing = does.add_parser("list", help="list what is known")
+    listing = does.add_parser("list", help="list all nodes")
     listing.add_argument("type", nargs="?", default="", metavar="TYPE", help="a type, e.g. Person")
     listing.add_argument("--types", action="store_true", help="only count, by type")
-    showing = does.add_parser("show", help="show somebody or something with its relations")
+    showing = does.add_parser("show", help="show a node with its relations")
     showing.add_argument("which", metavar="NAME|ID")
     exporting = does.add_parser("export", help="write everything as JSON")
     exporting.add_argument("to", nargs="?", default="-", metavar="FILE", help="by default standard output")
-    loading = does.add_parser("load", help="add what was exported")
-    loading.add_argument("document", metavar="FILE", help="a file that export wrote; - for standard input")
-    forgetting = does.add_parser("forget", help="forget somebody with everything about them")
+    loading = does.add_parser("load", help="add the nodes of an exported file")
+    loading.add_argument("document", metavar="FILE", help="a file from export; - for standard input")
+    forgetting = does.add_parser("forget", help="forget a person with everything about them")
     forgetting.add_argument("which", metavar="NAME|ID")
     forgetting.add_argument("-y", "--yes", action="store_true", help="do not ask")
     resetting = does.add_parser("reset", help="remove all files of the memory, also damaged ones")
@@ -42,7 +42,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_place(parser: argparse.ArgumentParser, *, later: bool = False) -> None:
-    """The options that say which memory; `later`, behind the name of an action, they leave what was said before it."""
+    """Add the options that choose a memory. `later`: behind an action; they keep the values given before it."""
     default = argparse.SUPPRESS if later else None
     parser.add_argument(
         "--path",
@@ -64,7 +64,7 @@ def _add_place(parser: argparse.ArgumentParser, *, later: bool = False) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Carry the command out; 1 if memory cannot be used."""
+    """Run the command; return 1 if memory cannot be used."""
     from ravestate.modules.meta.ontology.opening import open_memory, path_of
 
     settings = _settings(options)
@@ -82,8 +82,8 @@ def run(options: argparse.Namespace) -> int:
         unseen = memory.undeclared().result()
         if unseen:
             print(
-                f"ravestate memory: {memory.place} also has {', '.join(unseen)}, which no file of types has, so it is not "
-                "seen here: name the file with --set ontology.types=[FILE]",
+                f"ravestate memory: {memory.place} also has {', '.join(unseen)}, which no file of types has, so it is "
+                "hidden here: name the file with --set ontology.types=[FILE]",
                 file=sys.stderr,
             )
         does: dict[str, Callable[[Memory, argparse.Namespace], int]] = {
@@ -111,7 +111,7 @@ def _settings(options: argparse.Namespace) -> Settings:
     return load_settings([ontology.module], {"ontology": given})["ontology"]
 
 
-# ------------------------------------------------------------------------------------ what to do
+# ------------------------------------------------------------------------------------ actions
 
 
 def _list(memory: Memory, options: argparse.Namespace) -> int:
@@ -152,7 +152,7 @@ def _export(memory: Memory, options: argparse.Namespace) -> int:
     target = Path(options.to)
     new = target.with_name(target.name + ".new")
     try:
-        new.touch(mode=0o600)  # it is about people
+        new.touch(mode=0o600)  # the document is about people
         new.write_text(text, encoding="utf-8")
         new.replace(target)
     except OSError as error:
@@ -234,7 +234,7 @@ def _everything(memory: Memory) -> list[Node]:
 
 
 def _chosen(memory: Memory, which: str) -> Node:
-    """The one node with this id or name; capitals do not matter.
+    """Return the one node with this id or name, ignoring case.
 
     Raises:
         UsageError: There is none, or there are several.
@@ -259,7 +259,7 @@ def _name(node: Node) -> str:
 
 
 def _shown(value: object) -> str:
-    """A value in one line, fit for a terminal."""
+    """Return a value in one line, safe for a terminal."""
     from ravestate.modules._text import printable
 
     text = " ".join(printable(str(value)).split())

@@ -1,8 +1,8 @@
 """Rules that set each other off without time passing (L23).
 
-A loop is a set of rules, each with a clause whose signals other rules of the set raise, and a detached constraint
-or a detached rule between them: without one, a causal group ends the loop by itself (L19). A clause with a
-``min_age``, a predicate or a gate may end a loop, and so may a rule that awaits something: these count as no loop.
+In a loop, each rule has a clause whose signals come from rules of the loop, and at least one rule or constraint is
+detached. Without detachment the causal group ends the loop (L19). A clause with a ``min_age``, a predicate or a gate
+is no part of a loop here, because it may end one. Neither is a rule that awaits something, because it takes time.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ def endless_loops(policy: Policy) -> Iterator[tuple[list[RulePlan], list[str]]]:
         for clause in rule.clauses
         if not (clause.guards or _takes_time(rule) or any(n.predicates or n.min_age for n in _wanted(clause)))
     ]
-    while True:  # until every clause gets all its signals from the others
+    while True:  # until the clauses that are left get all their signals from each other
         raised = {signal for clause in clauses for signal in _raised(policy, clause.rule)}
         left = [clause for clause in clauses if all(n.signal.index in raised for n in _wanted(clause))]
         if len(left) == len(clauses):
@@ -56,12 +56,12 @@ def endless_loops(policy: Policy) -> Iterator[tuple[list[RulePlan], list[str]]]:
 
 
 def _wanted(clause: Clause) -> list[Need]:
-    """The needs that want a new spike for each run; a detached need beside them looks at an old one again."""
+    """Return the needs that take a new spike for each run; a detached need beside them may look at an old one."""
     return [need for need in clause.needs if not need.detached] or list(clause.needs)
 
 
 def _raised(policy: Policy, rule: RulePlan) -> list[int]:
-    """The signals of a rule that may begin another turn at once."""
+    """Return the signals of a rule that may start the next run at once."""
     changes = [policy.slot_plans[s].signals[0].index for s in rule.slots if not policy.slot_plans[s].is_flag]
     return [*rule.emits, *changes]
 

@@ -16,7 +16,7 @@ def not_imported(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_it_cannot_be_imported_within_but_after() -> None:
     finders = list(sys.meta_path)
-    with blocked("colorsys"), pytest.raises(ModuleNotFoundError, match="colorsys is hidden here"):
+    with blocked("colorsys"), pytest.raises(ModuleNotFoundError, match="colorsys is blocked here"):
         importlib.import_module("colorsys")
     assert importlib.import_module("colorsys").rgb_to_hsv
     assert sys.meta_path == finders

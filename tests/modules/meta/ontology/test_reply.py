@@ -28,8 +28,8 @@ async def wait(reply: Reply[object]) -> object:
 def test_it_gives_its_result_to_all_who_ask() -> None:
     reply = Reply(done(3), "Memory.find")
     assert reply.result() == reply.result(1) == asyncio.run(wait(reply)) == 3
-    assert repr(reply) == "<reply of Memory.find: there>"
-    assert repr(Reply(Future(), "Memory.find")) == "<reply of Memory.find: to come>"
+    assert repr(reply) == "<reply of Memory.find: done>"
+    assert repr(Reply(Future(), "Memory.find")) == "<reply of Memory.find: pending>"
 
 
 def test_it_raises_the_error() -> None:
@@ -78,7 +78,7 @@ def test_an_error_that_nobody_asks_for_is_told(caplog: pytest.LogCaptureFixture,
     del reply
     if late:
         future.set_exception(PlatformError("the disk is full"))
-    assert "Memory.save failed, and nobody has waited for it: the disk is full" in caplog.text
+    assert "Memory.save failed, and nobody waited for it: the disk is full" in caplog.text
 
 
 def test_an_error_that_was_asked_for_is_not_told_again(caplog: pytest.LogCaptureFixture) -> None:

@@ -1,4 +1,4 @@
-"""The log of a chat: never between its lines."""
+"""The log of a chat never stands between its lines."""
 
 import logging
 import os
@@ -47,7 +47,7 @@ def talk(folder: Path, *, redirected: bool) -> tuple[bytes, str]:
     errors = b""
 
     def read() -> bool:
-        """Be the terminal; return whether it is still there."""
+        """Act as the terminal; return whether the other side is still there."""
         nonlocal seen
         try:
             received = os.read(ours, 4096)

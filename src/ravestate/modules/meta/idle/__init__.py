@@ -1,8 +1,8 @@
-"""Awkward pauses: the user says nothing, or has to wait."""
+"""Awkward pauses: silence, and slow answers."""
 
 from __future__ import annotations
 
 from . import rules
-from .names import Settings, asked, bored, hushed, impatient, module
+from .names import Settings, asked, bored, hushed, impatient, module, unanswered
 
-__all__ = ["Settings", "asked", "bored", "hushed", "impatient", "module", "rules"]
+__all__ = ["Settings", "asked", "bored", "hushed", "impatient", "module", "rules", "unanswered"]

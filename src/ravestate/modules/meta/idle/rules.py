@@ -5,40 +5,57 @@ from __future__ import annotations
 import ravestate as rs
 from ravestate.modules import rawio
 
-from .names import Settings, asked, bored, hushed, impatient, module
+from .names import Settings, asked, bored, hushed, impatient, module, unanswered
 from .words import asks_for_quiet, last_question, takes_leave
 
 
 @module.rule(
     when=rs.activity.false.max_age(None) | rs.startup.detached(),
-    reads=(rs.activity, rawio.input, asked),
+    reads=(rs.activity, rawio.input, asked, unanswered),
+    writes=unanswered,
     emits=bored,
     until=rs.activity.true | rawio.typing,
     detached=True,
     background=True,
 )
 async def notice_silence(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Nothing holds a spike or runs, and that lasts: say so, unless it is what the user wants."""
+    """Emit `bored` after a long silence, unless the user wants it."""
     settings: Settings = ctx.settings
     if ctx[rs.activity]:
         return rs.Resign("there is something to do")
     if asks_for_quiet(ctx[rawio.input]) or takes_leave(ctx[rawio.input]):
         return rs.Resign("the user wants quiet")
+    if ctx[unanswered] >= settings.bored_times:
+        return rs.Resign("the user has answered nothing lately")
     await ctx.sleep(max(settings.bored_after, settings.answer_time if ctx[asked] else 0.0))
+    ctx[unanswered] += 1
     ctx.emit(bored)
     return None
 
 
 @module.rule(
+    when=rawio.input.changed.detached() | rawio.typing.detached() | rawio.picture.changed.detached(),
+    writes=unanswered,
+    detached=True,
+    background=True,
+)
+async def notice_user(ctx: rs.RuleContext) -> None:
+    """Begin to count again: the user is there."""
+    ctx[unanswered] = 0
+
+
+@module.rule(
     when=rawio.typing.max_age(None),
+    writes=unanswered,
     emits=bored,
     until=rs.activity.true | rawio.typing | rawio.input.changed,
     detached=True,
     background=True,
 )
 async def notice_unfinished_line(ctx: rs.RuleContext) -> None:
-    """The user began to write, and does not go on: that is silence, too, but a longer one."""
+    """Emit `bored` if the user stops in the middle of a line."""
     await ctx.sleep(max(ctx.settings.bored_after, ctx.settings.writing_time))
+    ctx[unanswered] = 1
     ctx.emit(bored)
 
 
@@ -49,13 +66,13 @@ async def notice_unfinished_line(ctx: rs.RuleContext) -> None:
     background=True,
 )
 async def notice_delay(ctx: rs.RuleContext) -> None:
-    """A ready rule is kept waiting: say so."""
+    """Emit `impatient`: a ready rule waits too long."""
     ctx.emit(impatient)
 
 
 @module.rule(when=rawio.input.changed.where(asks_for_quiet), emits=hushed, background=True)
 async def notice_wish_for_quiet(ctx: rs.RuleContext) -> None:
-    """The user has enough: say so."""
+    """Emit `hushed` if the user asks for quiet."""
     ctx.emit(hushed)
 
 
@@ -70,5 +87,5 @@ def _has_words(text: str) -> bool:
     background=True,
 )
 async def notice_question(ctx: rs.RuleContext) -> None:
-    """Keep in mind what the agent asks: an answer takes its time."""
+    """Note the agent's question; its answer gets more time."""
     ctx[asked] = last_question(ctx.payload(rawio.output.changed))

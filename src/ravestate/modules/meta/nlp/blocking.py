@@ -1,4 +1,4 @@
-"""Importing a package without what it would take along."""
+"""Import a package without the optional packages that it would import."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from importlib.abc import MetaPathFinder
 from importlib.machinery import ModuleSpec
 from types import ModuleType
 
-__all__ = ["hidden"]
+__all__ = ["blocked"]
 
 
-class _Hider(MetaPathFinder):
+class _BlockingFinder(MetaPathFinder):
     def __init__(self, names: frozenset[str]) -> None:
         self._names = names
         self._thread = threading.get_ident()
@@ -22,23 +22,23 @@ class _Hider(MetaPathFinder):
         self, fullname: str, path: Sequence[str] | None, target: ModuleType | None = None
     ) -> ModuleSpec | None:
         if fullname in self._names and threading.get_ident() == self._thread:
-            raise ModuleNotFoundError(f"{fullname} is hidden here", name=fullname)
+            raise ModuleNotFoundError(f"{fullname} is blocked here", name=fullname)
         return None
 
 
 @contextmanager
-def hidden(*names: str) -> Generator[None]:
-    """Within, this thread cannot import the packages `names`, unless they are imported already; other threads can.
+def blocked(*names: str) -> Generator[None]:
+    """Keep this thread from importing the packages `names` for the first time; other threads may.
 
     Example:
-        >>> with hidden("this"):
+        >>> with blocked("this"):
         ...     import this
         Traceback (most recent call last):
-        ModuleNotFoundError: this is hidden here
+        ModuleNotFoundError: this is blocked here
     """
-    hider = _Hider(frozenset(names))
-    sys.meta_path.insert(0, hider)
+    finder = _BlockingFinder(frozenset(names))
+    sys.meta_path.insert(0, finder)
     try:
         yield
     finally:
-        sys.meta_path.remove(hider)
+        sys.meta_path.remove(finder)

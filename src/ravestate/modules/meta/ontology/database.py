@@ -28,7 +28,7 @@ def connect(path: Path, *, whole_log: bool = True) -> tuple[Any, Any]:
         whole_log: False to read a damaged log up to the damage, and to cut off the rest.
 
     Raises:
-        Exception: Whatever ladybug raises: mostly RuntimeError, and anything at all for a damaged file.
+        Exception: Ladybug raises RuntimeError, and any other exception for a damaged file.
     """
     import ladybug
 

@@ -36,10 +36,10 @@ from .types import Types
 __all__ = ["EmbeddedStore"]
 
 RESERVE = 16 * 2**20
-"""Free bytes on the disk below which nothing is written any more: the database stands no write that fails."""
+"""Free bytes on the disk that a write must leave: ladybug cannot recover from a failed write."""
 
 LOG_LIMIT = 4 * 2**20
-"""Bytes of the write-ahead log from which it is worked into the file."""
+"""Bytes of the write-ahead log that make the store move it into the file."""
 
 log = logging.getLogger("ravestate.ontology")
 
@@ -102,11 +102,11 @@ class EmbeddedStore:
 
     @contextmanager
     def transaction(self) -> Generator[None]:
-        """All statements within are done together, or none."""
+        """Commit all statements inside together, or none."""
         if self._within:
             yield
             return
-        if self._stuck:  # else each write looks for itself whether there is room; reading wants none
+        if self._stuck:  # otherwise each write checks the space by itself
             self._be_writable(0)
         self._execute("BEGIN TRANSACTION")
         self._within, self._purge_due = True, False
@@ -114,7 +114,7 @@ class EmbeddedStore:
             yield
             self._execute("COMMIT")
         except BaseException:
-            with contextlib.suppress(PlatformError):  # one that failed is rolled back already
+            with contextlib.suppress(PlatformError):  # a failed transaction is rolled back already
                 self._execute("ROLLBACK")
             raise
         finally:
@@ -124,7 +124,7 @@ class EmbeddedStore:
             self.purge()
 
     def _acknowledge(self) -> None:
-        """What has been written up to here is on disk."""
+        """Note that all writes so far are on disk."""
         self._shorten_log()
         self._log_good = self._files.log_size()
 
@@ -140,7 +140,7 @@ class EmbeddedStore:
                     f"memory {self._path} cannot be written: {reason(said)}. Make room on the disk; what was acknowledged is "
                     "safe, and memory goes on when there is"
                 ) from error
-            if "Cannot open file" in said:  # its log's, in a folder that is read-only, say
+            if "Cannot open file" in said:  # the log, in a read-only folder for example
                 raise PlatformError(why_not_opened(self._path, said, self._files.present())) from error
             if is_damage(error):
                 raise PlatformError(why_broken(self._path, said, self._files.present())) from error
@@ -149,11 +149,11 @@ class EmbeddedStore:
     # ------------------------------------------------------------------------------------ tables
 
     def prepare(self, types: Types) -> None:
-        """Make room for all types, properties and relations that are not there yet."""
-        if types is self._prepared:  # as those before have asked for; nobody else writes this file
+        """Create missing tables and columns."""
+        if types is self._prepared:  # no other process writes this file
             return
         missing = list(missing_tables(self._execute, types, str(self._path)))
-        if missing:  # else nothing is written: a memory may be read from a full disk
+        if missing:  # nothing to write: memory on a full disk can be read
             self._be_writable(0)
             with self.transaction():
                 for statement in missing:
@@ -161,7 +161,7 @@ class EmbeddedStore:
         self._prepared = types
 
     def undeclared(self, types: Types) -> list[str]:
-        """The types of nodes in the file that `types` do not have."""
+        """Return the types that have nodes in the file and are not in `types`."""
         return undeclared_types(self._execute, types)
 
     # ------------------------------------------------------------------------------------ the file
@@ -242,7 +242,7 @@ class EmbeddedStore:
         If that fails, the deleted nodes are forgotten all the same; a warning says that the file still has their bytes.
         """
         if self._within:
-            self._purge_due = True  # when it is done
+            self._purge_due = True  # after the transaction
             return
         new = MemoryFiles(self._files.beside(".new"))
         try:
@@ -306,7 +306,7 @@ class EmbeddedStore:
             self._check_space(4 * size)
             self._checkpoint()
             self._log_limit = LOG_LIMIT
-        except PlatformError as error:  # nothing is lost, and it may go better next time
+        except PlatformError as error:  # nothing is lost; the next try may succeed
             self._log_limit = 2 * size
             log.warning("memory %s keeps a log of %d bytes: %s", self._path, size, error)
 
@@ -318,7 +318,7 @@ class EmbeddedStore:
         try:
             free = shutil.disk_usage(self._path.parent).free
         except OSError:
-            return  # the write itself will tell
+            return  # the write itself reports it
         if free < RESERVE + needed:
             raise PlatformError(
                 f"memory {self._path} cannot be written: the disk is full ({free // 2**20} MB free, and it wants "
@@ -343,12 +343,12 @@ class EmbeddedStore:
     def _get_stuck(self, said: str) -> None:
         self._stuck = reason(said)
         with contextlib.suppress(OSError):
-            os.truncate(self._files.log, self._log_good)  # a record that is torn would stop the next opening
-        for held in (self._connection, self._database):  # never collected: that would end the process
+            os.truncate(self._files.log, self._log_good)  # the next opening stops at a torn record
+        for held in (self._connection, self._database):  # collecting them would end the process
             ctypes.pythonapi.Py_IncRef(ctypes.py_object(held))
 
     def _can_write(self) -> bool:
-        """Whether a file beside the log can be made a little longer than the log is."""
+        """Return whether a file beside the log can grow a little longer than the log."""
         probe = self._files.probe
         try:
             with probe.open("wb") as file:

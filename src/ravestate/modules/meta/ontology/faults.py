@@ -23,7 +23,7 @@ ENDS_PROCESS = "it ends the process that reads it"
 
 _NO_DAMAGE = re.compile(r"set lock|file version: |Cannot open file|directory")
 _DAMAGE = re.compile(
-    r"corrupt|Assertion failed|out of bounds|^(?:Runtime|Storage|Internal) exception", re.IGNORECASE
+    r"corrupt|bad_alloc|Assertion failed|out of bounds|^(?:Runtime|Storage|Internal) exception", re.IGNORECASE
 )
 
 

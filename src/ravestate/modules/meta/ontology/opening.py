@@ -1,73 +1,43 @@
-"""Where memory is, by the settings, and how it is opened there."""
+"""Open memory where the settings say: in a file or on a server."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable
-from functools import lru_cache
-from importlib.resources import files
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from ravestate.modules._folders import user_folder
 
 from .memory import Memory
-from .type_files import read_types
+from .names import Settings
+from .type_files import types_in
 from .types import Types
 from .worker import StoreWorker
 
-if TYPE_CHECKING:
-    from .names import Settings
-
-__all__ = ["default_path", "open_memory", "path_of", "types_in", "types_of"]
+__all__ = ["default_path", "open_memory", "path_of", "types_of"]
 
 
 def default_path(agent: str) -> Path:
-    """The file of an agent's memory in the user's data folder."""
+    """Return the file of an agent's memory in the user's data folder."""
     return user_folder("data") / agent / "memory.lbug"
 
 
 def types_of(settings: Settings) -> Types:
-    """The types that come with the module, and the user's; see `types_in`."""
+    """Return the built-in types and the user's; see `types_in`."""
     return types_in(settings.types)
 
 
-def types_in(paths: Iterable[Path]) -> Types:
-    """The types that come with the module, and those of files. Files are read once, unless one has changed since.
-
-    Raises:
-        DeclarationError: A file is no file of types, or contradicts another.
-        PlatformError: A file cannot be read.
-    """
-    return _read(tuple((path.expanduser(), _state_of(path.expanduser())) for path in paths))
-
-
-@lru_cache(maxsize=8)  # each visitor of a page opens memory
-def _read(own: tuple[tuple[Path, object], ...]) -> Types:
-    built_in = files("ravestate.modules.meta.ontology") / "types.yaml"
-    return read_types([built_in, *(path for path, _ in own)])
-
-
-def _state_of(path: Path) -> object:
-    """What tells whether a file has changed."""
-    try:
-        stat = path.stat()
-    except OSError:  # which is said when it is read
-        return None
-    return stat.st_ino, stat.st_size, stat.st_mtime_ns
-
-
 def path_of(settings: Settings) -> Path | None:
-    """The file of memory, its links resolved; None where memory is on a server."""
+    """Return the file of memory with links resolved; None for a memory on a server."""
     if settings.url is not None:
         return None
     return Path(os.path.realpath((settings.path or default_path(settings.agent)).expanduser()))
 
 
 def open_memory(settings: Settings) -> Memory:
-    """Begin to open memory where the settings say; all of it happens in memory's thread.
+    """Begin to open memory where the settings say, in its own thread.
 
-    What is wrong is raised by ``memory.opened()``.
+    ``memory.opened()`` raises the errors.
     """
 
     def read() -> Types:
@@ -88,6 +58,6 @@ def _file(path: Path) -> Any:
 def _server(settings: Settings) -> Any:
     from .bolt import BoltStore
 
-    assert settings.url is not None  # as asked for above
+    assert settings.url is not None  # `open_memory` has checked it
     password = "" if settings.password is None else settings.password.get_secret_value()
     return BoltStore(settings.url, settings.user, password, settings.database, settings.timeout)

@@ -1,4 +1,4 @@
-"""Files of types: YAML that is read into `Types`, several into one.
+"""Files of types: several YAML files make one `Types`.
 
 ::
 
@@ -9,66 +9,94 @@
         sails_to: [City, Country]       # to nodes of these types, and their subtypes
         insured_by: {to: Company, has: {since: date}}
 
-A later file adds to what the earlier ones say of a type; it cannot take away or contradict.
+A later file extends earlier ones; it cannot remove or contradict anything.
 """
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping
+from functools import lru_cache
+from importlib.resources import files
 from importlib.resources.abc import Traversable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ravestate.errors import DeclarationError, PlatformError, nearest
+from ravestate.yaml_text import compose_yaml
 
 from .types import KINDS, Kind, Relating, Type, Types
 
 if TYPE_CHECKING:
     import yaml
 
-__all__ = ["read_types"]
+__all__ = ["read_types", "types_in"]
 
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,62}")
 OF_A_TYPE = ("is", "has", "relations")
 OF_A_RELATION = ("to", "has")
 
 
-def read_types(files: Iterable[Path | Traversable]) -> Types:
-    """Read files, in this order, into one.
+def read_types(paths: Iterable[Path | Traversable]) -> Types:
+    """Read files in this order.
 
     Raises:
-        DeclarationError: A file is no file of types, or contradicts another; file and line are named.
+        DeclarationError: A file is invalid or contradicts another; the message names file and line.
         PlatformError: A file is missing or cannot be read.
     """
     reader = _Reader()
-    for file in files:
+    for file in paths:
         reader.read(str(file), _text_of_file(file))
     return reader.finish()
 
 
+def types_in(paths: Iterable[Path]) -> Types:
+    """Return the built-in types together with those of files. Files are read once, and again after a change.
+
+    Raises:
+        DeclarationError: A file is invalid or contradicts another.
+        PlatformError: A file cannot be read.
+    """
+    return _read(tuple((path.expanduser(), _state_of(path.expanduser())) for path in paths))
+
+
+@lru_cache(maxsize=8)  # each visitor of a page opens memory
+def _read(own: tuple[tuple[Path, object], ...]) -> Types:
+    built_in = files("ravestate.modules.meta.ontology") / "types.yaml"
+    return read_types([built_in, *(path for path, _ in own)])
+
+
+def _state_of(path: Path) -> object:
+    """Return what changes with a file."""
+    try:
+        stat = path.stat()
+    except OSError:  # reading it says so
+        return None
+    return stat.st_ino, stat.st_size, stat.st_mtime_ns
+
+
 class _Reader:
-    """What the files have said so far, and where."""
+    """The content of the files so far, and its lines."""
 
     def __init__(self) -> None:
         self._places: dict[str, str] = {}
-        """Where each type and relation was first named, ``file:line``."""
+        """The first ``file:line`` of each type and relation."""
         self._parents: dict[str, tuple[str, str]] = {}
         self._has: dict[str, dict[str, Kind]] = {}
         self._ends: dict[str, dict[tuple[str, str], str]] = {}
         self._relation_has: dict[str, dict[str, Kind]] = {}
         self._kinds: dict[tuple[bool, str], tuple[str, Kind, str]] = {}
-        """Of each property's name, of types (False) and of relations (True): how it is spelt, its kind, where."""
+        """The spelling, kind and line of each property, of types (False) and relations (True)."""
 
     def read(self, file: str, text: str) -> None:
-        root = _composed(file, text)
+        root = compose_yaml(text, file)
         if root is None:
             return
         for key, name, body in _entries(file, root, "a file of types maps types to what they have"):
             self._name(file, key, name, self._has, self._ends)
             self._has.setdefault(name, {})
             if _kind(body) == "scalar" and not body.value:
-                continue  # a type that has nothing of its own
+                continue  # a type without parts
             for part_key, part, value in _entries(file, body, f"{name} has keys and values"):
                 if part not in OF_A_TYPE:
                     raise _fault(
@@ -207,24 +235,6 @@ def _text_of_file(file: Path | Traversable) -> str:
         ) from None
 
 
-def _composed(file: str, text: str) -> yaml.Node | None:
-    """The nodes of a YAML text, which know their lines. No value is made of them, so nothing can run."""
-    import yaml
-
-    try:
-        return yaml.compose(text, Loader=yaml.BaseLoader)
-    except yaml.MarkedYAMLError as error:
-        mark = error.problem_mark or error.context_mark
-        line = "" if mark is None else f":{mark.line + 1}"
-        reason = ", ".join(filter(None, (error.context, error.problem)))
-        raise DeclarationError(f"{file}{line}: this is no YAML ({reason})") from None
-    except yaml.YAMLError as error:  # a character that YAML does not allow; it knows no line
-        line = text.count("\n", 0, getattr(error, "position", 0)) + 1
-        raise DeclarationError(f"{file}:{line}: this is no YAML (a control character)") from None
-    except RecursionError:
-        raise DeclarationError(f"{file}: this is no file of types, but nested without end") from None
-
-
 def _entries(file: str, node: yaml.Node, meaning: str) -> Iterator[tuple[yaml.Node, str, yaml.Node]]:
     if _kind(node) != "mapping":
         raise _fault(
@@ -236,7 +246,7 @@ def _entries(file: str, node: yaml.Node, meaning: str) -> Iterator[tuple[yaml.No
     for key, value in node.value:
         name = _text(file, key, "a name is a text")
         if name in seen:
-            raise _fault(file, key, f"{name} stands here twice: write it once, with all that it has")
+            raise _fault(file, key, f"{name} is here twice: write it once, with all of its parts")
         seen.add(name)
         yield key, name, value
 
@@ -252,7 +262,7 @@ def _check_name(file: str, node: yaml.Node, name: str, what: str) -> None:
         raise _fault(
             file,
             node,
-            f"{name!r} is no name of a {what}: use letters from A to Z, digits and '_', beginning with a letter, at most 63",
+            f"{name!r} is not a name for a {what}: use at most 63 letters from A to Z, digits and '_', and begin with a letter",
         )
 
 

@@ -1,4 +1,4 @@
-"""Who keeps a store: the one thread that touches it, and how many share it."""
+"""The worker thread of a store, shared by all contexts of the process."""
 
 from __future__ import annotations
 
@@ -16,23 +16,23 @@ T = TypeVar("T")
 
 _shared: dict[str, StoreWorker] = {}
 _closing: dict[str, Future[None]] = {}
-"""Stores that are being closed; the next who opens one waits for that."""
+"""Stores that are closing; the next opening waits for that."""
 _lock = threading.Lock()
 
 
 class StoreWorker:
-    """Does jobs on a store, one after the other, in a thread of its own.
+    """A thread that runs jobs on a store, one after the other.
 
-    A file is kept once in a process, whoever uses it: a second opening of it would not be refused, and ruin it.
-    The thread is a daemon, so that a server that hangs cannot keep the process from ending.
+    A process opens a file once for all contexts: a second opening would succeed and ruin the file. The thread is a
+    daemon, so a server that hangs cannot keep the process alive.
     """
 
     def __init__(self, place: str, make: Callable[[], Store]) -> None:
-        """Begin to open a store, in the thread.
+        """Start the thread, which opens the store.
 
         Args:
-            place: Where it is, for messages.
-            make: Opens the store. What it raises, every job will.
+            place: The path or address, for messages.
+            make: Opens the store. If it raises, every job raises the same.
         """
         self.place = place
         self._jobs: SimpleQueue[Callable[[], None] | None] = SimpleQueue()
@@ -45,7 +45,7 @@ class StoreWorker:
 
     @classmethod
     def shared(cls, key: str, make: Callable[[], Store]) -> StoreWorker:
-        """The worker of a store that is known in this process by `key`, which is its place, or a new one."""
+        """Return the process's worker for the store at `key`, or a new one."""
         with _lock:
             worker = _shared.get(key)
             if worker is not None:
@@ -63,7 +63,7 @@ class StoreWorker:
             return worker
 
     def submit(self, job: Callable[[Store], T]) -> Future[T]:
-        """Have a job done after all those before it."""
+        """Queue a job."""
         future: Future[T] = Future()
 
         def do() -> None:
@@ -71,14 +71,14 @@ class StoreWorker:
                 if self._store is None:
                     raise self._failure or RuntimeError("the store was not opened")
                 future.set_result(job(self._store))
-            except BaseException as error:  # whoever waits gets it
+            except BaseException as error:  # the caller gets it
                 future.set_exception(error)
 
         self._jobs.put(do)
         return future
 
     def release(self) -> Future[None]:
-        """Let go of one use; the last one closes the store, after all jobs before."""
+        """Give up one use. The last one closes the store after all queued jobs."""
         done: Future[None] = Future()
         with _lock:
             self._users -= 1
@@ -107,7 +107,7 @@ class StoreWorker:
     def _open(self, make: Callable[[], Store]) -> None:
         try:
             self._store = make()
-        except BaseException as error:  # whoever asks for something gets it
+        except BaseException as error:  # every job raises it
             self._failure = error
 
     def _close(self, done: Future[None]) -> None:
@@ -115,5 +115,5 @@ class StoreWorker:
             if self._store is not None:
                 self._store.close()
             done.set_result(None)
-        except BaseException as error:  # whoever waits gets it
+        except BaseException as error:  # the caller gets it
             done.set_exception(error)

@@ -15,6 +15,7 @@ from typing import Any, cast
 from uvicorn.protocols.http.h11_impl import H11Protocol, RequestResponseCycle
 from uvicorn.protocols.utils import ClientDisconnected
 from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
+from websockets.exceptions import InvalidState
 
 __all__ = ["LimitedHTTP", "LimitedWebSocket"]
 
@@ -132,6 +133,12 @@ class LimitedWebSocket(WebSocketsSansIOProtocol):
         """Run the application; who has not closed its end some time after that is hung up on."""
         await super().run_asgi()
         self.loop.call_later(TIMEOUT, self._see_off)
+
+    def shutdown(self) -> None:
+        """Close the connection when the server stops. uvicorn fails if the client is closing it at the same moment."""
+        with contextlib.suppress(InvalidState):
+            super().shutdown()
+        self.transport.close()
 
     def _see_off(self) -> None:
         if not self.disconnected:
