@@ -96,9 +96,9 @@ export class Board {
   view = new View();
   follows = $state(true);
   trace = new Trace();
-  #asked: number | null = null; // the spike of the last question "why not"
+  #asked: number | null = null; // the spike of the last "why not"
   #sent: { command: ClientFrame; typed: string } | null = null; // the last command
-  #lent = false; // whether to return to the newest cause when the rule is closed
+  #lent = false; // whether closing the rule returns to the newest cause
   #before: Address = {}; // the address before a recording
   #address: Address;
   #link: Link;
@@ -314,8 +314,8 @@ export class Board {
   }
 
   /**
-   * The causes that a user may ask about: input from outside, newest first, with the chosen spike before it. Of a signal
-   * that only background rules hear, such as typing, only the newest spike is in the list.
+   * The causes that a user may ask about: input from outside, newest first, with the chosen spike before it. A signal
+   * that only background rules hear, such as typing, appears once, with its newest spike.
    */
   get causes(): readonly Spike[] {
     return this.#causes;

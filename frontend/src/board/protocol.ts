@@ -96,25 +96,25 @@ export interface Born {
   payload: Rendered;
 }
 
-/** A clause, and how its utility is made up (nats). */
+/** A clause, and the parts of its utility (nats). */
 export interface ClauseView {
-  /** As it is written. */
+  /** Its source text. */
   condition: string;
   constraints: ConstraintView[];
   gates: GateView[];
-  /** Of the pathway that decides, which is the one that says least. */
+  /** The addends of the pathway with the least utility, which decides. */
   terms: Term[];
-  /** How many pathways there are. */
+  /** The number of pathways. */
   pathways: number;
-  /** How many predicates add ln 2 each. */
+  /** The number of predicates, which add ln 2 each. */
   predicates: number;
-  /** The sum of both (L9). */
+  /** The sum of all addends (L9). */
   utility: number;
-  /** Utility × weight: the effective utility of a rule that has recovered. */
+  /** Utility × weight: the effective utility without a cooldown. */
   base: number;
 }
 
-/** A signal that a clause wants; ages in seconds (`max_age=None`: any), predicates by their names. */
+/** A signal in a clause; ages in seconds (`max_age=None`: any), predicates by their names. */
 export interface ConstraintView {
   signal: string;
   min_age: number;
@@ -123,7 +123,7 @@ export interface ConstraintView {
   predicates: string[];
 }
 
-/** Nodes and edges in the order in which they are declared. */
+/** Nodes and edges in declaration order. */
 export interface Diagram {
   nodes: Node[];
   edges: Edge[];
@@ -146,16 +146,16 @@ export interface Edge {
   label?: string;
 }
 
-/** Here something went unseen. */
+/** A gap in the records. */
 export interface Gap {
   kind: "gap";
-  /** Since when (seconds). */
+  /** Its start (seconds). */
   time: number;
-  /** How many spikes were born meanwhile; -1 as long as that is not known. */
+  /** How many spikes the recorder missed; -1 while that is unknown. */
   spikes?: number;
 }
 
-/** A predicate on a slot that gates a clause, and how it is written. */
+/** A slot predicate of a clause, and its source text. */
 export interface GateView {
   slot: string;
   text: string;
@@ -210,15 +210,15 @@ export interface Moment {
 
 /** A slot, a signal, a rule, a folded module, or the junction of a conjunction or disjunction. */
 export interface Node {
-  /** Its name within the diagram. */
+  /** Its unique name within the diagram. */
   id: string;
-  /** What it stands for. */
+  /** Its kind. */
   kind: "slot" | "signal" | "rule" | "module" | "and" | "or";
-  /** What is written in it; empty for a junction. */
+  /** The text in it; empty for a junction. */
   label?: string;
-  /** The module it is declared in; empty for a junction and for a module. */
+  /** The module that declares it; empty for a junction and for a module. */
   module?: string;
-  /** Options worth seeing, such as a weight; empty for none. */
+  /** Options such as a weight, or the number of rules of a module; may be empty. */
   note?: string;
 }
 
@@ -255,7 +255,7 @@ export interface Raiser {
   words: string;
 }
 
-/** A rule: as declared, with all that it `raises`, the signals of slots that it writes included. */
+/** A rule as declared. `raises` has all signals that it may raise, with those of its slots. */
 export interface RuleView {
   name: string;
   module: string;
@@ -297,7 +297,7 @@ export interface Settled {
   error?: string;
 }
 
-/** A signal: whose it is, whether it may come from outside, who hears it and who raises it. */
+/** A signal: its module, slot and payload, whether it is an input, and the rules that hear and raise it. */
 export interface SignalView {
   name: string;
   module: string;
@@ -308,7 +308,7 @@ export interface SignalView {
   raisers: string[];
 }
 
-/** A slot: `value`, `flag` or `collection`, the type that it takes, and its signals. */
+/** A slot: its kind (`value`, `flag` or `collection`), type and signals, and the rules that use it. */
 export interface SlotView {
   name: string;
   module: string;
@@ -329,7 +329,7 @@ export interface Started {
   spikes: number[];
 }
 
-/** One addend of a utility: a signal that lies on the pathways of so many rules says −ln(rules / |Λ|) nats (L9). */
+/** One addend of a utility: −ln(rules / |Λ|) nats, where `rules` have the signal on their pathways (L9). */
 export interface Term {
   signal: string;
   rules: number;
@@ -374,9 +374,9 @@ export interface Waits {
 export interface Rendered {
   /** JSON, or a `repr`. */
   text: string;
-  /** Whether it is JSON that stands for the whole value, so that it may be edited and written back. */
+  /** Whether the text is JSON for the whole value, which a user may edit and write back. */
   json?: boolean;
-  /** Whether there is more of it. */
+  /** Whether the text is only a part. */
   cut?: boolean;
 }
 
@@ -547,10 +547,10 @@ export interface State {
   paused: boolean;
 }
 
-/** What happened, in order. */
+/** The next records, in order. */
 export interface Records {
   type: "records";
-  /** The next records. */
+  /** The records. */
   records: TraceRecord[];
   /** How many records before these are left out. */
   missed: number;
@@ -597,7 +597,7 @@ export interface ExplainedClause {
   gates: [string, boolean][];
 }
 
-/** What a rule holds, lacks and waits for now. */
+/** The current state of a rule: what it holds, lacks and waits for. */
 export interface Explained {
   type: "explained";
   rule: string;
