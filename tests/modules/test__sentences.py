@@ -141,7 +141,7 @@ def test_without_a_library_the_message_says_what_to_install(
 
 
 def test_a_folder_that_is_none_is_named() -> None:
-    with pytest.raises(rs.PlatformError, match="'/nowhere' is no folder"):
+    with pytest.raises(rs.PlatformError, match="'/nowhere' is not a folder"):
         Reranker("/nowhere").load()
 
 

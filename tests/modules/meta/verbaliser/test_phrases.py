@@ -158,7 +158,7 @@ def test_what_cannot_be_said(intent: str, parameters: dict[str, object], message
     ("text", "line", "message"),
     [
         ("greet: [Hello", 1, "this is no YAML"),
-        ("greet:\n  en: Hello: you", 2, "this is no YAML .*wants quotes"),
+        ("greet:\n  en: Hello: you", 2, "this is no YAML .*[Pp]ut quotes"),
         ("a: b\n\x07", 2, "a control character"),
         ("a: b\n---\nc: d", 2, "this is no YAML .*another document"),
         ("- Hello!", 1, "maps intents to languages, and this is no mapping"),
@@ -169,7 +169,7 @@ def test_what_cannot_be_said(intent: str, parameters: dict[str, object], message
         (
             "greet:\n  en:\n    - {name}, hello",
             3,
-            "a phrase is a text, and this is a mapping.*wants quotes|no YAML",
+            "a phrase is a text, and this is a mapping.*[Pp]ut quotes|no YAML",
         ),
         ("greet:\n  en:\n    - {name}", 3, "a phrase is a text, and this is a mapping"),
         ("greet:\n  en:\n    - [a]", 3, "a phrase is a text, and this is a sequence"),
