@@ -1,4 +1,4 @@
-"""The modules as `measure.py` asks them: each function bears the name of a set."""
+"""The functions for `measure.py`; each has the name of a set."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ NOT_ABOUT_ITSELF = ("time", "date", "privacy")
 
 
 def agentqa(text: str) -> str:
-    """By agentqa, which is told by nlp whether it is a question."""
+    """By agentqa; nlp recognises the questions."""
     found = _router().route(text, question=_seen(text).question is not None)
     topic = found.topic if isinstance(found, Match) else "-"
     return {"abilities": "can_do", **dict.fromkeys(NOT_ABOUT_ITSELF, "-")}.get(topic, topic)

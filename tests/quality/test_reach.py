@@ -1,4 +1,4 @@
-"""What is promised of the understanding of text, on sets that nobody tuned on."""
+"""The promised shares of understood texts, on sets that nobody tuned on."""
 
 from __future__ import annotations
 
