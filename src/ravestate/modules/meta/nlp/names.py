@@ -11,25 +11,6 @@ from .entity import Entity
 from .question_word import QuestionWord
 from .triple import Triple
 
-__all__ = [
-    "Settings",
-    "about_agent",
-    "entities",
-    "intent_bye",
-    "intent_hi",
-    "intent_play",
-    "is_question",
-    "lemmas",
-    "module",
-    "pos",
-    "question",
-    "tags",
-    "text",
-    "tokens",
-    "triples",
-    "yesno",
-]
-
 
 class Settings(rs.Settings):
     """The pipeline, and the agent's names."""

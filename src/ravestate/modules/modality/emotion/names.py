@@ -11,8 +11,6 @@ from ravestate.modules import interloc, rawio
 
 from .feeling import Feeling
 
-__all__ = ["Settings", "affectionate", "felt", "happy", "module", "sad", "shy", "surprised"]
-
 Probability = Annotated[float, Field(ge=0, le=1)]
 
 
