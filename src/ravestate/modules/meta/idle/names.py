@@ -9,8 +9,6 @@ from pydantic import Field
 import ravestate as rs
 from ravestate.modules import rawio
 
-__all__ = ["Settings", "asked", "bored", "hushed", "impatient", "module", "remarked", "unanswered"]
-
 Seconds = Annotated[float, Field(ge=0)]
 
 

@@ -99,7 +99,9 @@ class Router:
             if self._learnt is None:
                 with LOADING:
                     import_module("numpy")  # for all that follows
-                pairs = [(plain(q), topic.name) for topic in self.life.topics.values() for q in topic.questions]
+                pairs = [
+                    (plain(q), topic.name) for topic in self.life.topics.values() for q in topic.questions
+                ]
                 pairs += [(plain(q), OTHERS) for q in self.life.others]
                 self._learnt = _learnt(tuple(pairs), self._encoder)
 
