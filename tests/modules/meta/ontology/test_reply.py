@@ -62,7 +62,7 @@ def test_virtual_time_waits_for_it_and_says_for_what() -> None:
     task = loop.create_task(wait(Reply(future, "Memory.find")))  # type: ignore[arg-type]
 
     def finish() -> None:
-        assert loop.kept_by() == ["Memory.find"]
+        assert loop.running_functions() == ["Memory.find"]
         future.set_result(3)
 
     loop.call_soon(lambda: loop.call_soon(finish))

@@ -1,4 +1,4 @@
-"""Fill a pause: "Let me think…" when an answer takes its time."""
+"""Fillers: "Let me think…" when an answer takes its time."""
 
 from __future__ import annotations
 

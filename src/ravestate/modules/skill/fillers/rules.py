@@ -1,4 +1,4 @@
-"""When a pause is filled."""
+"""The rules: when a pause is filled."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ ENOUGH = 5.0
     background=True,
 )
 async def notice_no_answer(ctx: rs.RuleContext) -> None:
-    """Nobody is kept waiting, which `idle` would notice, but whoever answers has not said a word: say so."""
+    """Raise `impatient` when an answer runs long without output. `idle` sees only rules that are kept waiting."""
     await ctx.sleep(ctx.settings.unanswered_after)
     ctx.emit(idle.impatient)
 
@@ -39,7 +39,7 @@ def _silent(speaking: bool) -> bool:
     writes=(verbaliser.intent, filled, promised),
 )
 async def fill_the_pause(ctx: rs.RuleContext) -> rs.Resign | None:
-    """An answer takes its time, and nothing is being said."""
+    """Say a filler while nothing else is said."""
     last = ctx[filled]
     if last is not None and ctx.now - last < ENOUGH:
         return rs.Resign(f"a pause was filled {ctx.now - last:.1f} s ago")
