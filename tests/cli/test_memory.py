@@ -62,7 +62,7 @@ def test_a_type_is_listed_and_types_are_counted(file: Path, capsys: Capture) -> 
     assert code == 2 and errors == "ravestate memory: there is no type 'Persn'; did you mean 'Person'?\n"
 
 
-def test_somebody_is_shown_by_name_or_id(file: Path, capsys: Capture) -> None:
+def test_a_person_is_shown_by_name_or_id(file: Path, capsys: Capture) -> None:
     code, out, _ = call(capsys, "memory", "--path", str(file), "show", "ada ")
     first, *rest = out.splitlines()
     assert code == 0 and rest == ["  name: Ada", "  born: 1815-12-10", "  lives_in -> City London"]
@@ -94,7 +94,7 @@ def test_everything_is_exported_and_loaded(file: Path, folder: Path, capsys: Cap
     assert sorted(path.name for path in folder.iterdir()) == names
 
 
-def test_what_cannot_be_written_or_read(file: Path, folder: Path, capsys: Capture) -> None:
+def test_files_that_cannot_be_written_or_read(file: Path, folder: Path, capsys: Capture) -> None:
     before = sorted(folder.iterdir())
     code, _, errors = call(capsys, "memory", "--path", str(file), "export", "no/where.json")
     assert code == 2 and "cannot write no/where.json: No such file" in errors
@@ -119,7 +119,7 @@ def test_nobody_is_forgotten_without_a_yes(
     assert call(capsys, "memory", "--path", str(file), "show", "Ada")[0] == 0
 
 
-def test_somebody_is_forgotten(file: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_person_is_forgotten(file: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "stdin", io.StringIO("y\n"))
     code, out, _ = call(capsys, "memory", "--path", str(file), "forget", "Ada")
     assert code == 0 and out.endswith("forgot 2\n")
@@ -216,7 +216,7 @@ def test_the_place_may_be_named_behind_the_action_too(file: Path, folder: Path, 
         assert "there is no memory yet" not in call(capsys, "memory", *action, "--path", str(file))[2]
 
 
-def test_settings_that_are_none_of_memory_s_are_refused(file: Path, capsys: Capture) -> None:
+def test_settings_of_other_modules_are_refused(file: Path, capsys: Capture) -> None:
     code, out, errors = call(capsys, "memory", "--path", str(file), "--set", "foo.pth=x", "list")
     assert (code, out) == (2, "") and "--set foo.pth=x: module 'foo' is not part of this agent" in errors
     code, _, errors = call(capsys, "memory", "list", "--set", "ontology.pth=x")
@@ -251,7 +251,9 @@ def test_a_file_that_an_agent_has_open(file: Path, folder: Path, capsys: Capture
         process.stdin.close()
 
 
-def test_wrong_use_and_what_is_missing(file: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_wrong_use_and_a_missing_package(
+    file: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+) -> None:
     assert call(capsys, "memory")[0] == 2
     assert call(capsys, "memory", "lst")[0] == 2
     code, _, errors = call(capsys, "memory", "--set", "ontology.pth=x", "list")

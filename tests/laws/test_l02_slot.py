@@ -11,7 +11,7 @@ from ravestate.testing import simulate
 
 
 def heard_of(m: rs.Module, slot: rs.Slot[Any]) -> list[tuple[str, Any]]:
-    """What the signals of a slot will have said."""
+    """Declare a rule for each signal of a slot, and return the list in which they note name and payload."""
     heard: list[tuple[str, Any]] = []
     for signal in slot.signals:
         what = signal.name.rsplit(":", 1)[1]
@@ -59,7 +59,7 @@ def test_a_flag_signals_changed_and_its_new_value(play: Any) -> None:
         assert sorted(heard) == [("changed", False), ("false", False)]
 
 
-def test_a_collection_signals_what_came_and_what_went(play: Any) -> None:
+def test_a_collection_signals_added_and_removed_items(play: Any) -> None:
     m = rs.Module("m")
     people = m.collection("people")
     heard = heard_of(m, people)

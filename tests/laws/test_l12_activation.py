@@ -54,7 +54,7 @@ def test_several_activations_may_hold_a_spike_and_consent_lets_one_have_it(play:
 
 
 @pytest.mark.parametrize("writes", [True, False])
-def test_of_two_prompts_and_one_answer_the_older_prompt_is_answered(play: Any, writes: bool) -> None:
+def test_the_older_of_two_prompts_takes_the_only_answer(play: Any, writes: bool) -> None:
     m = rs.Module("m")
     prompt, answer = m.signal("prompt", payload=int), m.signal("answer", payload=str)
     out, answered = m.slot("out", ""), list[Any]()
@@ -84,7 +84,7 @@ def test_of_two_prompts_and_one_answer_the_older_prompt_is_answered(play: Any, w
 
 
 def utterances() -> tuple[rs.Module, rs.Slot[str], list[Any]]:
-    """`question & about_agent`, both raised from the words of an utterance."""
+    """Declare rules on `question & about_agent`, both raised from the words of an utterance."""
     m = rs.Module("m")
     text = m.slot("text", "", always=True)
     question, about = m.signal("question"), m.signal("about")
@@ -170,7 +170,7 @@ def test_a_detached_constraint_need_not_cohere(play: Any) -> None:
         assert seen == [("who?", "you!")]
 
 
-def test_who_loses_a_coherent_spike_takes_another_of_the_same_cause(play: Any) -> None:
+def test_an_activation_that_loses_a_coherent_spike_takes_another_of_the_same_cause(play: Any) -> None:
     m = rs.Module("m")
     i, question, about, seal = (
         m.signal("i"),
@@ -209,7 +209,7 @@ def test_spikes_of_groups_that_merge_join(play: Any, order: str) -> None:
         assert at_rest(sim)
 
 
-def test_an_older_activation_takes_what_a_merge_brings_together(play: Any) -> None:
+def test_an_older_activation_takes_the_spikes_that_a_merge_brings_together(play: Any) -> None:
     m = rs.Module("m")
     a, b, s0, s1, heard = m.signal("a"), m.signal("b"), m.signal("s0"), m.signal("s1"), list[Any]()
     emitter(m, "r0", b, s0)

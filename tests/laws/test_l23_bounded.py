@@ -1,4 +1,4 @@
-"""L23: every signal has an overflow policy; when everything has settled and aged, nothing is left."""
+"""L23: every signal has an overflow policy; nothing is left at rest; a loop without an end is fair to the rest."""
 
 import asyncio
 import gc
@@ -77,7 +77,7 @@ def test_every_signal_has_a_limit() -> None:
 
 
 def census() -> Counter[str]:
-    """The live objects of the engine, by kind."""
+    """Count the live objects of the engine, by kind."""
     gc.collect()
     kinds = (type(one) for one in gc.get_objects())
     return Counter(k.__qualname__ for k in kinds if str(k.__module__).startswith("ravestate.engine"))
@@ -107,7 +107,7 @@ def test_live_objects_return_to_their_number_at_rest() -> None:
         assert not {"Spike", "Activation", "Group", "Watch"} & set(counts[0])
 
 
-def test_what_is_forgotten_early_leaves_nothing_behind(play: Any) -> None:
+def test_a_wiped_signal_leaves_nothing_behind(play: Any) -> None:
     m = rs.Module("m")
     a, b, out = m.signal("a"), m.signal("b"), output(m)
     writer(m, "both", a.max_age(None) & b, out)
@@ -122,7 +122,7 @@ def test_what_is_forgotten_early_leaves_nothing_behind(play: Any) -> None:
 
 
 def endless(m: rs.Module, *stages: rs.Signal[Any], until: Callable[[], bool]) -> Counter[str]:
-    """Detached rules that raise each other's signals, until something is so, or 5,000 turns each; return their turns."""
+    """Declare a loop of detached rules, which ends when `until` is true or after 5,000 turns each; return the turns."""
     turns = Counter[str]()
 
     def add(signal: rs.Signal[Any], raised: rs.Signal[Any], name: str) -> None:
@@ -151,7 +151,7 @@ def test_a_loop_without_an_end_lets_the_rest_have_its_turn(play: Any, stages: in
         assert 1_000 <= turns.total() <= 1_010
 
 
-def test_what_waits_for_pressure_has_its_turn_beside_a_loop(play: Any) -> None:
+def test_a_rule_on_pressure_has_its_turn_beside_a_loop(play: Any) -> None:
     m = rs.Module("m")
     a, b, out, heard = m.signal("a"), m.signal("b"), output(m), list[Any]()
     turns = endless(m, a, until=lambda: bool(heard))
@@ -252,4 +252,4 @@ def test_inputs_from_outside_are_answered_while_a_loop_has_no_end() -> None:
         return answers
 
     assert asyncio.run(talk()) == ["answer"] * 2
-    assert 1_000 < turns.total() < 9_000  # it has not come to its end meanwhile
+    assert 1_000 < turns.total() < 9_000  # the loop still turns at the last answer

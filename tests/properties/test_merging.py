@@ -1,4 +1,4 @@
-"""Random worlds whose causal groups merge: no rule misses a spike for the order in which groups became one (L11, L12)."""
+"""Random worlds with merging groups: in no order of merging does a rule miss a spike (L11, L12)."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ GAPS = st.sampled_from([0.0, 0.0, 0.5])
 
 @st.composite
 def merging_worlds(draw: st.DrawFn) -> World:
-    """Worlds in which each signal occurs once: some inputs, and rules that each raise one signal of their own."""
+    """Generate worlds in which each signal occurs once: some inputs, and rules with one signal of their own each."""
     inputs = [f"s{n}" for n in range(draw(st.integers(2, 4)))]
     known, signals, slots = list(inputs), [SignalOf() for _ in inputs], list[SlotOf]()
     rules: list[RuleOf] = []

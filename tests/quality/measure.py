@@ -10,6 +10,7 @@ returns the results of sets that the module has itself.
 | `triples` | the triples, each (subject, predicate, object), as strings |
 | `questions`, `yesno`, `agentqa`, `emotions` | the label in the words of the set's file, `-` for none |
 | `genqa` | a `Reply`, or None for silence |
+
 """
 
 import argparse
@@ -173,10 +174,10 @@ def measure(name: str, function: Callable[[str], Any]) -> Result:
 
 def table(results: Iterable[Result]) -> str:
     """Return the results as a table with one share a line."""
-    lines = [f"{'set':<14} {'cases':>5}  {'':<22} {'share':>7}"]
+    lines = [f"{'set':<16} {'cases':>5}  {'':<22} {'share':>7}"]
     for result in results:
         for row, (what, share) in enumerate(result.shares.items()):
-            head = f"{result.name:<14} {result.cases:>5}" if row == 0 else " " * 20
+            head = f"{result.name:<16} {result.cases:>5}" if row == 0 else " " * 22
             lines.append(f"{head}  {what:<22} {share:>7.1%}")
     return "\n".join(lines)
 

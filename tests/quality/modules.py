@@ -1,4 +1,4 @@
-"""The modules as `measure.py` asks them: each function bears the name of a set."""
+"""The functions for `measure.py`; each has the name of a set."""
 
 from __future__ import annotations
 

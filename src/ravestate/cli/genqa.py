@@ -1,4 +1,4 @@
-"""``ravestate genqa``: the documents from which questions about the world are answered."""
+"""``ravestate genqa``: the documents that answer questions about the world."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ __all__ = ["add_arguments", "run"]
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """The command's options."""
+    """Add the command's options."""
     _add_index(parser)
     actions = parser.add_subparsers(dest="action", metavar="ACTION", required=True)
     indexing = actions.add_parser(
@@ -43,7 +43,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_index(parser: argparse.ArgumentParser, *, later: bool = False) -> None:
-    """The option that says which index; `later`, behind the name of an action, it leaves what was said before it."""
+    """Add the option for the index; `later`, after the name of an action, it keeps the value from before."""
     parser.add_argument(
         "--index",
         metavar="FILE",
@@ -53,10 +53,10 @@ def _add_index(parser: argparse.ArgumentParser, *, later: bool = False) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Carry the command out."""
+    """Run the command."""
     try:
         return _run(options)
-    except PlatformError as error:  # in an agent's words: here the index is named in another way
+    except PlatformError as error:  # its words are for an agent; here another option names the index
         said = str(error).removeprefix("genqa: ").replace("--set genqa.index=", "--index ")
         raise PlatformError(said) from error
 
@@ -81,7 +81,7 @@ def _run(options: argparse.Namespace) -> int:
 
 
 def _settings(index: str | None) -> Settings:
-    """The module's settings, as an agent without a file would have them."""
+    """Return the module's settings, as in an agent without a file."""
     from ravestate.modules.skill import genqa
     from ravestate.settings import load_settings
 
@@ -111,7 +111,7 @@ def _index(index: Index, paths: Iterable[str]) -> int:
 
 
 def _collected(found: Found, index: Index) -> Iterator[Outcome]:
-    """Collect, and show a person who watches how far it is, in bytes, and what is being read."""
+    """Collect the files, with a progress bar in bytes on a terminal."""
     from ravestate.modules.skill.genqa.collecting import collect
 
     try:

@@ -10,6 +10,8 @@ from __future__ import annotations
 import heapq
 from collections.abc import Sequence
 
+from ravestate.policy.components import components
+
 __all__ = ["STRONG", "feedback_arcs"]
 
 STRONG = 1 << 20
@@ -18,7 +20,10 @@ STRONG = 1 << 20
 
 def feedback_arcs(count: int, edges: Sequence[tuple[int, int, int]]) -> list[bool]:
     """Return for each edge (tail, head, weight) of a graph with `count` vertices whether to reverse it."""
-    component = _components(count, edges)
+    after: list[list[int]] = [[] for _ in range(count)]
+    for u, v, _ in edges:
+        after[u].append(v)
+    component = components(after).of
     inner = [i for i, (u, v, _) in enumerate(edges) if component[u] == component[v]]
     place = _peel(count, [edges[i] for i in inner])
     found = [False] * len(edges)
@@ -72,44 +77,3 @@ def _urgency(out: int, into: int) -> tuple[int, int]:
     if out < STRONG:
         return (2, out - into)
     return (4, into - out)
-
-
-def _components(count: int, edges: Sequence[tuple[int, int, int]]) -> list[int]:
-    """Return the strongly connected component of each vertex (Tarjan, without recursion)."""
-    after: list[list[int]] = [[] for _ in range(count)]
-    for u, v, _ in edges:
-        after[u].append(v)
-    number = [-1] * count
-    low = [0] * count
-    component = [-1] * count
-    open_: list[int] = []
-    counter = 0
-    for root in range(count):
-        if number[root] >= 0:
-            continue
-        number[root] = low[root] = counter
-        counter += 1
-        open_.append(root)
-        path = [(root, iter(after[root]))]
-        while path:
-            v, rest = path[-1]
-            for w in rest:
-                if number[w] < 0:
-                    number[w] = low[w] = counter
-                    counter += 1
-                    open_.append(w)
-                    path.append((w, iter(after[w])))
-                    break
-                if component[w] < 0:
-                    low[v] = min(low[v], number[w])
-            else:
-                path.pop()
-                if path:
-                    low[path[-1][0]] = min(low[path[-1][0]], low[v])
-                if low[v] == number[v]:
-                    while True:
-                        w = open_.pop()
-                        component[w] = v
-                        if w == v:
-                            break
-    return component

@@ -27,8 +27,8 @@ from ravestate.engine.activation import RUNNING, Activation
 from ravestate.policy.model import Clause, Need
 
 if TYPE_CHECKING:
+    from ravestate.engine.agenda import Agenda as Engine
     from ravestate.engine.group import Group
-    from ravestate.engine.waves import Waves as Engine
 
 __all__ = ["FIRM", "NO", "SPECULATIVE", "Horizon"]
 

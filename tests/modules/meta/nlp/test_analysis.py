@@ -1,4 +1,4 @@
-"""All together: whatever is said, something comes out, and always the same."""
+"""The whole analysis accepts any text."""
 
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st

@@ -42,7 +42,7 @@ words = st.sampled_from(
 
 
 @given(st.lists(words, max_size=60).map(" ".join) | st.text(max_size=100))
-def test_whatever_is_said_is_one_of_six_things(text: str) -> None:
+def test_every_text_has_one_of_six_values(text: str) -> None:
     assert yesno_of(text) in MEANINGS
 
 

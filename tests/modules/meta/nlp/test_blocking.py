@@ -1,4 +1,4 @@
-"""Packages can be hidden from one thread for a while."""
+"""A package can be blocked for one thread."""
 
 import importlib
 import sys
@@ -14,7 +14,7 @@ def not_imported(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delitem(sys.modules, "colorsys", raising=False)
 
 
-def test_it_cannot_be_imported_within_but_after() -> None:
+def test_a_blocked_package_can_be_imported_later() -> None:
     finders = list(sys.meta_path)
     with blocked("colorsys"), pytest.raises(ModuleNotFoundError, match="colorsys is blocked here"):
         importlib.import_module("colorsys")
@@ -22,7 +22,7 @@ def test_it_cannot_be_imported_within_but_after() -> None:
     assert sys.meta_path == finders
 
 
-def test_other_threads_see_it() -> None:
+def test_other_threads_can_import_it() -> None:
     found: list[object] = []
     with blocked("colorsys"):
         thread = threading.Thread(target=lambda: found.append(importlib.import_module("colorsys")))
@@ -31,7 +31,7 @@ def test_other_threads_see_it() -> None:
     assert len(found) == 1
 
 
-def test_what_is_imported_already_is_had() -> None:
+def test_an_imported_package_stays_available() -> None:
     imported = importlib.import_module("colorsys")
     with blocked("colorsys"):
         assert importlib.import_module("colorsys") is imported

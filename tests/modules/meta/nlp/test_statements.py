@@ -8,7 +8,7 @@ from ravestate.modules.meta.nlp.statements import MOST, triples_of
 
 
 @pytest.mark.parametrize("text", ["", "   ", "yes", "the red car", "?!", "Nice to meet you"])
-def test_what_states_nothing_has_no_triple(reader: Pipeline, text: str) -> None:
+def test_a_text_without_a_statement_has_no_triple(reader: Pipeline, text: str) -> None:
     assert triples_of(reader.read(text)[0]) == ()
 
 

@@ -1,4 +1,4 @@
-"""Writes until the file may not grow, and after: ``python full_disk.py FILE``. Prints one line of JSON."""
+"""Write until the file may not grow, and beyond; print one line of JSON: ``python full_disk.py FILE``."""
 
 import json
 import os

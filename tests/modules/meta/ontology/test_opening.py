@@ -1,4 +1,4 @@
-"""Where memory is, by the settings."""
+"""The settings choose the place of memory."""
 
 import sys
 from pathlib import Path
@@ -53,7 +53,7 @@ def test_a_users_home_may_be_written_short(monkeypatch: pytest.MonkeyPatch, tmp_
     assert (tmp_path / "m.lbug").is_file()
 
 
-def test_types_are_read_once_for_all_who_open_a_memory_and_again_when_a_file_changes(tmp_path: Path) -> None:
+def test_types_are_read_once_and_again_after_a_change(tmp_path: Path) -> None:
     own = tmp_path / "mine.yaml"
     own.write_text("Boat: {is: Thing}")
     settings = ontology.Settings(types=(own,))
@@ -67,7 +67,7 @@ def test_types_are_read_once_for_all_who_open_a_memory_and_again_when_a_file_cha
 @pytest.mark.parametrize(
     ("text", "why"), [("Person: {has: {x: nmber}}", "did you mean 'number'"), (None, "does not exist")]
 )
-def test_a_mistake_in_a_file_of_types_is_told_before_anything_runs(
+def test_an_error_in_a_file_of_types_shows_before_anything_runs(
     tmp_path: Path, text: str | None, why: str
 ) -> None:
     file = tmp_path / "types.yaml"

@@ -1,4 +1,4 @@
-"""Files of types: what they may say, and what is said of their mistakes."""
+"""Files of types: their content, and clear errors."""
 
 from __future__ import annotations
 
@@ -115,7 +115,7 @@ def test_the_types_that_come_with_it_are_complete() -> None:
         ("{[a]: b}", 1, "a name is a text, and this is a sequence"),
     ],
 )
-def test_mistakes_are_told_with_file_and_line(tmp_path: Path, text: str, line: int, said: str) -> None:
+def test_errors_name_file_and_line(tmp_path: Path, text: str, line: int, said: str) -> None:
     file = tmp_path / "0.yaml"
     with pytest.raises(DeclarationError) as caught:
         read(tmp_path, text)

@@ -1,4 +1,4 @@
-"""One thread keeps a store, and a file is kept once."""
+"""One thread uses a store, and a process opens a file once."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from ravestate.modules.meta.ontology.worker import StoreWorker
 
 
 class Recorder:
-    """A store that notes when it is opened, touched and closed, and by which thread."""
+    """A store that notes its calls and their threads."""
 
     def __init__(self, log: list[str]) -> None:
         self.log = log
@@ -39,7 +39,7 @@ def test_jobs_are_done_in_order_in_one_thread() -> None:
     assert len(threads.result()) == 1 and threading.get_ident() not in threads.result()
 
 
-def test_what_is_wrong_with_one_job_is_of_no_concern_to_others() -> None:
+def test_a_failing_job_does_not_affect_others() -> None:
     worker = StoreWorker("here", lambda: Recorder([]))  # type: ignore[arg-type, return-value]
     bad = worker.submit(lambda _: 1 / 0)
     good = worker.submit(lambda _: 3)
@@ -49,7 +49,7 @@ def test_what_is_wrong_with_one_job_is_of_no_concern_to_others() -> None:
     worker.release().result(20)
 
 
-def test_what_cannot_be_opened_fails_every_job() -> None:
+def test_a_failed_opening_fails_every_job() -> None:
     def fail() -> Any:
         raise PlatformError("no such thing")
 

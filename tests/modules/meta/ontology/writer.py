@@ -1,6 +1,6 @@
-"""Writes people to memory for ever, and says of each when it is acknowledged: ``python writer.py FILE [forget]``.
+"""Write people to memory without end, and print each acknowledged number: ``python writer.py FILE [forget]``.
 
-With ``forget`` the one before is forgotten each time, before that is said.
+With ``forget``, forget the previous person before each number.
 """
 
 import sys

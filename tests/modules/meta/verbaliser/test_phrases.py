@@ -143,7 +143,7 @@ def test_braces_can_be_said() -> None:
         ),
     ],
 )
-def test_what_cannot_be_said(intent: str, parameters: dict[str, object], message: str) -> None:
+def test_impossible_intents(intent: str, parameters: dict[str, object], message: str) -> None:
     found = PhraseBook({"greet": {"en": ["Hi {name}!"]}, "only": {"fr": ["Oui."]}}, language="de-AT")
     with pytest.raises(RuleError, match=f"(?s){message}"):
         found.choose(intent, parameters, random.Random())
@@ -188,7 +188,7 @@ def test_what_cannot_be_said(intent: str, parameters: dict[str, object], message
         ("a: hi {x!r:>3}", 1, "{x!r:>3} is no parameter"),
     ],
 )
-def test_a_mistake_is_told_with_file_and_line(tmp_path: Path, text: str, line: int, message: str) -> None:
+def test_errors_name_file_and_line(tmp_path: Path, text: str, line: int, message: str) -> None:
     with pytest.raises(DeclarationError, match=f"(?s)phrases1.yaml:{line}: .*(?:{message})"):
         book(tmp_path, BASE, text)
 

@@ -3,6 +3,6 @@
 from __future__ import annotations
 
 from . import rules
-from .names import Settings, asked, bored, hushed, impatient, module, unanswered
+from .names import Settings, asked, bored, hushed, impatient, module, remarked, unanswered
 
-__all__ = ["Settings", "asked", "bored", "hushed", "impatient", "module", "rules", "unanswered"]
+__all__ = ["Settings", "asked", "bored", "hushed", "impatient", "module", "remarked", "rules", "unanswered"]

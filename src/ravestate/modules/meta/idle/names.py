@@ -9,8 +9,6 @@ from pydantic import Field
 import ravestate as rs
 from ravestate.modules import rawio
 
-__all__ = ["Settings", "asked", "bored", "hushed", "impatient", "module", "unanswered"]
-
 Seconds = Annotated[float, Field(ge=0)]
 
 
@@ -23,8 +21,8 @@ class Settings(rs.Settings):
     """Seconds of silence after a question of the agent's, if that is longer."""
     writing_time: Seconds = 20.0
     """Seconds of silence after the last key of an unsent line."""
-    bored_times: Annotated[int, Field(ge=0)] = 2
-    """How often in a row the agent is bored without a word or a key from the user."""
+    remarks: Annotated[int, Field(ge=0)] = 2
+    """The most remarks in a row that the agent makes out of boredom without a word or a key from the user."""
     impatient_after: Seconds = 1.0
     """Seconds that a ready rule waits before the agent is impatient."""
 
@@ -34,8 +32,8 @@ module = rs.Module("idle", requires=[rawio], settings=Settings)
 bored = module.signal("bored")
 """Nothing happens for ``bored_after`` seconds: once for each silence, the first after startup included.
 
-A rule that acts on it ends the silence. After ``bored_times`` in a row, after a wish for quiet and after a goodbye, the
-agent stays quiet until the user speaks again.
+A rule that acts on it ends the silence. After ``remarks`` unanswered remarks, after a wish for quiet and after a goodbye,
+the agent stays quiet until the user speaks again.
 """
 
 hushed = module.signal("hushed")
@@ -47,5 +45,8 @@ impatient = module.signal("impatient")
 asked: rs.Slot[str] = module.slot("asked", "")
 """The question at the end of the agent's last utterance; empty without one."""
 
+remarked: rs.Slot[bool] = module.slot("remarked", True)
+"""Whether the agent has spoken since it was last bored."""
+
 unanswered: rs.Slot[int] = module.slot("unanswered", 0)
-"""The number of times that `bored` was raised since the user last said or wrote something."""
+"""The remarks that the agent has made out of boredom since the user last said or wrote something."""

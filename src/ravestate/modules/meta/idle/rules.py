@@ -5,14 +5,14 @@ from __future__ import annotations
 import ravestate as rs
 from ravestate.modules import rawio
 
-from .names import Settings, asked, bored, hushed, impatient, module, unanswered
+from .names import Settings, asked, bored, hushed, impatient, module, remarked, unanswered
 from .words import asks_for_quiet, last_question, takes_leave
 
 
 @module.rule(
     when=rs.activity.false.max_age(None) | rs.startup.detached(),
     reads=(rs.activity, rawio.input, asked, unanswered),
-    writes=unanswered,
+    writes=remarked,
     emits=bored,
     until=rs.activity.true | rawio.typing,
     detached=True,
@@ -25,28 +25,29 @@ async def notice_silence(ctx: rs.RuleContext) -> rs.Resign | None:
         return rs.Resign("there is something to do")
     if asks_for_quiet(ctx[rawio.input]) or takes_leave(ctx[rawio.input]):
         return rs.Resign("the user wants quiet")
-    if ctx[unanswered] >= settings.bored_times:
-        return rs.Resign("the user has answered nothing lately")
+    if ctx[unanswered] >= settings.remarks:
+        return rs.Resign("the user has not answered the last remarks")
     await ctx.sleep(max(settings.bored_after, settings.answer_time if ctx[asked] else 0.0))
-    ctx[unanswered] += 1
+    ctx[remarked] = False
     ctx.emit(bored)
     return None
 
 
 @module.rule(
     when=rawio.input.changed.detached() | rawio.typing.detached() | rawio.picture.changed.detached(),
-    writes=unanswered,
+    writes=(remarked, unanswered),
     detached=True,
     background=True,
 )
 async def notice_user(ctx: rs.RuleContext) -> None:
-    """Begin to count again: the user is there."""
+    """Count remarks from zero again: the user is there."""
+    ctx[remarked] = True
     ctx[unanswered] = 0
 
 
 @module.rule(
     when=rawio.typing.max_age(None),
-    writes=unanswered,
+    writes=remarked,
     emits=bored,
     until=rs.activity.true | rawio.typing | rawio.input.changed,
     detached=True,
@@ -55,7 +56,7 @@ async def notice_user(ctx: rs.RuleContext) -> None:
 async def notice_unfinished_line(ctx: rs.RuleContext) -> None:
     """Emit `bored` if the user stops in the middle of a line."""
     await ctx.sleep(max(ctx.settings.bored_after, ctx.settings.writing_time))
-    ctx[unanswered] = 1
+    ctx[remarked] = False
     ctx.emit(bored)
 
 
@@ -82,10 +83,13 @@ def _has_words(text: str) -> bool:
 
 @module.rule(
     when=rawio.output.changed.where(_has_words).max_age(None).detached(),
-    writes=asked,
+    writes=(asked, remarked, unanswered),
     detached=True,
     background=True,
 )
 async def notice_question(ctx: rs.RuleContext) -> None:
-    """Note the agent's question; its answer gets more time."""
+    """Note the agent's question, whose answer gets more time; count the first words after boredom as a remark."""
     ctx[asked] = last_question(ctx.payload(rawio.output.changed))
+    if not ctx[remarked]:
+        ctx[remarked] = True
+        ctx[unanswered] += 1

@@ -1,4 +1,4 @@
-"""What the pipeline reads in place of the text: as long as it, character for character, but easier to read."""
+"""Prepare a text for the pipeline; every character keeps its position."""
 
 from __future__ import annotations
 
@@ -7,10 +7,9 @@ import re
 __all__ = ["READ_AS", "preprocess"]
 
 READ_AS = {"have": "like"}
-"""Words of the copy that stand for others of the text, as lemmas. *like* is taken for a preposition all too often, in
-short sentences above all; another verb in its place is not."""
+"""Replaced lemmas. The small pipelines often take *like* for a preposition in short sentences; they know *have*."""
 
-# Control characters, and halves of characters, which cannot be encoded.
+# Control characters, and surrogates, which cannot be encoded.
 _UNREADABLE = dict.fromkeys((*range(0x20), *range(0x7F, 0xA0), *range(0xD800, 0xE000)), " ")
 _LIKES = re.compile(
     r"\b(?:i|you|we|they|who|to|really|also|always|never|(?:do|does|did|would|will|can) not|would|do|does|both|most people|"
@@ -26,7 +25,7 @@ _LIKES = re.compile(
 
 
 def preprocess(text: str) -> str:
-    """Return the copy of `text`.
+    """Return `text` with replaced words, as long as before.
 
     Example:
         >>> preprocess("do you like\\x00it?")

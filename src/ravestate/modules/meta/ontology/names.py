@@ -13,8 +13,6 @@ from ravestate.errors import RavestateError
 
 from .memory import Memory
 
-__all__ = ["Settings", "memory", "module"]
-
 
 class Settings(rs.Settings):
     """The place of memory, and the types of its nodes."""

@@ -22,8 +22,8 @@ from importlib.resources.abc import Traversable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ravestate.errors import DeclarationError, PlatformError, nearest
-from ravestate.yaml_text import compose_yaml
+from ravestate.errors import DeclarationError, nearest
+from ravestate.modules._yaml import fault, kind_of, line_of, read_nodes
 
 from .types import KINDS, Kind, Relating, Type, Types
 
@@ -46,7 +46,7 @@ def read_types(paths: Iterable[Path | Traversable]) -> Types:
     """
     reader = _Reader()
     for file in paths:
-        reader.read(str(file), _text_of_file(file))
+        reader.read(str(file), read_nodes(file, "file of types"))
     return reader.finish()
 
 
@@ -88,18 +88,17 @@ class _Reader:
         self._kinds: dict[tuple[bool, str], tuple[str, Kind, str]] = {}
         """The spelling, kind and line of each property, of types (False) and relations (True)."""
 
-    def read(self, file: str, text: str) -> None:
-        root = compose_yaml(text, file)
+    def read(self, file: str, root: yaml.Node | None) -> None:
         if root is None:
             return
         for key, name, body in _entries(file, root, "a file of types maps types to what they have"):
             self._name(file, key, name, self._has, self._ends)
             self._has.setdefault(name, {})
-            if _kind(body) == "scalar" and not body.value:
+            if kind_of(body) == "scalar" and not body.value:
                 continue  # a type without parts
             for part_key, part, value in _entries(file, body, f"{name} has keys and values"):
                 if part not in OF_A_TYPE:
-                    raise _fault(
+                    raise fault(
                         file,
                         part_key,
                         f"{name} has no {part!r}{nearest(part, OF_A_TYPE)} (a type has: {', '.join(OF_A_TYPE)})",
@@ -146,31 +145,31 @@ class _Reader:
         parent = _text(file, node, f"the parent of {name} is one type")
         said = self._parents.get(name)
         if said is not None and said[0] != parent:
-            raise _fault(file, node, f"{name} is a {said[0]} already ({said[1]}), and has one parent")
-        self._parents[name] = (parent, _place(file, node))
+            raise fault(file, node, f"{name} is a {said[0]} already ({said[1]}), and has one parent")
+        self._parents[name] = (parent, line_of(file, node))
 
     def _add_relations(self, file: str, source: str, node: yaml.Node) -> None:
         for key, name, value in _entries(file, node, "relations map names to types"):
             self._name(file, key, name, self._ends, self._has)
             properties = self._relation_has.setdefault(name, {})
             targets = value
-            if _kind(value) == "mapping":
+            if kind_of(value) == "mapping":
                 parts = {part: (part_key, body) for part_key, part, body in _entries(file, value, name)}
                 for part, (part_key, _) in parts.items():
                     if part not in OF_A_RELATION:
-                        raise _fault(
+                        raise fault(
                             file,
                             part_key,
                             f"{name} has no {part!r}{nearest(part, OF_A_RELATION)} (a relation has: to, has)",
                         )
                 if "to" not in parts:
-                    raise _fault(file, key, f"{name} leads nowhere: write {name}: {{to: Thing}}")
+                    raise fault(file, key, f"{name} leads nowhere: write {name}: {{to: Thing}}")
                 targets = parts["to"][1]
                 if "has" in parts:
                     self._add_properties(file, parts["has"][1], name, properties, relation=True)
             ends = self._ends.setdefault(name, {})
-            for item in targets.value if _kind(targets) == "sequence" else [targets]:
-                ends.setdefault((source, _text(file, item, f"{name} goes to types")), _place(file, item))
+            for item in targets.value if kind_of(targets) == "sequence" else [targets]:
+                ends.setdefault((source, _text(file, item, f"{name} goes to types")), line_of(file, item))
 
     def _add_properties(
         self, file: str, node: yaml.Node, owner: str, into: dict[str, Kind], *, relation: bool
@@ -178,20 +177,20 @@ class _Reader:
         for key, name, value in _entries(file, node, f"{owner} has properties by name"):
             _check_name(file, key, name, "property")
             if name.lower() == "id":
-                raise _fault(file, key, f"{owner}.{name}: every node has an id already; choose another name")
+                raise fault(file, key, f"{owner}.{name}: every node has an id already; choose another name")
             kind = _text(file, value, f"{owner}.{name} has a kind")
             found: Kind | None = next((known for known in KINDS if known == kind), None)
             if found is None:
-                raise _fault(
+                raise fault(
                     file,
                     value,
                     f"{owner}.{name}: {kind!r} is no kind{nearest(kind, KINDS)} (kinds: {', '.join(KINDS)})",
                 )
             spelt, known, where = self._kinds.setdefault(
-                (relation, name.lower()), (name, found, _place(file, key))
+                (relation, name.lower()), (name, found, line_of(file, key))
             )
             if (spelt, known) != (name, found):
-                raise _fault(
+                raise fault(
                     file,
                     key,
                     f"{owner}.{name} is {found}, and {spelt} is {known} at {where}: choose another name",
@@ -205,39 +204,21 @@ class _Reader:
         _check_name(file, node, name, "type or relation")
         for other in (*among, *others):
             if other.lower() == name.lower() and (other != name or other in others):
-                raise _fault(
+                raise fault(
                     file,
                     node,
                     f"{name} and {other} ({self._places[other]}) are too much alike: a type and a relation, or names that differ "
                     "by capitals alone",
                 )
-        self._places.setdefault(name, _place(file, node))
+        self._places.setdefault(name, line_of(file, node))
 
 
 # ------------------------------------------------------------------------------------- YAML
 
 
-def _text_of_file(file: Path | Traversable) -> str:
-    try:
-        return file.read_text(encoding="utf-8")
-    except FileNotFoundError as error:
-        near = ""
-        if isinstance(file, Path) and file.parent.is_dir():
-            near = nearest(file.name, [other.name for other in file.parent.iterdir()])
-        raise PlatformError(f"the file of types {str(file)!r} does not exist{near}") from error
-    except OSError as error:
-        raise PlatformError(
-            f"the file of types {str(file)!r} cannot be read: {error.strerror or error}"
-        ) from error
-    except UnicodeDecodeError as error:
-        raise DeclarationError(
-            f"{file}: this is no text in UTF-8 ({error.reason} at byte {error.start})"
-        ) from None
-
-
 def _entries(file: str, node: yaml.Node, meaning: str) -> Iterator[tuple[yaml.Node, str, yaml.Node]]:
-    if _kind(node) != "mapping":
-        raise _fault(
+    if kind_of(node) != "mapping":
+        raise fault(
             file,
             node,
             f"{meaning}, and this is no mapping: write for example\nBoat:\n  has: {{length: number}}",
@@ -246,33 +227,21 @@ def _entries(file: str, node: yaml.Node, meaning: str) -> Iterator[tuple[yaml.No
     for key, value in node.value:
         name = _text(file, key, "a name is a text")
         if name in seen:
-            raise _fault(file, key, f"{name} is here twice: write it once, with all of its parts")
+            raise fault(file, key, f"{name} is here twice: write it once, with all of its parts")
         seen.add(name)
         yield key, name, value
 
 
 def _text(file: str, node: yaml.Node, meaning: str) -> str:
-    if _kind(node) != "scalar":
-        raise _fault(file, node, f"{meaning}, and this is a {_kind(node)}")
+    if kind_of(node) != "scalar":
+        raise fault(file, node, f"{meaning}, and this is a {kind_of(node)}")
     return str(node.value)
 
 
 def _check_name(file: str, node: yaml.Node, name: str, what: str) -> None:
     if not NAME.fullmatch(name):
-        raise _fault(
+        raise fault(
             file,
             node,
             f"{name!r} is not a name for a {what}: use at most 63 letters from A to Z, digits and '_', and begin with a letter",
         )
-
-
-def _kind(node: yaml.Node) -> str:
-    return str(getattr(node, "id", ""))
-
-
-def _place(file: str, node: yaml.Node) -> str:
-    return f"{file}:{node.start_mark.line + 1}"
-
-
-def _fault(file: str, node: yaml.Node, problem: str) -> DeclarationError:
-    return DeclarationError(f"{_place(file, node)}: {problem}")

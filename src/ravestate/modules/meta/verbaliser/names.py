@@ -9,8 +9,6 @@ from ravestate.modules import rawio
 
 from .intents import Intent
 
-__all__ = ["Settings", "intent", "last", "module"]
-
 
 class Settings(rs.Settings):
     """The language of the agent, and its phrases."""

@@ -33,8 +33,8 @@ from pathlib import Path
 
 import yaml
 
-from ravestate.errors import DeclarationError, PlatformError, RuleError, nearest
-from ravestate.yaml_text import compose_yaml
+from ravestate.errors import DeclarationError, RuleError, nearest
+from ravestate.modules._yaml import fault, kind_of, read_nodes
 
 __all__ = ["Phrase", "PhraseBook", "Template"]
 
@@ -112,7 +112,7 @@ class PhraseBook:
         book = cls({}, language=language, default_language=default_language)
         for source in sources:
             file = Path(source).expanduser() if isinstance(source, str) else source
-            book._merge(str(source), _read(file))
+            book._merge(str(source), read_nodes(file, "file of phrases"))
         return book
 
     @property
@@ -189,13 +189,12 @@ class PhraseBook:
 
     # ------------------------------------------------------------------------------- internals
 
-    def _merge(self, name: str, text: str) -> None:
-        root = compose_yaml(text, name)
+    def _merge(self, name: str, root: yaml.Node | None) -> None:
         if root is None:
             return
         for key, languages in _entries(name, root, "a file of phrases maps intents to languages"):
             intent = self._phrases.setdefault(_text_of(name, key, "an intent is a text"), {})
-            if _kind(languages) != "mapping":  # without a language: the default one
+            if kind_of(languages) != "mapping":  # without a language: the default one
                 self._put(name, intent, self.default_language, languages)
                 continue
             for tag, phrases in _entries(name, languages, "an intent maps languages to phrases"):
@@ -203,18 +202,18 @@ class PhraseBook:
 
     def _put(self, name: str, intent: dict[str, tuple[Template, ...]], tag: str, node: yaml.Node) -> None:
         added = _added(name, node)
-        items: list[yaml.Node] = node.value if _kind(node) == "sequence" else [node]
+        items: list[yaml.Node] = node.value if kind_of(node) == "sequence" else [node]
         templates: list[Template] = []
         for item in items:
             text = _text_of(name, item, "a phrase is a text").strip()
             if not text:
-                raise _fault(name, item, "a phrase is empty")
+                raise fault(name, item, "a phrase is empty")
             try:
                 templates.append(_template(text))
             except DeclarationError as error:
-                raise _fault(name, item, str(error)) from None
+                raise fault(name, item, str(error)) from None
         if not templates:
-            raise _fault(name, node, "there are no phrases; leave the language out, or write some")
+            raise fault(name, node, "there are no phrases; leave the language out, or write some")
         before = intent.get(tag, ()) if added else ()
         intent[tag] = (*before, *templates)
 
@@ -262,60 +261,34 @@ def _template(text: str) -> Template:
 # ------------------------------------------------------------------------------------- YAML
 
 
-def _read(file: Path | Traversable) -> str:
-    try:
-        return file.read_text(encoding="utf-8")
-    except FileNotFoundError as error:
-        near = ""
-        if isinstance(file, Path) and file.parent.is_dir():
-            near = nearest(file.name, [other.name for other in file.parent.iterdir()])
-        raise PlatformError(f"the file of phrases {str(file)!r} does not exist{near}") from error
-    except OSError as error:
-        raise PlatformError(
-            f"the file of phrases {str(file)!r} cannot be read: {error.strerror or error}"
-        ) from error
-    except UnicodeDecodeError as error:
-        raise DeclarationError(
-            f"{file}: this is no text in UTF-8 ({error.reason} at byte {error.start})"
-        ) from None
-
-
-def _kind(node: yaml.Node) -> str:
-    return str(getattr(node, "id", ""))
-
-
-def _fault(name: str, node: yaml.Node, problem: str) -> DeclarationError:
-    return DeclarationError(f"{name}:{node.start_mark.line + 1}: {problem}")
-
-
 def _added(name: str, node: yaml.Node) -> bool:
     tag = str(node.tag)
     if tag.startswith("!") and tag != "!add":
-        raise _fault(name, node, f"the only tag there is is !add, not {tag}{nearest(tag, ['!add'])}")
+        raise fault(name, node, f"the only tag there is is !add, not {tag}{nearest(tag, ['!add'])}")
     return tag == "!add"
 
 
 def _entries(name: str, node: yaml.Node, meaning: str) -> Iterator[tuple[yaml.Node, yaml.Node]]:
-    if _kind(node) != "mapping":
-        raise _fault(
+    if kind_of(node) != "mapping":
+        raise fault(
             name, node, f"{meaning}, and this is no mapping: write for example\ngreet:\n  en: [Hello!]"
         )
     if _added(name, node):
-        raise _fault(name, node, "!add goes in front of phrases: write en: !add [...]")
+        raise fault(name, node, "!add goes in front of phrases: write en: !add [...]")
     seen: set[str] = set()
     for key, value in node.value:
-        if _kind(key) == "scalar":
+        if kind_of(key) == "scalar":
             if key.value in seen:
-                raise _fault(name, key, f"{key.value!r} is here a second time")
+                raise fault(name, key, f"{key.value!r} is here a second time")
             seen.add(key.value)
         yield key, value
 
 
 def _text_of(name: str, node: yaml.Node, meaning: str) -> str:
-    if _kind(node) != "scalar":
-        raise _fault(
+    if kind_of(node) != "scalar":
+        raise fault(
             name,
             node,
-            f"{meaning}, and this is a {_kind(node)}; put quotes around a text that has : or begins with braces",
+            f"{meaning}, and this is a {kind_of(node)}; put quotes around a text that has : or begins with braces",
         )
     return str(node.value)

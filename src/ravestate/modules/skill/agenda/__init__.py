@@ -1,4 +1,4 @@
-"""What the agent wants: goals that it pursues when nothing else happens, and drops when they are reached."""
+"""Goals of the agent: it pursues them in a silence, and drops them when they are reached."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Conditions, rewritten: one that only looks, one that holds when another does not."""
+"""Conditions derived from others: detached ones, and negated ones."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ __all__ = ["negated", "watching"]
 
 
 def watching(condition: Condition) -> Condition:
-    """Return the condition with all its constraints detached, so that it consumes nothing and excludes nobody."""
+    """Return the condition with all its constraints detached, so that it consumes nothing."""
     match condition:
         case rs.Signal():
             return condition.max_age(None).detached()
@@ -26,10 +26,10 @@ def watching(condition: Condition) -> Condition:
 
 
 def negated(condition: Condition) -> Condition:
-    """Return what holds when the condition, which is made of ``slot.holds(...)`` alone, does not.
+    """Return the negation of a condition that consists of ``slot.holds(...)`` alone.
 
     Raises:
-        rs.DeclarationError: There is a signal in it, of which nobody can say that it will not come.
+        rs.DeclarationError: The condition has a signal, which cannot be negated.
     """
     match condition:
         case Holds(slot, predicate):

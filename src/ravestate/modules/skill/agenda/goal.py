@@ -1,4 +1,4 @@
-"""Declaring a goal: it is an ordinary rule of its module, and another one or two that end it."""
+"""The declaration of a goal: an ordinary rule of its module, and one or two more that end it."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ __all__ = ["Goal", "goal"]
 Words = str | Iterable[str] | Callable[[rs.RuleContext], str | Awaitable[str]]
 
 MOMENT = 1.0
-"""Seconds for which an opportunity lasts: what must hold for a goal is to hold then."""
+"""Seconds for which an opportunity lasts."""
 
 LONGEST = 1000
 """Characters of the user's words that are searched."""
@@ -32,13 +32,13 @@ LONGEST = 1000
 
 @dataclass(frozen=True, slots=True)
 class Goal:
-    """A goal that was declared.
+    """A declared goal.
 
     Attributes:
-        name: The name of its rule, ``module:name``, under which `agenda.goals` has its state.
+        name: The name of its rule, ``module:name``; `agenda.goals` has its state under this name.
         rule: The rule that pursues it; it retires when the goal is over.
-        pursued: It has just been pursued. A constraint for rules of one's own, such as
-            ``when=offer.pursued.max_age(60) & rawio.input.changed``: the user's answer to it.
+        pursued: A constraint for your own rules: the goal has just been pursued. Example:
+            ``when=offer.pursued.max_age(60) & rawio.input.changed`` is the user's answer to it.
     """
 
     name: str
@@ -46,7 +46,7 @@ class Goal:
     pursued: Constraint
 
     def state(self, agent: rs.Context | Any) -> GoalState:
-        """How it stands with the goal in an agent: a context, or a simulation."""
+        """Return the state of the goal in an agent: a context, or a simulation."""
         return agent.read(goals).get(self.name, OPEN)
 
 
@@ -65,32 +65,32 @@ def goal(
     refused: Condition | str | None = None,
     tries: int = 2,
 ) -> Goal:
-    """Declare something that the agent wants.
+    """Declare a goal of the agent.
 
-    It is pursued, by saying something, when the agent is bored and no other goal has just had its turn. It is over when
-    `done` or `refused` comes, or after the last try. What the user says always goes first: it ends a pursuit that is
-    being worded, and takes the opportunity away.
+    The agent pursues it by saying something, when it is bored and no other goal has just had its turn. The goal is over
+    when `done` or `refused` comes, or after the last try. The user goes first: their words interrupt a pursuit, and
+    take the opportunity away.
 
-    The rule is ``module:name``. What a rule can do for you, such as ``sim.explain("module:name")``, a goal can.
+    The goal is a rule, ``module:name``, so ``sim.explain("module:name")`` explains it.
 
     Args:
-        module: Whose goal it is; it must require `agenda`.
-        name: Its name within the module.
-        say: What to say: a text; several, one for each try in turn; or a function of the rule context that returns one,
-            which may be async, and take its time.
-        intent: What to mean, instead; the verbaliser words it.
+        module: The goal's module; it must require `agenda`.
+        name: The name within the module.
+        say: The words: a text; several, one for each try in turn; or a function of the rule context that returns one,
+            which may be async, and slow.
+        intent: An intent for the verbaliser, instead of `say`.
         reads: The slots that the function reads.
-        when: What else must hold or have happened, e.g. ``interloc.users.holds(bool)``.
-        unless: What must not hold: a condition of ``slot.holds(...)`` alone.
-        priority: Factor on the utility (L9); of two goals for the same opportunity the one of greater utility goes first.
-        cooldown: Seconds until it may be tried again; also the time that an answer to it has.
-        done: A signal or condition that means success, whenever it comes; or a regular expression, of whole words, for
-            what the user says after a try. Without it, to have said it is all.
-        refused: The same for the user's "no": the goal is dropped.
-        tries: How often it is tried before it is dropped.
+        when: A further condition, e.g. ``interloc.users.holds(bool)``.
+        unless: A condition that prevents it: ``slot.holds(...)`` alone.
+        priority: A factor on the utility (L9); the goal of greater utility goes first.
+        cooldown: Seconds until the next try; also the time for an answer.
+        done: Success, whenever it comes: a signal, a condition, or a regular expression of whole words for the user's
+            answer. Without it, one try is a success.
+        refused: The user's "no", in the same forms: the goal is dropped.
+        tries: The number of tries before the goal is dropped.
 
     Raises:
-        rs.DeclarationError: Neither or both of `say` and `intent`, a number that is none, a faulty expression.
+        rs.DeclarationError: Neither or both of `say` and `intent`, an impossible number, or a faulty expression.
 
     Example:
         >>> import ravestate as rs
@@ -128,9 +128,9 @@ def goal(
         when=condition | goals.changed.where(is_over).detached(),
         reads=reads,
         writes=(rawio.output, goals) if intent is None else (verbaliser.intent, rawio.output, goals),
-        weight=priority,  # and no cooldown: it rests by resigning, whether or not there is a rival
+        weight=priority,  # and no cooldown option: the goal rests by resigning, with or without a rival
         until=rawio.input.changed | goals.changed.where(is_over),  # it may be reached while it is worded
-        detached=True,  # an answer to it may be answered: what comes of it begins a new causal group
+        detached=True,  # an answer to it may be answered: it begins a new causal group
         name=name,
     )
     async def pursue(ctx: rs.RuleContext) -> rs.Resign | rs.Retire | None:
@@ -185,7 +185,7 @@ def goal(
 
 
 async def _worded(ctx: rs.RuleContext, say: Any, tries: int) -> str:
-    """What to say at a try; `tries` were made before."""
+    """Return the words for a try; `tries` were made before."""
     if not callable(say):
         return say[min(tries, len(say) - 1)]
     words: Any = say(ctx)
@@ -195,9 +195,9 @@ async def _worded(ctx: rs.RuleContext, say: Any, tries: int) -> str:
 def _condition(
     event: Condition | str, words: re.Pattern[str] | None, unless: re.Pattern[str] | None
 ) -> Condition:
-    """What ends a goal, as a condition that consumes nothing."""
+    """Return the condition that ends a goal; it consumes nothing."""
     if words is None:
-        assert not isinstance(event, str)  # else there were words
+        assert not isinstance(event, str)  # a text has become `words`
         return watching(event)
 
     def says_so(text: str) -> bool:

@@ -1,4 +1,4 @@
-"""What the agent wants: goals that it pursues when nothing else happens, and drops when they are reached."""
+"""The module, its settings, slots and signals."""
 
 from __future__ import annotations
 
@@ -14,22 +14,22 @@ from .wish import Wish, without_twins
 
 
 class Settings(rs.Settings):
-    """When the agent may take the initiative, and goals of which only the words are told."""
+    """When the agent may take the initiative, and goals that need no code."""
 
     gap: Annotated[float, Field(ge=0)] = 15.0
-    """Seconds from the pursuit of one goal to that of the next, however bored the agent is."""
+    """Seconds from the pursuit of one goal to the next."""
     goals: Annotated[tuple[Wish, ...], without_twins] = ()
-    """Goals of one's own: each with its name and what to say for it."""
+    """Goals of your own: a name, and what to say."""
 
 
 module = rs.Module("agenda", requires=[rawio, idle, verbaliser], settings=Settings)
 
 opportunity = module.signal("opportunity", payload=float)
-"""Nobody is busy, and the last goal is long enough ago: one goal may be pursued. The payload is the time (seconds)."""
+"""One goal may be pursued: nobody is busy, and the last goal is long enough ago. The payload is the time (seconds)."""
 
 goals: rs.Collection[GoalState] = module.collection("goals")
-"""How it stands with each goal that was pursued, reached or dropped, by the name of its rule."""
+"""The state of each goal that was pursued, reached or dropped, by the name of its rule."""
 
 topics: rs.Collection[str] = module.collection("topics", input=True)
-"""What the talk is about. While there is anything, no goal is pursued: a skill that begins something adds its name, and
+"""The topics of the talk. While there is one, no goal is pursued. A skill adds a name when it begins something, and
 removes it at the end."""

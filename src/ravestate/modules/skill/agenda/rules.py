@@ -1,4 +1,4 @@
-"""When the agent may take the initiative."""
+"""The rules: when the agent takes the initiative."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from .names import Settings, goals, module, opportunity, topics
 
 @module.rule(when=idle.bored, reads=(goals, topics), emits=opportunity)
 async def take_initiative(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Nothing happens: let one goal be pursued, unless another has just had its turn, or the talk has a topic."""
+    """Allow one goal, unless another has just had its turn, or the talk has a topic."""
     if ctx[topics]:
         return rs.Resign(f"the talk is about {', '.join(ctx[topics])}")
     for name, state in ctx[goals].items():
@@ -24,7 +24,7 @@ async def take_initiative(ctx: rs.RuleContext) -> rs.Resign | None:
 
 @module.rule(when=rawio.input.changed.max_age(None).detached(), background=True)
 async def yield_to_the_user(ctx: rs.RuleContext) -> None:
-    """The user speaks: whatever was about to be pursued is not."""
+    """Take the opportunity away when the user speaks."""
     ctx.wipe(opportunity)
 
 
@@ -32,7 +32,7 @@ async def yield_to_the_user(ctx: rs.RuleContext) -> None:
 def adopt_wishes(ctx: rs.RuleContext) -> None:
     """Add the goals from the settings to this context, and to no other that shares the policy.
 
-    In a thread: each rule costs the loop some milliseconds, and others are to have their turn between two.
+    It runs in a thread, because each rule costs the loop some milliseconds.
     """
     settings: Settings = ctx.settings
     own = rs.Module(module.name)

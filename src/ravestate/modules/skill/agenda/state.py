@@ -1,4 +1,4 @@
-"""How it stands with a goal."""
+"""The state of a goal."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ Status = Literal["open", "pursued", "done", "dropped"]
 
 @dataclass(frozen=True, slots=True)
 class GoalState:
-    """How it stands with a goal.
+    """The state of a goal.
 
     Attributes:
         status: ``open`` until it is first pursued, then ``pursued``; at last ``done`` or ``dropped``.
-        tries: How often it was pursued.
-        since: When it was pursued last, in seconds since the context began.
+        tries: The number of tries.
+        since: The last try, in seconds since the context began.
     """
 
     status: Status = "open"
@@ -26,7 +26,7 @@ class GoalState:
 
     @property
     def is_over(self) -> bool:
-        """Whether it is done or dropped."""
+        """Return whether a goal is done or dropped."""
         return self.status in ("done", "dropped")
 
 

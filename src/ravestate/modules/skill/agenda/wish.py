@@ -1,4 +1,4 @@
-"""A goal as it stands in an agent's file: words alone."""
+"""A goal from an agent's file: words alone."""
 
 from __future__ import annotations
 
@@ -42,19 +42,19 @@ class Wish(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
 
     name: Annotated[str, Field(pattern=r"^[A-Za-z_][A-Za-z0-9_-]*$")]
-    """Its rule is ``agenda:<name>``."""
+    """The name; the rule is ``agenda:<name>``."""
     say: Text | Annotated[tuple[Text, ...], Field(min_length=1)]
-    """What is said for it; of several the next one at each try."""
+    """The words; several take turns."""
     priority: Annotated[float, Field(gt=0)] = 1.0
     """Goals of higher priority come first."""
     cooldown: Annotated[float, Field(gt=0)] = 60.0
-    """Seconds until it may be tried again."""
+    """Seconds until the next try."""
     tries: Annotated[int, Field(ge=1)] = 2
-    """How often it is tried."""
+    """The number of tries."""
     done: Expression | None = None
-    """A regular expression: the user's words that mean success; without one it is done once it was said."""
+    """A regular expression for the user's words that mean success; without it, one try is a success."""
     refused: Expression | None = None
-    """A regular expression: the user's words that mean that he does not want to."""
+    """A regular expression for the user's words that refuse."""
 
 
 def _no_twins(wishes: tuple[Wish, ...]) -> tuple[Wish, ...]:
@@ -66,4 +66,4 @@ def _no_twins(wishes: tuple[Wish, ...]) -> tuple[Wish, ...]:
 
 
 without_twins = AfterValidator(_no_twins)
-"""Refuses goals of one name."""
+"""Refuse two goals of one name."""

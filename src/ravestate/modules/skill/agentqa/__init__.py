@@ -1,4 +1,4 @@
-"""Answers questions about the agent itself: who it is, where it comes from, what it likes, how it is."""
+"""Questions about the agent: its name, origin, likes, mood."""
 
 from __future__ import annotations
 

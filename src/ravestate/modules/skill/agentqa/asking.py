@@ -1,7 +1,7 @@
-"""What of an utterance asks something about the agent: a matter of pronouns, word order and polite phrases.
+"""Sentences of an utterance that ask something about the agent, found by pronouns, word order and polite phrases.
 
-What is asked is brought into one form: lower case, without marks, short forms written out, without what only wraps it
-(*hi, could you tell me*). A sentence that is a statement, or asks about the user, is left out here, whatever its topic.
+Each gets a plain form: lower case, no punctuation, short forms written out, no polite frame (*hi, could you tell me*).
+Statements, and questions about the user, are left out whatever their topic.
 """
 
 from __future__ import annotations
@@ -13,11 +13,11 @@ from dataclasses import dataclass
 __all__ = ["Asked", "about_agent", "plain", "returns", "statements"]
 
 LONGEST = 2000
-"""So many characters of an utterance are looked at."""
+"""Characters of an utterance that are read."""
 WORDS = 20
-"""A question about the agent has at most so many words."""
+"""The greatest number of words in a question about the agent."""
 SENTENCES = 4
-"""At most so many sentences of an utterance are considered."""
+"""The greatest number of sentences that are considered."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,9 +25,9 @@ class Asked:
     """A question that may be about the agent."""
 
     text: str
-    """In the plain form."""
+    """The plain form."""
     addressed: bool
-    """Whether it has *you* or *your*; *how is it going* has not, and asks how the agent is all the same."""
+    """Whether it has *you* or *your*. *How is it going* has neither, and still asks after the agent's mood."""
 
 
 def about_agent(
@@ -37,13 +37,13 @@ def about_agent(
     *,
     question: bool = False,
 ) -> tuple[list[Asked], str]:
-    """Return the questions that may be about the agent, and why the last sentence that holds none does not.
+    """Return the questions that may be about the agent, and why the last other sentence is none.
 
     Args:
-        utterance: What the user said.
-        names: What the agent is called; it stands for *you*.
-        known: Questions about the agent in the plain form, which count as such whatever they look like.
-        question: Whether it is known already to ask something.
+        utterance: The user's words.
+        names: Names of the agent; they stand for *you*.
+        known: Plain forms that always count as questions about the agent.
+        question: Whether the utterance is known to ask something.
 
     Example:
         >>> about_agent("Hi! Could you tell me what's ur name?")
@@ -72,7 +72,7 @@ def plain(question: str) -> str:
 
 
 def returns(utterance: str) -> bool:
-    """Whether the user turns round what he was asked.
+    """Return whether the user returns a question.
 
     Example:
         >>> returns("I'm fine thanks, and you?"), returns("What's yours?"), returns("I like you.")
@@ -83,7 +83,7 @@ def returns(utterance: str) -> bool:
 
 
 def statements(utterance: str, names: Collection[str] = ()) -> list[str]:
-    """Return the sentences of an utterance in the plain form, whatever they are.
+    """Return all sentences of an utterance in the plain form.
 
     Example:
         >>> statements("I'm fine. Robin's friends don't sleep.", ["Robin"])
@@ -94,7 +94,7 @@ def statements(utterance: str, names: Collection[str] = ()) -> list[str]:
 
 
 def _unfit(words: list[str], asks: bool, known: Collection[str]) -> str:
-    """Why a sentence is no question about the agent; empty if it may be one."""
+    """Return why a sentence is no question about the agent; an empty string if it may be one."""
     if not words:
         return "nothing is said"
     if len(words) > WORDS:
@@ -118,14 +118,14 @@ def _words(sentence: str, names: Iterable[str]) -> list[str]:
     for word in re.findall(_WORD, text):
         written: str = _WRITTEN_OUT.get(word) or word
         words += written.split()
-    if _YOU.isdisjoint(words):  # a name beside "you" only calls
+    if _YOU.isdisjoint(words):  # a name beside "you" only calls the agent
         text = " ".join(words).replace(f"{_NAME}'s", "your").replace(_NAME, "you")
         words = re.sub(r"\b(is|does|has) (?=you\b)", lambda found: _AGREEING[found[1]], text).split()
     return [word for word in words if not word.startswith(_NAME)]
 
 
 def _unwrapped(words: list[str]) -> tuple[list[str], bool]:
-    """The words without what wraps them, and whether that asked to be told something."""
+    """Return the words without their polite frame, and whether the frame was a request to tell something."""
     told = False
     begin = 0
     while True:
@@ -159,7 +159,7 @@ def _unwrapped(words: list[str]) -> tuple[list[str], bool]:
 
 
 def _asks_for_knowledge(words: list[str]) -> bool:
-    """*Do you know who you are*; not *do you know Paris*, *do you know how to swim*."""
+    """Return whether *do you know* is only a frame: in *do you know who you are*, not in *do you know how to swim*."""
     return words[0] in _QUESTION_WORDS and words[:2] != ["how", "to"]
 
 
@@ -184,7 +184,7 @@ _ABOUT_BOTH = re.compile(
     r"(?:am i|i am) (?:\w+ )?(?:talking|speaking|chatting) (?:to|with)|(?:for|help|tell|about) me\b|"
     r"(?:what|whatever|everything|things) i (?:tell|told|say|said)\b|ask(?:ing)? me\b|my (?:data|privacy|information|secrets))"
 )
-"""Where the user is mentioned in a question about the agent."""
+"""Questions about the agent that mention the user."""
 _RETURNS = re.compile(
     r"(?:.* )?(?:and|what about|how about) (?:you|yours|yourself|your own)(?: (?:robot|then|my friend))?|"
     r"(?:and )?what (?:is|are) (?:yours|your own)|you|yours|yourself"
@@ -194,7 +194,7 @@ _FIRST = _QUESTION_WORDS | _set(
     "do does did are is was were have has had can could will would may should since in from by of to with at on until under am "
     "introduce describe say talk list name"
 )
-"""With these a question or a request begins."""
+"""First words of a question or a request."""
 _AT_THE_END = _set("please exactly actually anyway though by-the-way then")
 _KNOW = ("do", "you", "know")
 _TELL = _phrases(
@@ -265,4 +265,4 @@ _WRITTEN_OUT: dict[str, str] = {
     }.items()
     for short in shorts.split()
 }
-"""Short forms and common slips of those who type, in full."""
+"""Short forms and common slips in typing, written out."""

@@ -1,4 +1,4 @@
-"""The agent in its own memory: a node with its facts as properties and relations, kept as the file of its life says."""
+"""The agent in its own memory: a node with the facts of its life file as properties and relations."""
 
 from __future__ import annotations
 
@@ -33,12 +33,11 @@ RELATIONS: Mapping[str, _Relation] = {
     "membership": _Relation("member_of", "Organisation"),
     "makers": _Relation("made_by", "Organisation"),
 }
-"""The facts that memory has a relation for, and of what type it makes what they name. Other facts stand in the file."""
+"""Facts with a relation in memory, and the type of the nodes at its other end. Other facts stay in the file."""
 
 
 async def settle(life: Life, memory: Memory) -> Node:
-    """Make memory's node of the agent what the file says of it: facts that the file has replace those in memory; of
-    facts that it does not mention, memory keeps what it has.
+    """Bring the agent's node in memory in line with the file. Facts that the file does not mention stay.
 
     Raises:
         PlatformError: Memory failed.
@@ -62,12 +61,12 @@ async def settle(life: Life, memory: Memory) -> Node:
                 changed = True
                 await memory.relate(node, relation, await memory.ensure(type, name=text))
     if changed:
-        await memory.tidy()  # the first time that was a whole life
+        await memory.tidy()  # the first time it wrote a whole life
     return node
 
 
 async def recall(life: Life, memory: Memory) -> Mapping[str, Fact]:
-    """Return the agent's facts: what its node in memory says, and for the rest the file.
+    """Return the agent's facts from its node in memory, and the rest from the file.
 
     Raises:
         PlatformError: Memory failed.
@@ -91,7 +90,7 @@ async def recall(life: Life, memory: Memory) -> Mapping[str, Fact]:
 
 
 def texts(fact: Fact) -> tuple[str, ...]:
-    """A fact as texts; of pairs the first ones."""
+    """Return a fact as texts; pairs as their first texts."""
     if isinstance(fact, str):
         return (fact,)
     return tuple(part if isinstance(part, str) else part[0] for part in fact)

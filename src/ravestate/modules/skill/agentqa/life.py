@@ -1,4 +1,4 @@
-"""Who an agent is: facts, and topics that it may be asked about. Values; `read_life` has them from files."""
+"""The life of an agent: facts, and topics that people may ask about. `read_life` reads one from files."""
 
 from __future__ import annotations
 
@@ -9,28 +9,28 @@ from datetime import date
 __all__ = ["Fact", "Life", "Topic"]
 
 Fact = str | tuple[str, ...] | tuple[tuple[str, str], ...]
-"""What is true: a text, several, or pairs, e.g. ``(("animal", "the octopus"),)``."""
+"""A fact: a text, several, or pairs such as ``(("animal", "the octopus"),)``."""
 
 
 @dataclass(frozen=True, slots=True)
 class Topic:
-    """Something that the agent may be asked, and what it says then."""
+    """A topic that people may ask about, with the answers."""
 
     name: str
     questions: tuple[str, ...]
-    """Examples of how one asks. What is meant alike is understood alike."""
+    """Example questions. Questions with the same meaning are understood as well."""
     phrases: tuple[str, ...]
-    """What it says; facts stand in braces. One whose facts are known is chosen."""
+    """Answers, with facts in braces. One whose facts are known is chosen."""
     otherwise: tuple[str, ...] = ()
-    """What it says when each of the phrases lacks a fact; without any it leaves the question to others."""
+    """Answers for the case that each of the phrases lacks a fact; without any, other modules answer."""
     named: tuple[tuple[str, tuple[str, ...]], ...] = ()
-    """For a fact: what it says when the question names one of its values, ``{it}``; of pairs, ``{that}`` is the other one."""
+    """By fact: answers to a question that names one of its values, ``{it}``; ``{that}`` is the other text of a pair."""
     unnamed: tuple[str, ...] = ()
-    """What it says when it is asked about something in particular (*can you dance*) that is no value of a fact."""
+    """Answers to a question about something particular (*can you dance*) that is no value of a fact."""
     remarks: tuple[str, ...] = ()
-    """Regular expressions of whole words for what is said rather than asked, and is not to be left to anybody else."""
+    """Regular expressions of whole words, for remarks that no other module should answer."""
     asides: tuple[str, ...] = ()
-    """Regular expressions of all that is said at once (*thanks a lot*); only if the agent has not asked anything."""
+    """Regular expressions of whole utterances (*thanks a lot*); they count only if the agent has not asked anything."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,12 +50,12 @@ class Life:
 
     @property
     def name(self) -> str:
-        """What the agent is called."""
+        """The agent's name."""
         return str(self.facts["name"])
 
     @property
     def born(self) -> date | None:
-        """When it was born, if that is known."""
+        """The agent's birthday, if it is known."""
         born = self.facts.get("born")
         return None if born is None else date.fromisoformat(str(born))
 

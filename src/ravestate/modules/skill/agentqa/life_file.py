@@ -1,4 +1,4 @@
-"""A life in YAML files, which users may edit. ``life.yaml``, which comes with the module, shows what may stand in one."""
+"""A life in YAML files that users may edit. The module's own ``life.yaml`` shows the format."""
 
 from __future__ import annotations
 
@@ -23,24 +23,24 @@ if TYPE_CHECKING:
 __all__ = ["read_life"]
 
 COUNTED = ("age", "mood", "time", "date", "memory")
-"""Facts that follow from elsewhere: the clock, slots."""
+"""Parameters of phrases that come from the clock or from slots."""
 KNOWN = ("name", "born", *COUNTED)
 """Parameters that any phrase may have."""
 NAMED = ("it", "that")
-"""Parameters of phrases about what a question names."""
+"""Parameters of phrases for a question that names a value."""
 
 _PARTS = ("facts", "topics", "others")
 _PARTS_OF_TOPIC = ("questions", "remarks", "asides", "phrases", "otherwise", "named", "unnamed")
 
 
 def read_life(own: Path | None = None) -> Life:
-    """Read the agent's life: the file that comes with the module, and what the user's `own` changes of it.
+    """Read the agent's life: the module's file, changed by the user's `own`.
 
-    A fact of the own file replaces the one that comes with the module, and ``~`` takes it away. A topic adds its
-    questions and remarks to those that are there, and replaces its phrases; ``~`` takes it away; others are new.
+    A fact of the own file replaces the module's, and ``~`` removes it. A topic adds its questions and remarks to the
+    module's, and replaces the phrases; ``~`` removes it. Other topics are new.
 
     Raises:
-        DeclarationError: The file says what no life can; with its line.
+        DeclarationError: The file has a mistake; the message names the line.
         PlatformError: The file cannot be read.
     """
     built_in = files("ravestate.modules.skill.agentqa") / "life.yaml"
@@ -98,7 +98,7 @@ def _parsed(name: str, text: str, base: Life | None) -> Life:
 
 @dataclass(frozen=True, slots=True)
 class _Known:
-    """The facts that the phrases of a file may name."""
+    """The facts that the phrases of a file may use."""
 
     file: str
     facts: tuple[str, ...]

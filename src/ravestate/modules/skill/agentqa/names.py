@@ -1,4 +1,4 @@
-"""Answers questions about the agent itself: who it is, where it comes from, what it likes, how it is."""
+"""The module, its settings, slots and signals."""
 
 from __future__ import annotations
 
@@ -21,17 +21,17 @@ from .router import Match
 
 
 class Settings(rs.Settings):
-    """Who the agent is, and how often it offers to talk about itself."""
+    """The agent's life, and how often it offers to talk about itself."""
 
     life: Path | None = None
-    """A file of one's own with facts and topics; it changes what it mentions, the rest is as it comes."""
+    """The user's own file with facts and topics. It changes what it mentions, and nothing else."""
     prompt_every: Annotated[float, Field(gt=0)] = 120.0
-    """Seconds from one "ask me something" to the next, however silent it is."""
+    """Seconds from one "ask me something" to the next, however long the silence is."""
 
     @field_validator("life")
     @classmethod
     def _can_be_read(cls, path: Path | None) -> Path | None:
-        """A mistake in the file is told before anything runs."""
+        """Report a mistake in the file before anything runs."""
         try:
             read_life(path)
         except RavestateError as error:
@@ -42,25 +42,25 @@ class Settings(rs.Settings):
 module = rs.Module("agentqa", requires=[rawio, idle, interloc, nlp, ontology, verbaliser], settings=Settings)
 
 asked = module.signal("asked", payload=Match)
-"""The user asks something about the agent; with the topic."""
+"""The user asks something about the agent; the payload has the topic."""
 
 remarked = module.signal("remarked", payload=Remark)
-"""The user says something that is answered before all else, such as distress or an insult; with the topic."""
+"""The user makes a remark that goes before everything else, such as distress or an insult; the payload has the topic."""
 
 life: rs.Slot[Life | None] = module.slot("life", None, type=Life, input=True)
-"""Who the agent is: read from the files at startup. Where memory has the agent's node, that one counts."""
+"""The agent's life, read from the files at startup. Facts of the agent's node in memory go first."""
 
 mood: rs.Slot[str] = module.slot("mood", "fine", type=str, input=True)
-"""How the agent is, as an adjective: what it says when it is asked how it is. Whoever knows better may write it."""
+"""The agent's mood as an adjective: its answer to *how are you*. Any module may write it."""
 
 
 def machine_clock() -> datetime:
-    """The moment where the machine is."""
+    """Return the current moment in the machine's time zone."""
     return datetime.now().astimezone()
 
 
 clock: rs.Slot[Callable[[], datetime]] = module.slot("clock", machine_clock, input=True)
-"""What tells the moment, by default the machine's clock; the agent's age, the date and the time of day follow from it."""
+"""The clock, by default the machine's; it decides the agent's age, the date and the time of day."""
 
 prompted: rs.Slot[float | None] = module.slot("prompted", None)
-"""When the agent last offered to be asked, in seconds since the context began."""
+"""The last time the agent offered to be asked, in seconds since the context began."""

@@ -1,4 +1,4 @@
-"""What is not asked but remarked: distress, grief, an insult, which want an answer before all else; thanks and such."""
+"""Remarks that the agent must answer: distress, grief and insults first; thanks and the like."""
 
 from __future__ import annotations
 
@@ -14,25 +14,25 @@ __all__ = ["Remark", "remark_in"]
 
 
 ASIDE = 80
-"""Characters that something said by the way has at most."""
+"""The greatest number of characters in an aside."""
 
 
 @dataclass(frozen=True, slots=True)
 class Remark:
-    """Something that was said, and belongs to a topic."""
+    """A remark that belongs to a topic."""
 
     topic: str
     text: str
-    """The sentence, in the plain form."""
+    """The sentence in the plain form."""
 
 
 def remark_in(utterance: str, life: Life, names: Collection[str] = (), asked: bool = False) -> Remark | None:
-    """Return what is remarked; of several topics the one that stands first in the life.
+    """Return the remark in an utterance; among several topics the first of the life.
 
     Args:
-        utterance: What the user said.
-        life: Its topics; those that have remarks count.
-        names: What else the agent is called.
+        utterance: The user's words.
+        life: The life; its topics with remarks count.
+        names: Further names of the agent.
         asked: Whether the agent has asked something: then *okay* is an answer, and no aside.
 
     Example:

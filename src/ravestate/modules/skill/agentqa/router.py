@@ -1,4 +1,4 @@
-"""Which topic a question about the agent belongs to: by the example questions that it resembles."""
+"""The router: from a question about the agent to its topic, by similar example questions."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import threading
 from collections import Counter
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cache, lru_cache
 from importlib import import_module
 from typing import TYPE_CHECKING
 
@@ -26,17 +26,17 @@ if TYPE_CHECKING:
 __all__ = ["Match", "Miss", "Router", "router_of"]
 
 SHARPNESS = 4.0
-"""How fast likeness falls off with the distance of two meanings: the vectors of short questions lie close together."""
+"""The slope of the similarity of meaning: the vectors of short questions lie close together."""
 SPELLING = 0.1
-"""How much it counts that two questions are spelt alike, against 1 for meaning alike. It forgives slips of the pen."""
+"""The weight of similar spelling; similar meaning has the weight 1. It forgives slips in typing."""
 COMMON = 0.1
-"""What any two questions have in common: lets the classes differ in size."""
+"""The similarity of any two questions; it allows topics of different sizes."""
 RIDGE = 0.1
-"""How little a single example may say against many."""
+"""The ridge penalty: it limits the weight of a single example."""
 LEAST = 0.3
-"""A question with a lower score is like none of the examples, on whichever side."""
+"""A question with a lower score is like none of the examples."""
 UNADDRESSED = 0.9
-"""A question without *you* must be so like (cosine) an example without it: *how is it going*."""
+"""The least similarity (cosine) of a question without *you* to an example without it: *how is it going*."""
 OTHERS = ""
 
 
@@ -46,30 +46,30 @@ class Match:
 
     topic: str
     question: str
-    """What was understood, in the plain form."""
+    """The question in the plain form."""
     score: float
-    """Near 1 for what is just like an example, near 0 for what is like none."""
+    """The score: near 1 for an example, near 0 for a question like none."""
     example: str
-    """The example that is nearest."""
+    """The nearest example."""
     margin: float
-    """By how much the score is greater than the next best."""
+    """The distance to the next best score."""
     returned: bool = False
-    """Whether it is the agent's own question, turned round: *fine, and you?*"""
+    """Whether the user returned the agent's own question: *fine, and you?*"""
 
 
 @dataclass(frozen=True, slots=True)
 class Miss:
-    """Why nothing that was said belongs to a topic."""
+    """The reason why an utterance belongs to no topic."""
 
     reason: str
 
 
 class Router:
-    """Tells topics apart, and from what belongs to none.
+    """A classifier for questions: a topic of the agent, or none.
 
-    A classifier over the example questions of a life: ridge regression with a kernel, a Gaussian of how far apart two
-    questions are in meaning (an `Encoder` says), plus the cosine of how they are spelt (their groups of three and four
-    letters). Learnt in a second or two when it is first asked; from any thread.
+    It is a kernel ridge regression over the example questions of a life. The kernel adds a Gaussian of the distance in
+    meaning (from an `Encoder`) and the cosine of the spelling (groups of three and four letters). It learns in a second or
+    two, at the first question. Thread-safe.
 
     Example:
         ::
@@ -80,37 +80,48 @@ class Router:
     """
 
     def __init__(self, life: Life, encoder: Encoder | None = None) -> None:
-        """`life`: its topics, and what belongs to none; `encoder`: by default the bundled one."""
+        """Nothing is loaded yet.
+
+        Args:
+            life: The life with the examples.
+            encoder: The sentence model; by default the bundled one.
+        """
         self.life = life
-        self._encoder = encoder or Encoder()
+        self._encoder = encoder or _bundled()
         self._known = {plain(q): topic.name for topic in life.topics.values() for q in topic.questions}
         self._lock = threading.Lock()
         self._learnt: _Learnt | None = None
 
     def load(self) -> None:
-        """Load the model, and learn the examples, unless that is done.
+        """Load the model and learn the examples, once.
 
         Raises:
             PlatformError: The sentence model is missing or broken. The message says what to do.
         """
-        if self._learnt is not None:  # whoever only asks waits for nobody
+        if self._learnt is not None:  # no lock for a mere question
             return
         with self._lock:
             if self._learnt is None:
                 with LOADING:
-                    import_module("numpy")  # for all that follows
-                self._learnt = _Learnt(self.life, self._encoder)
+                    import_module("numpy")  # all below needs it
+                pairs = [
+                    (plain(q), topic.name) for topic in self.life.topics.values() for q in topic.questions
+                ]
+                pairs += [(plain(q), OTHERS) for q in self.life.others]
+                self._learnt = _learnt(tuple(pairs), self._encoder)
 
     def route(self, utterance: str, names: Collection[str] = (), *, question: bool = False) -> Match | Miss:
-        """Return what is asked about the agent, the first of several sentences that fit.
+        """Return the topic that an utterance asks about; the first sentence with one counts.
+
+        Without the package of sentence models, only the examples themselves are understood.
 
         Args:
-            utterance: What the user said.
-            names: What else the agent is called.
-            question: Whether it is known already to ask something.
+            utterance: The user's words.
+            names: Further names of the agent.
+            question: Whether the utterance is known to ask something.
 
         Raises:
-            PlatformError: See `load`.
+            PlatformError: The sentence model is broken.
         """
         candidates, why = about_agent(utterance, (self.life.name, *names), self._known, question=question)
         if not candidates:
@@ -119,7 +130,7 @@ class Router:
             self.load()
         except ModelMissing as error:
             return self._verbatim(candidates) or Miss(str(error))
-        assert self._learnt is not None  # it is loaded
+        assert self._learnt is not None  # `load` has set it
         return self._learnt.best(candidates)
 
     def _verbatim(self, candidates: Sequence[Asked]) -> Match | None:
@@ -132,22 +143,32 @@ class Router:
 
 @lru_cache(maxsize=8)
 def router_of(life: Life) -> Router:
-    """The router of a life that all contexts share, loaded or not."""
+    """Return the router of a life; all contexts share it."""
     return Router(life)
 
 
-class _Learnt:
-    """What is known of the examples."""
+@cache
+def _bundled() -> Encoder:
+    """Return the bundled encoder, one for all routers."""
+    return Encoder()
 
-    def __init__(self, life: Life, encoder: Encoder) -> None:
+
+@lru_cache(maxsize=8)
+def _learnt(pairs: tuple[tuple[str, str], ...], encoder: Encoder) -> _Learnt:
+    """Return the classifier for these examples; lives that differ only in their phrases and facts share it."""
+    return _Learnt(pairs, encoder)
+
+
+class _Learnt:
+    """The classifier, after learning."""
+
+    def __init__(self, pairs: Sequence[tuple[str, str]], encoder: Encoder) -> None:
         import numpy as np
 
         self._encoder = encoder
-        pairs = [(plain(q), topic.name) for topic in life.topics.values() for q in topic.questions]
-        pairs += [(plain(q), OTHERS) for q in life.others]
         self._examples = [text for text, _ in pairs]
         self._slips = Slips({word for text in self._examples for word in text.split()})
-        self._classes = [*(name for name, topic in life.topics.items() if topic.questions), OTHERS]
+        self._classes = [*dict.fromkeys(name for _, name in pairs if name != OTHERS), OTHERS]
         self._of = np.array([self._classes.index(name) for _, name in pairs])
         self._unaddressed = np.array([not _addresses(text) for text in self._examples])
         self._meanings = encoder.encode(self._examples)
@@ -157,7 +178,7 @@ class _Learnt:
         self._weights = np.linalg.solve(kernel, np.eye(len(self._classes))[self._of])
 
     def best(self, candidates: Sequence[Asked]) -> Match | Miss:
-        """The first candidate that belongs to a topic, or why none does."""
+        """Return the first candidate that belongs to a topic, or the reason why none does."""
         import numpy as np
 
         texts = [self._slips.mended(asked.text) for asked in candidates]
@@ -192,7 +213,7 @@ class _Learnt:
         return Miss("; ".join(reasons))
 
     def _kernel(self, texts: Sequence[str], meanings: NDArray[np.float32]) -> NDArray[np.float64]:
-        """How alike questions (rows) and examples (columns) are."""
+        """Return the similarity of questions (rows) and examples (columns)."""
         import numpy as np
 
         kernel = np.exp(SHARPNESS * (meanings.astype(np.float64) @ self._meanings.T - 1))
@@ -206,12 +227,12 @@ class _Learnt:
 
 
 def _addresses(text: str) -> bool:
-    """Whether a text has *you*."""
+    """Return whether a text has *you*."""
     return not {"you", "your", "yourself"}.isdisjoint(text.split())
 
 
 class _Spelling:
-    """Examples as vectors of their letter groups; rare groups count more."""
+    """Examples as vectors of their letter groups; rare groups weigh more."""
 
     def __init__(self, examples: Sequence[str]) -> None:
         import numpy as np
@@ -220,7 +241,7 @@ class _Spelling:
         spread = Counter(group for groups in counted for group in groups)
         self._examples = len(examples)
         self._rarity = {group: 1 + math.log(len(examples) / (1 + count)) for group, count in spread.items()}
-        # For each group the examples that have it, and its share in each: most have none of a question's groups.
+        # An inverted index: for each group the examples that have it, and its weight in each.
         where: dict[str, list[int]] = {}
         shares: dict[str, list[float]] = {}
         for example, groups in enumerate(counted):
@@ -233,7 +254,7 @@ class _Spelling:
         }
 
     def likeness(self, texts: Sequence[str]) -> NDArray[np.float32]:
-        """The cosine of each text (rows) with each example (columns); 0 where nothing of a text is known."""
+        """Return the cosine of each text (rows) with each example (columns); 0 if no group of a text is known."""
         import numpy as np
 
         likeness = np.zeros((len(texts), self._examples), dtype=np.float32)

@@ -1,4 +1,4 @@
-"""When the agent speaks of itself."""
+"""The rules: when the agent talks about itself."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from .telling import telling, without_question
 
 @module.rule(when=rs.startup.detached(), writes=(life, interloc.agent), detached=True)
 async def be_born(ctx: rs.RuleContext) -> None:
-    """Read who the agent is; tell its name to whoever calls it by that."""
+    """Read the agent's life, and publish its name."""
     settings: Settings = ctx.settings
     told = read_life(settings.life)
     ctx[interloc.agent] = told.name
@@ -35,10 +35,10 @@ async def be_born(ctx: rs.RuleContext) -> None:
 
 @module.rule(when=life.changed.detached(), background=True)
 def load(ctx: rs.RuleContext) -> None:
-    """Learn the topics while the agent is up already, so that the first question need not wait for it."""
+    """Learn the topics in the background, so that the first question need not wait."""
     told = ctx.payload(life.changed)
     if told is not None:
-        with contextlib.suppress(PlatformError):  # the first question reports it
+        with contextlib.suppress(PlatformError):  # the first question raises it again
             try:
                 router_of(told).load()
                 give_back()
@@ -48,7 +48,7 @@ def load(ctx: rs.RuleContext) -> None:
 
 @module.rule(when=life.changed.detached(), reads=ontology.memory, background=True)
 async def remember(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Bring what memory has of the agent in line with the file."""
+    """Bring memory in line with the file."""
     told, memory = ctx.payload(life.changed), ctx[ontology.memory]
     if told is None or memory is None:
         return rs.Resign("there is no memory, or no life")
@@ -59,7 +59,7 @@ async def remember(ctx: rs.RuleContext) -> rs.Resign | None:
     try:
         await settle(told, memory)
     except RuleError as error:
-        return rs.Resign(str(error))  # it has been closed meanwhile: the talk is over
+        return rs.Resign(str(error))  # it was closed meanwhile: the talk is over
     except RavestateError as error:
         ctx.log.warning("what memory has of the agent may be old: %s", error)
     return None
@@ -67,7 +67,7 @@ async def remember(ctx: rs.RuleContext) -> rs.Resign | None:
 
 @module.rule(when=nlp.text.changed & nlp.question.changed, reads=(life, idle.asked), emits=asked)
 async def understand(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Notice that the user asks something about the agent, and what."""
+    """Notice a question about the agent, and its topic."""
     told = ctx[life]
     if told is None:
         return rs.Resign("nobody has said who I am")
@@ -89,7 +89,7 @@ async def understand(ctx: rs.RuleContext) -> rs.Resign | None:
 
 @module.rule(when=rawio.input.changed, reads=(life, idle.asked), emits=remarked)
 async def heed(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Notice that the user says something that nobody should take for small talk."""
+    """Notice a remark that is no small talk."""
     told = ctx[life]
     said = ctx.payload(rawio.input.changed)
     found = None if told is None else remark_in(said, told, asked=bool(ctx[idle.asked]))
@@ -103,12 +103,12 @@ async def heed(ctx: rs.RuleContext) -> rs.Resign | None:
     when=remarked,
     reads=(life, mood, clock),
     writes=verbaliser.intent,
-    weight=25.0,  # before whoever else has an answer, even to a question of his own: few things go before it by themselves
+    weight=25.0,  # few rules of other modules go before it, not even with an answer to a question
 )
 async def respond(ctx: rs.RuleContext) -> None:
-    """Say what is to be said to such a remark."""
+    """Answer the remark."""
     told, remark = ctx[life], ctx.payload(remarked)
-    assert told is not None  # else nothing would have been noticed
+    assert told is not None  # `heed` needs a life
     phrases = telling(told.topics[remark.topic], remark.text, told.facts, mood=ctx[mood], now=ctx[clock]())
     if phrases is not None:
         ctx[verbaliser.intent] = intent(remark.topic, phrases)
@@ -116,7 +116,7 @@ async def respond(ctx: rs.RuleContext) -> None:
 
 @module.rule(when=idle.hushed, writes=verbaliser.intent, weight=20.0)  # before all but such a remark
 async def keep_quiet(ctx: rs.RuleContext) -> None:
-    """Say that it will be quiet, which `idle` sees to."""
+    """Promise to be quiet; `idle` keeps the promise."""
     ctx[verbaliser.intent] = Intent("hushed", package=__package__)
 
 
@@ -124,12 +124,12 @@ async def keep_quiet(ctx: rs.RuleContext) -> None:
     when=asked,
     reads=(life, mood, clock, ontology.memory),
     writes=verbaliser.intent,
-    weight=1.5,  # before who finds an answer to the same question elsewhere: nobody knows better
+    weight=1.5,  # before other modules with an answer to the same question
 )
 async def answer(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Say what is known about the topic."""
+    """Answer the question."""
     match, told = ctx.payload(asked), ctx[life]
-    assert told is not None  # else nothing would have been understood
+    assert told is not None  # `understand` needs a life
     facts = await known(ctx, told, ctx[ontology.memory])
     phrases = telling(told.topics[match.topic], match.question, facts, mood=ctx[mood], now=ctx[clock]())
     if phrases is None:
@@ -143,12 +143,16 @@ async def answer(ctx: rs.RuleContext) -> rs.Resign | None:
 @module.rule(
     when=idle.bored,
     reads=prompted,
-    writes=(verbaliser.intent, rawio.output, prompted),  # the output too: else a goal might be said instead
+    writes=(
+        verbaliser.intent,
+        rawio.output,
+        prompted,
+    ),  # the output too, so that no goal is pursued at the same time
     weight=0.9,
-    detached=True,  # thus the intent, in a causal group of its own, may still be worded
+    detached=True,  # else the intent could not be worded in the same causal group
 )
 async def offer(ctx: rs.RuleContext) -> rs.Resign | None:
-    """It is silent: invite the user to ask, now and then."""
+    """Invite the user to ask, now and then, in a silence."""
     last, every = ctx[prompted], ctx.settings.prompt_every
     if last is not None and ctx.now - last < every:
         return rs.Resign(f"that was {ctx.now - last:.0f} s ago; agentqa.prompt_every is {every:g} s")
@@ -158,13 +162,13 @@ async def offer(ctx: rs.RuleContext) -> rs.Resign | None:
 
 
 def intent(topic: str, phrases: Sequence[str]) -> Intent:
-    """What is meant by phrases that are filled in: braces that are left are a fact's own."""
+    """Return an intent with finished phrases; the braces left in them belong to a fact."""
     texts = [phrase.replace("{", "{{").replace("}", "}}") for phrase in phrases]
     return Intent(f"agentqa:{topic}", phrases={"en": texts})
 
 
 async def known(ctx: rs.RuleContext, told: Life, memory: ontology.Memory | None) -> Mapping[str, Fact]:
-    """What is true of the agent: by memory, and where there is none by the file."""
+    """Return the agent's facts from memory, or from the file if there is none."""
     if memory is None:
         return told.facts
     try:

@@ -1,4 +1,4 @@
-"""Slips of the pen, mended by the words that are known."""
+"""Slips in typing, mended by known words."""
 
 from __future__ import annotations
 
@@ -7,11 +7,11 @@ from collections.abc import Iterable
 __all__ = ["Slips"]
 
 SHORTEST = 6
-"""Words of fewer letters are left alone: too many other words are like them."""
+"""Shorter words are left alone: too many other words are like them."""
 
 
 class Slips:
-    """Knows words, and finds the one that was meant.
+    """A set of known words that finds the one meant.
 
     Example:
         >>> Slips(["siblings", "friends"]).mended("do you have frends")
@@ -23,8 +23,9 @@ class Slips:
         self._long = sorted(word for word in self._words if len(word) >= SHORTEST)
 
     def mended(self, text: str) -> str:
-        """Return `text` with each unknown word replaced by the only known one that is a slip away: a letter missing,
-        doubled, wrong, or two exchanged; the first letter is right."""
+        """Return `text` with each unknown word replaced by the only known word one slip away.
+
+        A slip is a letter missing, doubled or wrong, or two letters exchanged. The first letter must be right."""
         return " ".join(self._meant(word) for word in text.split())
 
     def _meant(self, word: str) -> str:

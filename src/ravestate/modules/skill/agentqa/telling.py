@@ -1,4 +1,4 @@
-"""What the agent says of a topic: the phrases that its facts allow, and the facts in words."""
+"""The answer about a topic: the phrases whose facts are known, filled in."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ __all__ = ["age", "listed", "telling", "without_question"]
 def telling(
     topic: Topic, question: str, facts: Mapping[str, Fact], *, mood: str, now: datetime
 ) -> tuple[str, ...] | None:
-    """Return what may be said, of which any will do; None if nothing that the phrases need is known.
+    """Return the phrases to choose from; None if each needs an unknown fact.
 
     Args:
-        topic: What was asked about.
-        question: As it was understood; if it names the value of a fact, that is what the answer is about.
-        facts: What is true of the agent.
-        mood: How it is.
-        now: The moment: its age, the date and the time of day follow from it.
+        topic: The topic.
+        question: The question in the plain form; the answer is about the value that it names.
+        facts: The agent's facts.
+        mood: Its mood.
+        now: The moment; the agent's age, the date and the time of day follow from it.
     """
     values = _in_words(facts, mood, now)
     for fact, phrases in topic.named:
@@ -36,7 +36,7 @@ def telling(
 
 
 def listed(items: Sequence[str]) -> str:
-    """Join texts as one says them.
+    """Return texts as an enumeration.
 
     Example:
         >>> listed(["words", "clouds", "chess"])
@@ -47,7 +47,7 @@ def listed(items: Sequence[str]) -> str:
 
 
 def age(born: date, today: date) -> str:
-    """How old somebody is: years; in the first two months, only days; months in between.
+    """Return an age in years; in months below one year, and in days below two months.
 
     Example:
         >>> age(date(2024, 3, 1), date(2026, 2, 28)), age(date(2024, 3, 1), date(2024, 5, 1))
@@ -64,7 +64,7 @@ def age(born: date, today: date) -> str:
 
 
 def without_question(phrase: str) -> str:
-    """What is said, but for the question at its end, if anything is said besides.
+    """Return a phrase without the question at its end, unless it is all there is.
 
     Example:
         >>> without_question("I am fine, thank you. And you?"), without_question("Who knows?")
@@ -94,7 +94,7 @@ def _names(question: str, it: str) -> bool:
 
 
 def _filled(phrases: Sequence[str], values: Mapping[str, str]) -> tuple[str, ...]:
-    """The phrases whose parameters are known, filled in."""
+    """Return the phrases whose parameters are known, filled in."""
     known = [phrase for phrase in phrases if _parameters(phrase) <= values.keys()]
     return tuple(
         _BEGINNING.sub(lambda found: found[0].upper(), phrase.format_map(values)) for phrase in known
@@ -108,7 +108,7 @@ def _parameters(phrase: str) -> set[str]:
 _PARTICULAR = re.compile(
     r"(?:can|could|do|are) you (?!(?:[\w-]+ )*(?:have|any|anything|anybody|some|something|everything|what|which|or)\b)"
 )
-"""Begins a question for one thing, to which the answer is yes or no."""
+"""First words of a question for one thing; its answer is yes or no."""
 _QUESTION_AT_THE_END = re.compile(r"(?<=[.!…])\s+[^.!?…]+\?$")
 _BEGINNING = re.compile(r"^\W*\w|[.!?…:] +\w")
-"""The first letter of a sentence, which may be that of a fact."""
+"""The first letter of a sentence, which may belong to a fact."""

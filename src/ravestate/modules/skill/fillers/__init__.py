@@ -1,8 +1,8 @@
-"""Fill a pause: "Let me think…" when an answer takes its time."""
+"""Fillers: "Let me think…" when an answer takes its time."""
 
 from __future__ import annotations
 
 from . import rules as rules
-from .names import Settings, filled, module
+from .names import Settings, filled, lost, module, promised
 
-__all__ = ["Settings", "filled", "module"]
+__all__ = ["Settings", "filled", "lost", "module", "promised"]

@@ -1,4 +1,4 @@
-"""Fills a pause: "Let me think..." when an answer takes its time."""
+"""The module, its settings and its slot."""
 
 from __future__ import annotations
 
@@ -11,13 +11,21 @@ from ravestate.modules import idle, rawio, verbaliser
 
 
 class Settings(rs.Settings):
-    """When an answer takes long."""
+    """The patience before a filler."""
 
     unanswered_after: Annotated[float, Field(gt=0)] = 2.0
-    """Seconds from the user's words until an answer that is being made, and of which nothing is heard yet, takes long."""
+    """Seconds from the user's words until an answer counts as slow, while none of it is heard."""
+    answer_within: Annotated[float, Field(gt=0)] = 20.0
+    """Seconds from a filler until the agent says that it has lost the answer."""
 
 
 module = rs.Module("fillers", requires=[rawio, idle, verbaliser], settings=Settings)
 
 filled: rs.Slot[float | None] = module.slot("filled", None)
-"""When a pause was filled last, in seconds since the context began."""
+"""The time of the last filler, in seconds since the context began."""
+
+promised = module.flag("promised")
+"""Whether the agent still owes the answer after a filler."""
+
+lost = module.signal("lost")
+"""An answer after a filler does not come: it took too long, or every rule for it resigned."""

@@ -1,4 +1,4 @@
-"""Questions about the world, answered from documents: with their source, or not at all."""
+"""Answers about the world from documents: with their source, or not at all."""
 
 from __future__ import annotations
 

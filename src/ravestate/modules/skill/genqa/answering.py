@@ -1,4 +1,4 @@
-"""From a question to an answer with its source and a confidence: retrieve, read, weigh."""
+"""From a question to an answer with a source and a confidence: retrieve, read, weigh."""
 
 from __future__ import annotations
 
@@ -22,22 +22,21 @@ from .variants import variants_of
 __all__ = ["Answer", "Answerer", "Candidate"]
 
 RETRIEVED = 16
-"""So many passages that have some word of a question, and so many that have all, are looked at word by word..."""
+"""The number of passages with some word of a question, and again of those with all; they are compared word by word."""
 READ = (1, 1, 2, 4)
-"""... and so many of these are read: the first few, and the others only if none of them is it."""
+"""The number of these passages that are read, in batches: each only if the one before has no answer."""
 GOOD, VERY_GOOD, HOPELESS = 7.5, 9.0, -4.0
-"""With the first score a passage is it, alone with the second; where the first few have no more than the third, the others
-are not it either."""
+"""Scores that end the reading: `GOOD` an answer among several, `VERY_GOOD` an answer alone, `HOPELESS` the first few."""
 ENOUGH = 0.4
-"""A passage that mentions less of what is asked for (0 to 1) is not even read."""
+"""The least share of the question's words (0 to 1) in a passage that is read."""
 LEVEL = 0.8
-"""Scores that differ by less are about as good."""
+"""Scores that differ by less count as equal."""
 COMMON = 20_000
-"""A word that stands in more passages finds nothing, and takes long; it is searched if there is no other."""
+"""The greatest number of passages with a word that is searched, unless there is no rarer word."""
 COMMON_KIND = 2_000
-"""The same for words that only say what kind of answer is wanted."""
+"""The same limit for words that only say what kind of answer is wanted."""
 WORDS = 24
-"""A question has no more words to search for."""
+"""The greatest number of words to search for."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,14 +47,14 @@ class Candidate:
     title: str
     row: int
     score: float
-    """How well it answers, in the reader's own measure: above 0 mostly well, up to 11."""
+    """The reader's score, up to 11; most passages above 0 are good answers."""
     covered: float
-    """How much of what is asked for it mentions: 0 to 1, rare words weighing more."""
+    """The share of the question's words in the passage, 0 to 1; rare words weigh more."""
 
 
 @dataclass(frozen=True, slots=True)
 class Answer:
-    """What the documents say to a question; without a text they say nothing."""
+    """The answer of the documents; without a text they have none."""
 
     question: str
     text: str = ""
@@ -65,15 +64,15 @@ class Answer:
     confidence: float = 0.0
     """The probability that it is right: 0 to 1."""
     candidates: tuple[Candidate, ...] = ()
-    """All that was read, best first."""
+    """All passages that were read, best first."""
     reason: str = ""
-    """Why there is no text."""
+    """The reason why there is no text."""
 
 
 class Answerer:
-    """Answers from an index. It opens the file when it is first asked, and again if another one takes its place.
+    """An index with a reader. It opens the file at the first question, and again when another one takes its place.
 
-    Safe from any thread.
+    Thread-safe.
 
     Example:
         ::
@@ -86,8 +85,8 @@ class Answerer:
         """Nothing is opened or loaded yet.
 
         Args:
-            path: The index; it is made if there is none.
-            collection: Whether it is to hold the collection that comes with Ravestate.
+            path: The index; it is created if there is none.
+            collection: Whether it shall contain the collection that comes with Ravestate.
             reranker: The folder of another reader, see `Reranker`.
         """
         self._path = path
@@ -98,7 +97,7 @@ class Answerer:
         self._stems: Stems | None = None
 
     def load(self) -> None:
-        """Open the index, take in the collection, load the reader; `answer` would do it.
+        """Open the index, add the collection, and load the reader. `answer` does it as well.
 
         Raises:
             PlatformError: The index cannot be opened, or the reader is not installed.
@@ -107,14 +106,14 @@ class Answerer:
             self._reranker.load()
 
     def close(self) -> None:
-        """Let go of the index."""
+        """Close the index."""
         with self._opening:
             if self._index is not None:
                 self._index.close()
                 self._index = None
 
     def answer(self, heard: str) -> Answer:
-        """Answer what somebody said, as far as the documents can.
+        """Answer an utterance from the documents.
 
         Raises:
             PlatformError: See `load`.
@@ -153,15 +152,15 @@ class Answerer:
             return self._index
 
     def _retrieve(self, index: Index, question: Question) -> list[tuple[float, Found]]:
-        """Passages and how much of the question each covers, the best for reading first."""
-        assert self._stems is not None  # opening makes them
+        """Return the passages to read with their share of the question, best first."""
+        assert self._stems is not None  # `_opened` has set it
         asked = [variants_of(word) for word in question.words[:WORDS]]
         searched = list(dict.fromkeys(word for group in (*asked, question.kinds[:WORDS]) for word in group))
         stem_of = {word: stems for word, stems in zip(searched, self._stems(*searched), strict=True) if stems}
         known = index.frequencies(sorted({stem for stems in stem_of.values() for stem in stems}))
 
         def standing(word: str) -> int:
-            """In how many passages a word stands, at most."""
+            """Return the greatest possible number of passages with a word."""
             return min(known.get(stem, 0) for stem in stem_of[word])
 
         rare = [
@@ -169,10 +168,10 @@ class Answerer:
         ]
         others = _other_ranks(question.text)
         found = index.search(rare or list(stem_of), RETRIEVED, others)
-        # What has them all may be hidden behind many that have the rarest one twice.
+        # A passage with all words may be hidden behind many that repeat the rarest one.
         found += [each for each in index.search_all(asked, RETRIEVED, others) if each not in found]
 
-        # What each word that is asked for weighs, and the forms in which it may stand in a passage.
+        # The weight of each word, and the forms that it may have in a passage.
         size = index.size()
         wanted = [
             (
@@ -211,7 +210,7 @@ class Answerer:
             if best >= (GOOD if len(read) > 1 else VERY_GOOD) or (best <= HOPELESS and len(read) > 2):
                 break
         read.sort(key=lambda candidate: -candidate.score)
-        # Of those that are about as good, take what says least besides: the life expectancy, not that of women.
+        # Among equals, take the passage with the fewest other words: the life expectancy, not that of women.
         level = [c for c in read if c.score > read[0].score - LEVEL and c.covered >= read[0].covered]
         asked = {form for word in question.words for form in variants_of(word.lower())}
         best = min(level, key=lambda candidate: _besides(candidate.text, asked))
@@ -219,7 +218,7 @@ class Answerer:
 
 
 def _readable(found: Found) -> str:
-    """A passage as the reader sees it: under its title, if it does not name that itself."""
+    """Return a passage for the reader: under its title, unless it names that itself."""
     text = found.text if found.title.lower() in found.text.lower() else f"{found.title}: {found.text}"
     return text[:LONGEST]
 
@@ -229,7 +228,7 @@ _RANKS = ("second", "third", "fourth", "fifth", "sixth", "seventh", "eighth", "n
 
 
 def _other_ranks(question: str) -> list[str]:
-    """Who asks for the largest does not ask for the second largest, nor the other way round: words that answers lack."""
+    """Return ranks that a passage must not name: a question for the largest is not about the second largest."""
     if not _SUPERLATIVE.search(question):
         return []
     asked = set(question.lower().split())
@@ -237,5 +236,5 @@ def _other_ranks(question: str) -> list[str]:
 
 
 def _besides(text: str, asked: set[str]) -> int:
-    """How many words of `text`, outside of brackets, are not asked for."""
+    """Return the number of words of `text`, outside of brackets, that were not asked for."""
     return len(set(re.findall(r"[a-z]{2,}", re.sub(r"\([^)]*\)", "", text.lower()))) - asked)

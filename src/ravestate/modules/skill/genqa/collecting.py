@@ -1,4 +1,4 @@
-"""Files and folders, taken into an index: what is new or changed is read, what is gone is forgotten."""
+"""Files and folders, brought into an index: new and changed files are read, deleted ones removed."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from .reading import Unreadable, kind_of, read
 __all__ = ["Found", "Outcome", "Reading", "collect", "find", "name_of", "within"]
 
 Reading = Callable[[Path, int], object]
-"""Told of each document that is read: of which file, and how many of it have been read before."""
+"""A callback for each document that is read: the file, and the number of its documents before this one."""
 
 Kind = Literal["added", "replaced", "unchanged", "removed", "unreadable"]
 
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """What became of one file."""
+    """The result for one file."""
 
     path: Path
     kind: Kind
@@ -34,17 +34,17 @@ class Outcome:
 
 @dataclass(slots=True)
 class Found:
-    """The files under some paths, before any of them is read."""
+    """The files under some paths, before they are read."""
 
     files: list[tuple[Path, str]] = field(default_factory=list[tuple[Path, str]])
-    """Each with what an answer names as its source."""
+    """Each with the source that answers name."""
     roots: list[Path] = field(default_factory=list[Path])
-    """The folders in which files that are gone are looked for."""
+    """The folders in which files may have been deleted."""
     unreadable: list[Outcome] = field(default_factory=list[Outcome])
 
 
 def find(paths: Iterable[Path], index: Index) -> Found:
-    """Look for the files under `paths`: files as they are, folders with all in them that can be read.
+    """Return the files under `paths`: single files, and all readable files of folders.
 
     Hidden files, and links to folders, are passed over.
     """
@@ -65,15 +65,15 @@ def find(paths: Iterable[Path], index: Index) -> Found:
 
 
 def collect(found: Found, index: Index, reading: Reading | None = None) -> Iterator[Outcome]:
-    """Bring `index` up to what was found, file by file; each is complete, or as it was before.
+    """Bring `index` up to date, file by file; each file is taken in as a whole, or not at all.
 
     Args:
         found: The files.
-        index: Takes them in.
-        reading: A file may hold millions of documents: is told of each.
+        index: The index.
+        reading: A callback for each document; a file may hold millions of them.
 
     Yields:
-        What became of each file, in order; those that are gone come last.
+        The result for each file, in order; deleted files come last.
 
     Raises:
         PlatformError: The disk is full, or another process has been writing for too long.
@@ -92,12 +92,12 @@ def collect(found: Found, index: Index, reading: Reading | None = None) -> Itera
 
 
 def name_of(path: Path) -> str:
-    """The path as the index has it: names that are not UTF-8 are spelt out."""
+    """Return the path's name in the index; bytes that are not UTF-8 are spelt out."""
     return os.fsencode(path).decode("utf-8", "backslashreplace")
 
 
 def within(name: str, root: Path) -> bool:
-    """Whether the file of this name is `root`, or in it."""
+    """Return whether the file of this name is `root`, or in it."""
     above = name_of(root)
     return name == above or name.startswith(above.rstrip(os.sep) + os.sep)
 

@@ -1,4 +1,4 @@
-"""What is kept of a text: documents, and passages that can be answers."""
+"""Documents, and passages that can be answers."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ class Passage:
 
     text: str
     hints: str = ""
-    """Further words that a question may use for what it says: they are searched, and never shown."""
+    """Further words that a question may use for it: they are searched, and never shown."""
 
 
 @dataclass(frozen=True, slots=True)
 class Document:
-    """A part of a file that is about one thing."""
+    """A part of a file about one subject."""
 
     title: str
-    """What it is about: each passage is understood under it."""
+    """The subject; it gives each passage its sense."""
     source: str
-    """Where an answer says that it is from."""
+    """The source that an answer names."""
     passages: Iterable[Passage]
-    """May be a generator: a large file is never held in memory."""
+    """The passages, possibly from a generator: a large file is never in memory as a whole."""

@@ -1,4 +1,4 @@
-"""The index: one SQLite file that holds passages, where they are from, and which words stand in which."""
+"""The index: one SQLite file with passages, their sources, and their words."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ from .stems import TOKENIZER
 __all__ = ["Found", "Index", "IndexedFile"]
 
 FORMAT = 1
-"""Of the file; one with a greater number is refused, one with a smaller number would be brought up to it."""
+"""The version of the file format. A greater one is refused."""
 APPLICATION = 0x52764741
-"""Marks a file as ours."""
+"""The mark of our files."""
 
 _SCHEMA = f"""
 CREATE TABLE files (
@@ -36,21 +36,21 @@ CREATE VIRTUAL TABLE words USING fts5vocab(passages, 'row');
 PRAGMA application_id = {APPLICATION};
 PRAGMA user_version = {FORMAT};
 """
-# What a match in the title, the text and the hints is worth.
+# The weight of a match in the title, the text and the hints.
 _RANK = "bm25(passages, 1.0, 1.0, 0.7)"
 
 
 @dataclass(frozen=True, slots=True)
 class IndexedFile:
-    """A file as it was when it was read."""
+    """A file at the time when it was read."""
 
     path: str
     size: int
     """Bytes."""
     modified: int
-    """Nanoseconds, as the file system has it."""
+    """Nanoseconds, from the file system."""
     digest: str
-    """Of what it holds."""
+    """A hash of its content."""
     passages: int = 0
 
 
@@ -67,8 +67,8 @@ class Found:
 class Index:
     """Passages on disk. Any number of threads and processes may read while one writes.
 
-    Each file is taken in, replaced or forgotten as a whole, in one transaction: whatever happens in between (Ctrl-C,
-    ``kill -9``, a full disk), what was there before is still there.
+    Each file is added, replaced or removed as a whole, in one transaction. After Ctrl-C, ``kill -9`` or on a full disk the
+    index is as it was before.
 
     Example:
         ::
@@ -79,14 +79,14 @@ class Index:
     """
 
     def __init__(self, path: Path, *, timeout: float = 30.0) -> None:
-        """Open the file, or make it.
+        """Open the file, or create it.
 
         Args:
-            path: Its folder is made as well.
+            path: The file; its folder is created as well.
             timeout: Seconds to wait for another process that writes.
 
         Raises:
-            PlatformError: It cannot be opened, is of a newer version, or is no index.
+            PlatformError: It cannot be opened, has a newer version, or is no index.
         """
         self.path = path
         self._lock = threading.RLock()
@@ -109,12 +109,12 @@ class Index:
         self.close()
 
     def close(self) -> None:
-        """Let go of the file."""
+        """Close the file."""
         with self._lock:
             self._base.close()
 
     def in_place(self) -> bool:
-        """Whether the file that was opened is still the one under this path."""
+        """Return whether the path still leads to the open file."""
         try:
             seen = self.path.stat()
         except OSError:
@@ -124,7 +124,7 @@ class Index:
     # ------------------------------------------------------------------------------- what is in it
 
     def files(self) -> Iterator[IndexedFile]:
-        """All files that have been read, by path."""
+        """Yield all files that have been read, by path."""
         with self._lock, self._told():
             rows = self._base.execute(
                 "SELECT path, size, modified, digest, passages FROM files ORDER BY path"
@@ -132,7 +132,7 @@ class Index:
         return (IndexedFile(*row) for row in rows)
 
     def file(self, path: str) -> IndexedFile | None:
-        """The file under this path, as it was read; None if it was not."""
+        """Return the file under this path; None if it was not read."""
         with self._lock, self._told():
             row = self._base.execute(
                 "SELECT path, size, modified, digest, passages FROM files WHERE path = ?", (path,)
@@ -140,12 +140,12 @@ class Index:
         return None if row is None else IndexedFile(*row)
 
     def size(self) -> int:
-        """How many passages there are."""
+        """Return the number of passages."""
         with self._lock, self._told():
             return self._base.execute("SELECT coalesce(sum(passages), 0) FROM files").fetchone()[0]
 
     def source(self, row: int) -> str:
-        """Where a passage is from."""
+        """Return the source of a passage."""
         with self._lock, self._told():
             found = self._base.execute(
                 "SELECT source FROM documents WHERE first <= ? ORDER BY first DESC LIMIT 1", (row,)
@@ -155,7 +155,7 @@ class Index:
     # ---------------------------------------------------------------------------------- searching
 
     def frequencies(self, stems: Sequence[str]) -> dict[str, int]:
-        """In how many passages each stem stands; what stands in none is left out."""
+        """Return the number of passages with each stem, without those in none."""
         marks = ", ".join("?" * len(stems))
         with self._lock, self._told():
             return dict(
@@ -163,30 +163,30 @@ class Index:
             )
 
     def search(self, words: Sequence[str], limit: int, without: Sequence[str] = ()) -> list[Found]:
-        """The passages that share most with `words` by BM25, the rarer the word the more, best first.
+        """Return the passages that share most with `words`, by BM25, best first.
 
         Args:
-            words: Any text; what could be taken for an operator of the query language is not.
-            limit: So many passages at most.
-            without: Passages that have one of these words are left out.
+            words: Any text; operators of the query language are plain words here.
+            limit: The greatest number of passages.
+            without: Words that leave a passage out.
         """
         return self._matching(_any_of(words), limit, without)
 
     def search_all(
         self, groups: Sequence[Sequence[str]], limit: int, without: Sequence[str] = ()
     ) -> list[Found]:
-        """Like `search`, but only passages that have a word of each group."""
+        """Return passages like `search`, but only those with a word of each group."""
         each = [any_of for group in groups if (any_of := _any_of(group))]
         return self._matching(" AND ".join(f"({any_of})" for any_of in each), limit, without)
 
     # ------------------------------------------------------------------------------------ writing
 
     def put(self, file: IndexedFile, documents: Iterable[Document]) -> int:
-        """Take in a file, in place of what was known of it; return the number of its passages.
+        """Add a file, or replace it; return the number of its passages.
 
         Raises:
-            PlatformError: The disk is full, or another process has been writing for too long. Nothing has changed then,
-                and neither has it if reading `documents` raises.
+            PlatformError: The disk is full, or another process has been writing for too long. The index is unchanged then,
+                and also if reading `documents` raises.
         """
         with self._changing():
             self._forget(file.path)
@@ -211,7 +211,7 @@ class Index:
         return row - first
 
     def touch(self, file: IndexedFile) -> None:
-        """Note a file's new size and date; what it holds is the same."""
+        """Save a file's new size and date; its content is the same."""
         with self._changing():
             self._base.execute(
                 "UPDATE files SET size = ?, modified = ? WHERE path = ?",
@@ -219,7 +219,7 @@ class Index:
             )
 
     def forget(self, path: str) -> bool:
-        """Remove a file and all of its passages; whether it was there."""
+        """Remove a file with its passages; return whether it was there."""
         with self._changing():
             return self._forget(path)
 
@@ -266,7 +266,7 @@ class Index:
 
     @contextmanager
     def _changing(self) -> Generator[None]:
-        """All or nothing."""
+        """Run a transaction."""
         with self._lock, self._told():
             self._base.execute("BEGIN IMMEDIATE")
             try:
@@ -279,7 +279,7 @@ class Index:
 
     @contextmanager
     def _told(self) -> Generator[None]:
-        """Say what went wrong in words."""
+        """Turn an error of SQLite into a `PlatformError` in plain words."""
         try:
             yield
         except sqlite3.Error as error:
@@ -305,6 +305,6 @@ _OTHER = "name another file: --set genqa.index=/path/to/index.sqlite"
 
 
 def _any_of(words: Sequence[str]) -> str:
-    """A query for any of these words; none of them is an operator."""
+    """Return a query for any of these words, without operators."""
     terms = [clean for word in words if (clean := word.replace('"', " ").replace("\0", " ").strip())]
     return " OR ".join(f'"{term}"' for term in terms)

@@ -1,4 +1,4 @@
-"""Questions about the world, answered from documents: with their source, or not at all."""
+"""The module, its settings, slot and signal."""
 
 from __future__ import annotations
 
@@ -17,19 +17,19 @@ Probability = Annotated[float, Field(ge=0, le=1)]
 
 
 class Settings(rs.Settings):
-    """Which documents are asked, and how sure an answer must be."""
+    """The documents, and the confidence that an answer needs."""
 
     index: Path | None = None
     """The file that ``ravestate genqa index`` writes; by default ``ravestate/genqa.sqlite`` in the user's data folder."""
     collection: bool = True
-    """Whether the collection that comes with Ravestate is asked as well: countries, nature, the calendar."""
+    """Whether to search the collection that comes with Ravestate as well: countries, nature, the calendar."""
     sure: Probability = 0.7
-    """From this confidence on an answer is given as sure."""
+    """The least confidence of a sure answer."""
     unsure: Probability = 0.4
-    """From this confidence on an answer is given with a doubt; below, nothing is said."""
+    """The least confidence of an answer with a doubt; below it the module is silent."""
     wording: Literal["sentence", "model"] = "sentence"
-    """``sentence``: the document's own; ``model``: that of wildtalk's language model, which is told nothing but the
-    sentences that were found, and is only heard if it adds no name and no number."""
+    """``sentence``: the document's own words; ``model``: the words of wildtalk's language model. The prompt has only the
+    sentences that were found, and an answer with another name or number is dropped."""
     reader: Path | None = None
     """The folder of another cross-encoder (``model.onnx``, ``tokenizer.json``); the confidence is calibrated for the
     bundled one."""
@@ -44,7 +44,7 @@ class Settings(rs.Settings):
 module = rs.Module("genqa", requires=[rawio, nlp, verbaliser], settings=Settings)
 
 found = module.signal("found", payload=Answer)
-"""The documents have an answer to what the user asks, probable enough to be told."""
+"""The documents have an answer that is probable enough to say."""
 
 before: rs.Slot[Before | None] = module.slot("before", None, type=Before)
-"""The question that was answered last: *and its capital?* refers to it."""
+"""The last question with an answer: *and its capital?* refers to it."""

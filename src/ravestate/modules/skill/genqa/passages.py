@@ -1,4 +1,4 @@
-"""Running text, cut into passages: sentences, and what cannot stand without the one before it."""
+"""Passages of running text: sentences, and groups of sentences that need each other."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from .document import Passage
 __all__ = ["LONGEST", "passages_of"]
 
 LONGEST = 280
-"""Characters of a passage: what is longer is cut, at the best place there is. Reading takes time."""
+"""The greatest number of characters in a passage; a longer sentence is cut."""
 SHORTEST = 12
-"""What is shorter is no answer: page numbers, captions, crumbs."""
+"""The least number of characters in a passage; page numbers and captions are shorter."""
 
 _PARAGRAPH = re.compile(r"\n\s*\n")
 _END = re.compile(r"(?<=[.!?…])[\"”’)\]]*\s+(?=[\"“‘(\[]?[^\W_a-z])|(?<=[。！？])")
@@ -22,7 +22,7 @@ _ABBREVIATION = re.compile(
     r"(?:\b(?:Mr|Mrs|Ms|Dr|Prof|St|vs|No|Fig|Vol|pp?|ca|approx|e\.g|i\.e|cf|etc|al|Jan|Feb|Mar|Apr|Jun|Jul|Aug|Sep|"
     r"Sept|Oct|Nov|Dec|Inc|Ltd|Co|U\.S|U\.K)|\b[A-Z]|\s\d{1,2})\.\s*\Z"
 )
-# A sentence that begins so is about what the sentence before it is about.
+# First words of a sentence that needs the one before it.
 _LEANS = re.compile(r"(?:It|Its|He|She|His|Her|They|Their|This|These|That|Those|There|Here|Such)\b")
 _HYPHEN = re.compile(r"(?<=[a-z])-\n(?=[a-z])")
 
@@ -30,8 +30,8 @@ _HYPHEN = re.compile(r"(?<=[a-z])-\n(?=[a-z])")
 def passages_of(text: str) -> Iterator[Passage]:
     """Yield the passages of `text`, in order.
 
-    Paragraphs are parted by empty lines; a single line break within one is a space. A sentence that begins with *it*,
-    *she*, *this*... stays with the one before, as long as both are short.
+    An empty line ends a paragraph; a single line break is a space. A sentence that begins with *it*, *she* or *this* stays
+    with the one before, as long as both are short.
 
     Example:
         >>> [p.text for p in passages_of("Delft is a town in Holland. It has 100,000 inhabitants.\\n\\nVermeer lived there.")]
@@ -60,8 +60,8 @@ def _sentences(paragraph: str) -> Iterator[str]:
 
 
 def _fitting(paragraph: str, start: int, end: int) -> Iterator[str]:
-    """The sentence from `start` to `end` in parts that are short enough; nothing if it has no letter."""
-    while end - start > LONGEST + SHORTEST:  # or the rest would be a crumb
+    """Yield the sentence from `start` to `end` in short parts; nothing if it has no letter."""
+    while end - start > LONGEST + SHORTEST:  # else the rest would be too short
         window = paragraph[start : start + LONGEST]
         cut = max(window.rfind(mark, LONGEST // 3) for mark in ("; ", ": ", ", ")) + 1
         cut = cut or window.rfind(" ", LONGEST // 3) + 1 or LONGEST

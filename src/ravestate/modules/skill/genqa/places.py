@@ -1,4 +1,4 @@
-"""Where the index is, and who answers from it."""
+"""The place of the index, and one `Answerer` for all contexts."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ _making = threading.Lock()
 
 
 def path_of(settings: Settings) -> Path:
-    """The file of the index: what the settings say, or one in the user's data folder."""
+    """Return the file of the index: from the settings, or in the user's data folder."""
     if settings.index is not None:
         return settings.index.expanduser().absolute()
     return user_folder("data") / "genqa.sqlite"
 
 
 def answerer_of(settings: Settings) -> Answerer:
-    """Who answers by these settings: one for all contexts of the process."""
+    """Return the answerer for these settings; all contexts of the process share it."""
     key = (path_of(settings), settings.collection, settings.reader)
     with _making:
         if key not in _answerers:

@@ -1,4 +1,4 @@
-"""What is asked: the question within an utterance, whether documents can know the answer, and its words."""
+"""The question in an utterance, its words, and whether documents can answer it."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from ravestate.modules._text import printable
 __all__ = ["Question", "as_question", "asks_in_short", "is_vague"]
 
 LONGEST = 2000
-"""Characters of an utterance: what is longer is no question to the world."""
+"""Characters of an utterance; a longer one is no question about the world."""
 
 _FRONT = re.compile(
     r"^(?:(?:so|and|but|well|ok|okay|oh|hey|hi|hello|hm+|um|uh|please|now|then|actually|by the way|tell me|excuse me|"
@@ -26,7 +26,7 @@ _ASKS = re.compile(
     r"(?:'s|'re|s)?\b",
     re.IGNORECASE,
 )
-# Where "you" and "I" are everybody: "how do you make ice cream", "how often must I descale the machine".
+# "You" and "I" for people in general: "how do you make ice cream", "how often must I descale the machine".
 _ANYBODY = re.compile(
     r"\b(?:how|where|when|why|what) (?:do|can|could|would|should) you (?=make|cook|bake|build|say|find|get\b|see|call)|"
     r"\b(?:how(?: \w+)?|where) (?:can|could|must|should|do) i (?!live|look|feel|sound|know|work|like|come|seem|do\b|sleep|eat)|"
@@ -46,7 +46,7 @@ _OPINION = re.compile(
     r"\b(?:best|worst|nicest|better|worse|favou?rite|most beautiful|prettiest|coolest|ugliest|should)\b|"
     r"\bmeaning of life\b"
 )
-# Words that are in questions and say nothing of what is asked for...
+# Words of questions without a meaning for the search.
 _EMPTY_WORDS = """
     you i a an the this that these those some any and or but if of in on at by to for from with as into about than then
     is are was were be been being am do does did doing done has have had having can could will would shall should may might must
@@ -55,7 +55,7 @@ _EMPTY_WORDS = """
     say mean kind kinds type types sort thing things something anything someone somebody one ones give get got go goes going come comes
     came make makes made like look looks
 """
-# ... and those that say what kind of answer is wanted: they help to find it, but it need not have them.
+# Words for the kind of answer: they help to find it, but it need not have them.
 _KIND_WORDS = """
     who whom whose what which when where why how many much old long far name names named call called tell know
     before become became gain gained live lives believe there time year day place way happen happens cause causes average
@@ -70,20 +70,20 @@ _KINDS = frozenset(_KIND_WORDS.split())
 
 @dataclass(frozen=True, slots=True)
 class Question:
-    """What somebody asks of the world."""
+    """A question about the world."""
 
     text: str
     """The question alone."""
     words: tuple[str, ...] = ()
-    """Those that say what it is about, in order, each once."""
+    """The words for its subject, in order, each once."""
     kinds: tuple[str, ...] = ()
-    """Those that only say what kind of answer is wanted."""
+    """The words for the kind of answer."""
     declined: str = ""
-    """Why documents cannot know the answer; empty if they may."""
+    """The reason why documents cannot answer it; empty if they may."""
 
 
 def as_question(heard: str) -> Question:
-    """Find the question in an utterance.
+    """Return the question in an utterance.
 
     Example:
         >>> as_question("Hello! Can you tell me what the capital of Peru is?").words
@@ -105,7 +105,7 @@ def as_question(heard: str) -> Question:
     )
     words = tuple(word for word in said if word.lower() not in _KINDS)
     kinds = tuple(word for word in said if word.lower() in _KINDS)
-    if not words:  # "What is time?": then these are all there is
+    if not words:  # "What is time?" has no other words
         words = tuple(word for word in kinds if word.lower() not in _QUESTION_WORDS)
     if _PERSONAL.search(_ANYBODY.sub("how ", folded)):
         return Question(asked, words, kinds, "it is about the two who talk")
@@ -119,7 +119,7 @@ def as_question(heard: str) -> Question:
 
 
 def is_vague(question: str) -> bool:
-    """Whether it asks about an *it* or *they* of which it says next to nothing.
+    """Return whether a question is about an *it* or *they* that it hardly describes.
 
     Example:
         >>> is_vague("Can they fly?"), is_vague("When did it start to rain?")
@@ -129,7 +129,7 @@ def is_vague(question: str) -> bool:
 
 
 def asks_in_short(text: str) -> bool:
-    """Whether it may ask for something although it is no sentence.
+    """Return whether a text may be a question without being a sentence.
 
     Example:
         >>> asks_in_short("capital of France"), asks_in_short("I am fond of France")

@@ -1,4 +1,4 @@
-"""Questions that do not stand by themselves, *and its capital?*, *and of Spain?*: completed by the one before."""
+"""Questions that refer to the one before: *and its capital?*, *and of Spain?*."""
 
 from __future__ import annotations
 
@@ -16,17 +16,17 @@ LONGEST = 200
 
 @dataclass(frozen=True, slots=True)
 class Before:
-    """The question that was answered before, which stands by itself."""
+    """The question before, in a form that needs no other."""
 
     question: str
     title: str
-    """What the document is about that had the answer."""
+    """The title of the document with the answer."""
     at: float
-    """When, in seconds since the context began."""
+    """Its time, in seconds since the context began."""
 
     @property
     def subject(self) -> str:
-        """What it was about, in the question's own words; empty if that cannot be told."""
+        """Its subject, in its own words; empty if that cannot be found."""
         named = re.search(rf"\b(?:the )?{re.escape(self.title)}\b", self.question, re.IGNORECASE)
         if named is not None and self.title:
             return named[0]
@@ -35,7 +35,7 @@ class Before:
 
 
 def completed(heard: str, before: Before | None) -> str | None:
-    """Return the question with what it refers to written out; itself if it refers to nothing, None if nobody knows to what.
+    """Return the question with the reference written out; None if there is no question that it may refer to.
 
     Example:
         >>> before = Before("what is the population of Austria?", "Austria", 0.0)
@@ -67,7 +67,7 @@ def completed(heard: str, before: Before | None) -> str | None:
 
 
 def other_wordings(question: str) -> Iterator[str]:
-    """Questions whose answer decides a question of yes or no.
+    """Yield questions whose answer decides a yes-or-no question.
 
     Example:
         >>> list(other_wordings("Is Paris the capital of Germany?"))
@@ -101,7 +101,7 @@ _THERE = re.compile(
     r"(?<!\bis )(?<!\bare )(?<!\bwas )(?<!\bwere )\bthere\b(?! (?:is|are|was|were|be|a|an|any|really)\b)",
     re.IGNORECASE,
 )
-# Nothing stands before it that it may mean: "how do plants make their food" stands by itself.
+# A noun before the pronoun takes it: "how do plants make their food" needs no other question.
 _ITS = re.compile(
     r"^(?P<before>(?:(?:what|who|where|when|how|which|and|is|are|was|were|does|do|did|can|much|many|big|large|old|long|"
     r"high|'s|what's|who's|where's|about|tell|me) )*)(?:its|their|the country's)\b",

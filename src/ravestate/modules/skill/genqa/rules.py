@@ -1,4 +1,4 @@
-"""When documents are asked, and what is said of what they say."""
+"""The rules: when documents are searched, and when their answer is said."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ from .wording import intent_of, wording_rule
 
 @module.rule(when=rs.startup, background=True)
 def load(ctx: rs.RuleContext) -> None:
-    """Open the index and load the reader while the agent is up already, so that the first question need not wait."""
-    with contextlib.suppress(PlatformError):  # the first question reports it
+    """Open the index and load the reader in the background, so that the first question need not wait."""
+    with contextlib.suppress(PlatformError):  # the first question raises it again
         try:
             answerer_of(ctx.settings).load()
             give_back()
@@ -48,11 +48,11 @@ REMEMBERED = 120.0
 """Seconds for which a question may be referred to."""
 
 
-# Of every utterance, question or not: a rule that waited for the signal of a question would hold each statement for
-# seconds, and nobody would be bored meanwhile.
+# It runs for every utterance, question or not. A rule that waited for the signal of a question would hold each
+# statement for seconds, and `idle` would see no boredom meanwhile.
 @module.rule(when=nlp.text.changed & nlp.question.changed, reads=before, writes=before, emits=found)
 def find(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Ask the documents."""
+    """Search the documents."""
     settings: Settings = ctx.settings
     short = ctx.payload(nlp.question.changed) is None
     if short and not asks_in_short(ctx.payload(nlp.text.changed)):
@@ -80,7 +80,7 @@ def find(ctx: rs.RuleContext) -> rs.Resign | None:
 
 
 def best_answer(answerer: Answerer, heard: str, settings: Settings) -> Answer:
-    """What the documents say; to a question of yes or no also what decides it. What is asked vaguely is not sure."""
+    """Return the best answer. A yes-or-no question may be decided by another question; an answer to a vague one is not sure."""
     answer = answerer.answer(heard)
     if answer.confidence < settings.unsure and not answer.reason:
         for wording in other_wordings(answer.question):
@@ -94,6 +94,6 @@ def best_answer(answerer: Answerer, heard: str, settings: Settings) -> Answer:
 
 @module.rule(when=found, writes=verbaliser.intent)
 async def say(ctx: rs.RuleContext) -> None:
-    """Say what the documents say, and where it is from."""
+    """Say the answer and its source."""
     answer = ctx.payload(found)
     ctx[verbaliser.intent] = intent_of(answer, answer.text, ctx.settings)

@@ -1,4 +1,4 @@
-"""The collection that comes with Ravestate, and how it gets into an index."""
+"""The collection that comes with Ravestate, and its way into an index."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from .index import Index, IndexedFile
 __all__ = ["SHIPPED", "bring_up", "documents"]
 
 SHIPPED = "ravestate:collection"
-"""Under this name the collection stands among the files of an index."""
+"""The collection's name among the files of an index."""
 
 _OWN = "Ravestate's own collection"
 _FACTBOOK = "world-factbook.jsonl.gz"
@@ -23,9 +23,9 @@ _GENERAL = "general.yaml"
 
 
 def bring_up(index: Index, *, wanted: bool = True) -> bool:
-    """See that `index` holds the collection of this version, or that it does not if it is not `wanted`.
+    """Add this version of the collection to `index`, or remove it if it is not `wanted`.
 
-    Takes about a second where there is something to do. Returns whether there was.
+    Return whether there was anything to do; it takes about a second then.
 
     Raises:
         PlatformError: See `Index.put`.
@@ -44,7 +44,7 @@ def bring_up(index: Index, *, wanted: bool = True) -> bool:
 
 
 def documents(factbook: bytes, general: bytes) -> Iterator[Document]:
-    """The documents of the collection's two files."""
+    """Yield the documents of the collection's two files."""
     import yaml
 
     for line in gzip.decompress(factbook).splitlines():

@@ -1,4 +1,4 @@
-"""Words as the index knows them: its own tokenizer, asked outside of it."""
+"""Stems of words, by the tokenizer of the index."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ import threading
 __all__ = ["TOKENIZER", "Stems"]
 
 TOKENIZER = "porter unicode61 remove_diacritics 2"
-"""Letters and digits, lower case, without accents, English endings removed."""
+"""Letters and digits, lower case, without accents and English endings."""
 
 
 class Stems:
-    """Gives the stems of words exactly as SQLite's tokenizer makes them. Safe from any thread.
+    """SQLite's tokenizer, as a function. Thread-safe.
 
     Example:
         >>> Stems()("Was the capital of Colombia always Bogotá?", "capitals")
@@ -39,5 +39,5 @@ class Stems:
         return [[term for _, term in sorted(stems)] for stems in found]
 
     def close(self) -> None:
-        """Let go of it."""
+        """Close its database."""
         self._base.close()

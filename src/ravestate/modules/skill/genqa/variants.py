@@ -1,4 +1,4 @@
-"""Words that ask for the same thing: irregular forms, spellings, and a few everyday synonyms."""
+"""Words with the same meaning in a question: irregular forms, spellings, a few synonyms."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ _VARIANTS = _read()
 
 
 def variants_of(word: str) -> tuple[str, ...]:
-    """The word itself, and others that say the same.
+    """Return the word itself and its variants.
 
     Example:
         >>> variants_of("wrote"), variants_of("Peru")

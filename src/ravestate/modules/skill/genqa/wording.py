@@ -1,4 +1,4 @@
-"""How an answer is worded: as the document has it, or by a language model that is held to it."""
+"""The wording of an answer: the document's own, or a language model's under control."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ from .names import module as genqa
 __all__ = ["intent_of", "is_supported", "prompt", "wording_rule"]
 
 TOLD = 3
-"""So many passages are told to the model at most."""
+"""The greatest number of passages in the prompt."""
 WORTH_TELLING = 3.0
-"""A passage whose score is lower than the best one's by more is not told."""
+"""The greatest distance to the best score of a passage in the prompt."""
 FAMILIAR = 0.6
-"""So much of what the model says must be words of the passages and the question."""
+"""The least share of the model's words that the passages and the question have."""
 
 _INSTRUCTION = (
     "You word answers. Answer the question in one short sentence, only with what the quotations between <<< and >>> say. "
@@ -44,16 +44,16 @@ _NUMBERS = frozenset(_NUMBER_WORDS.split())
 
 
 def intent_of(answer: Answer, text: str, settings: Settings) -> verbaliser.Intent:
-    """What is meant by an answer that is worded as `text`."""
+    """Return the intent that says `text`, sure or with a doubt."""
     name = "sure" if answer.confidence >= settings.sure else "unsure"
     return verbaliser.Intent(name, {"answer": text, "source": answer.source}, package=__package__)
 
 
 def wording_rule(settings: Settings) -> rs.Rule[Any, Any]:
-    """A rule that has the language model word what was found, and resigns where it adds something.
+    """Return a rule in which the language model words the answer; it resigns if the model adds something.
 
-    It is made for a context that has wildtalk; it goes before the rule that says the sentence itself, which says it
-    where this one resigns or fails.
+    It is for a context with wildtalk. It goes before the rule that says the sentence itself, which speaks if this one
+    resigns or fails.
     """
     from ravestate.modules import wildtalk
     from ravestate.modules.skill.wildtalk.backend import Message
@@ -84,7 +84,7 @@ def wording_rule(settings: Settings) -> rs.Rule[Any, Any]:
 
 
 def passages_for(answer: Answer) -> list[str]:
-    """What the model is told: the answer's passage, and others that are about as good."""
+    """Return the passages for the prompt: the answer's, and others about as good."""
     best = next((c for c in answer.candidates if c.text == answer.text), None)
     least = best.score - WORTH_TELLING if best is not None else 0.0
     texts = [answer.text, *(c.text for c in answer.candidates if c.score >= max(least, 0.0))]
@@ -92,16 +92,16 @@ def passages_for(answer: Answer) -> list[str]:
 
 
 def prompt(question: str, passages: Sequence[str]) -> list[tuple[str, str]]:
-    """The conversation for the model, as (role, text): no passage can end the quotation that it stands in."""
+    """Return the conversation for the model, as (role, text). No passage can end its own quotation."""
     quoted = "\n".join(f"<<< {re.sub('<<<|>>>', ' ', passage)} >>>" for passage in passages)
     return [("system", _INSTRUCTION), ("user", f"{quoted}\n\nQuestion: {question}\nAnswer:")]
 
 
 def is_supported(text: str, passages: Sequence[str], question: str) -> bool:
-    """Whether `text` says nothing that `passages` do not: their numbers, their names, mostly their words.
+    """Return whether `passages` support `text`: its numbers, its names, and most of its words.
 
-    Numbers must stand in the passages, names in the passages or the question; and it denies something if, and only if,
-    the first passage, which is the answer, does.
+    Numbers must stand in the passages, names in the passages or the question. The text has a denial if, and only if, the
+    first passage has one, because that is the answer.
 
     Example:
         >>> told = ["The capital of Peru is Lima."]
@@ -128,5 +128,5 @@ def is_supported(text: str, passages: Sequence[str], question: str) -> bool:
 
 
 def _words(text: str) -> list[str]:
-    """Words and numbers; ``1,234.5`` is one, ``Peru's`` is *Peru*."""
+    """Return words and numbers; ``1,234.5`` is one number, ``Peru's`` is *Peru*."""
     return re.findall(r"\d[\d.,]*\d|\d|\w\w+(?:-\w+)*", text)

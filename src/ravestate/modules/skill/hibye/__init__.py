@@ -1,4 +1,4 @@
-"""Greets and bids farewell: when users come and go, and when they say hello or goodbye."""
+"""Greetings and goodbyes: when users come and go, and when they say hello or goodbye."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Greets and bids farewell: when users come and go, and when they say hello or goodbye."""
+"""The module and its slot."""
 
 from __future__ import annotations
 
@@ -8,4 +8,4 @@ from ravestate.modules import interloc, rawio, verbaliser
 module = rs.Module("hibye", requires=[rawio, interloc, verbaliser])
 
 parted: rs.Slot[float | None] = module.slot("parted", None)
-"""When the agent said goodbye last, in seconds since the context began."""
+"""The agent's last goodbye, in seconds since the context began."""

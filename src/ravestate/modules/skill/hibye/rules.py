@@ -1,4 +1,4 @@
-"""When to greet, and when to bid farewell."""
+"""The rules: when to greet, and when to say goodbye."""
 
 from __future__ import annotations
 
@@ -10,21 +10,21 @@ from .names import module, parted
 from .words import is_farewell, is_greeting
 
 JUST_NOW = 60.0
-"""Seconds for which a goodbye counts: who leaves after it is not bidden farewell again."""
+"""Seconds for which a goodbye counts: a user who leaves after it hears no second one."""
 
 
 @module.rule(
     when=interloc.users.added, writes=verbaliser.intent, weight=1.1
-)  # before a farewell in the same moment
+)  # before a goodbye in the same moment
 async def greet_who_comes(ctx: rs.RuleContext) -> None:
-    """Somebody is there who was not."""
+    """Greet a user who comes."""
     name = ctx.payload(interloc.users.added).item
     ctx[verbaliser.intent] = Intent("greeting", {"name": name}, __package__)
 
 
 @module.rule(when=interloc.users.removed, reads=parted, writes=verbaliser.intent)
 async def bid_farewell_to_who_leaves(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Somebody is gone."""
+    """Say goodbye to a user who leaves."""
     said = ctx[parted]
     if said is not None and ctx.now - said < JUST_NOW:
         return rs.Resign("goodbye has been said")
@@ -35,12 +35,12 @@ async def bid_farewell_to_who_leaves(ctx: rs.RuleContext) -> rs.Resign | None:
 
 @module.rule(when=rawio.input.changed.where(is_greeting), writes=verbaliser.intent)
 async def answer_hello(ctx: rs.RuleContext) -> None:
-    """The user says hello."""
+    """Answer a greeting."""
     ctx[verbaliser.intent] = Intent("hello", package=__package__)
 
 
 @module.rule(when=rawio.input.changed.where(is_farewell), writes=(verbaliser.intent, parted))
 async def answer_goodbye(ctx: rs.RuleContext) -> None:
-    """The user says goodbye."""
+    """Answer a goodbye."""
     ctx[parted] = ctx.now
     ctx[verbaliser.intent] = Intent("goodbye", package=__package__)

@@ -1,4 +1,4 @@
-"""Whether an utterance is nothing but a greeting, or a farewell."""
+"""Utterances that are only a greeting, or only a goodbye."""
 
 from __future__ import annotations
 
@@ -19,16 +19,16 @@ FAREWELL = re.compile(
     re.IGNORECASE,
 )
 EXTRA_WORDS = 3
-"""So many words may follow: "hello my dear robot" is a greeting, "hello, can you tell me the time?" is more."""
+"""The number of words that may follow: "hello my dear robot" is a greeting, "hello, can you tell me the time?" is more."""
 
 
 def is_greeting(text: str) -> bool:
-    """Whether `text` only greets."""
+    """Return whether `text` only greets."""
     return _only(GREETING, text)
 
 
 def is_farewell(text: str) -> bool:
-    """Whether `text` only says goodbye."""
+    """Return whether `text` only says goodbye."""
     return _only(FAREWELL, text)
 
 

@@ -1,4 +1,4 @@
-"""Small talk about the user: asks who he is, remembers it, and knows it when he comes back."""
+"""Small talk about the user: the agent asks about them, remembers the answers, and recognises them later."""
 
 from __future__ import annotations
 

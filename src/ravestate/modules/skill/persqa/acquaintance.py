@@ -1,4 +1,4 @@
-"""The user, as far as the agent knows him: in this talk, and in memory."""
+"""The user as the agent knows them: from this talk, and from memory."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ __all__ = ["Acquaintance", "Noted"]
 
 @dataclass(frozen=True, slots=True)
 class Acquaintance:
-    """Who the user is, what is known of him, and how the talk about that stands. It never changes.
+    """The user, the facts about them, and the state of the talk. Immutable.
 
     Attributes:
-        who: His node; None while his name is not known.
-        facts: Values by topic, but for the name.
-        talk: How the talk stands.
+        who: The user's node; None while their name is not known.
+        facts: Values by topic, without the name.
+        talk: The state of the talk.
     """
 
     who: ontology.Node | None
@@ -31,16 +31,16 @@ class Acquaintance:
 
     @property
     def name(self) -> str | None:
-        """His name."""
+        """The user's name."""
         return None if self.who is None else self.who.get(NAME)
 
     @property
     def known(self) -> Facts:
-        """Values by topic, the name among them."""
+        """Values by topic, with the name."""
         return {NAME: (self.name,), **self.facts} if self.name else self.facts
 
     def recall(self, graph: ontology.Graph) -> Acquaintance:
-        """Ask memory what it has of him, whom it knows by his name, unless it was asked before."""
+        """Return the user with the facts that memory has under their name. Memory is asked once per talk."""
         if self.talk.met or self.who is None:
             return self
         found = graph.get(self.who.id) or records.named(graph, self.who[NAME])
@@ -54,7 +54,7 @@ class Acquaintance:
         )
 
     def noted(self, graph: ontology.Graph) -> Acquaintance:
-        """Write down what he has told in this talk; nothing while his name is not known."""
+        """Save what the user told in this talk; nothing while their name is not known."""
         now = self.recall(graph)
         if now.who is None:
             return now
@@ -66,17 +66,17 @@ class Acquaintance:
 
     @property
     def _once(self) -> Facts:
-        """All that memory may have of him on this talk's account, by topic."""
+        """All facts that this talk may have put into memory, by topic."""
         remembered, once = self.talk.remembered, self.talk.once
         return {topic: remembered.get(topic, ()) + once.get(topic, ()) for topic in {**remembered, **once}}
 
     def renamed(self, graph: ontology.Graph, name: str) -> Acquaintance:
-        """He is called otherwise than it was understood.
+        """Return the user under another name, because the first one was misunderstood.
 
-        Who was made in this talk has another name then. Who was remembered stays as he was before this talk, and what
-        was told in it belongs to somebody else.
+        A person that this talk created is renamed. A person from memory gets their old facts back, and the facts of this
+        talk go to the new name.
         """
-        assert self.who is not None  # his name was understood
+        assert self.who is not None  # their name was understood
         if not self.talk.met:
             return replace(self, who=self.who.with_properties(name=name))
         if self.talk.newcomer:
@@ -93,8 +93,9 @@ class Acquaintance:
         )
 
     def rebased(self, base: Acquaintance, after: Acquaintance) -> Acquaintance:
-        """The user as he is now, with what has become of `base` in the meantime: `after`. What is not any more as it was at
-        `base` stays as it is: the user has gone on talking."""
+        """Return this state of the user with the changes from `base` to `after`.
+
+        A field that has changed since `base` stays as it is, because the user has gone on talking."""
         same_user = (self.who, self.talk.met) == (base.who, base.talk.met)
         facts = dict(self.facts)
         for topic in {**base.facts, **after.facts}:
@@ -110,11 +111,11 @@ class Acquaintance:
 
 
 class Noted(NamedTuple):
-    """What memory has made of the user."""
+    """The result of asking memory about the user, or of saving what they told."""
 
     base: Acquaintance
-    """As he was known when it was asked."""
+    """The user before memory was asked."""
     after: Acquaintance
-    """As he is known by what it answered."""
+    """The user with the answer of memory."""
     called: str | None
-    """By what name he was known before he said anything of it."""
+    """The user's name before this utterance."""

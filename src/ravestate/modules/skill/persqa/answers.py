@@ -1,4 +1,4 @@
-"""What is said in answer to a question, without saying it all: *hannover*, *chess and football*, *none of your business*."""
+"""Bare answers to a question: *hannover*, *chess and football*, *none of your business*."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ OPENING = re.compile(
     + r"(?![\w'])[\s,.:;!…-]*)*",
     re.IGNORECASE,
 )  # fmt: skip
-"""What one says before an answer."""
+"""Words before an answer."""
 
 _BE = r"(i'm|i am|im)"
 _LEADS: dict[Kind, str] = {
@@ -43,7 +43,7 @@ _LEADS: dict[Kind, str] = {
     "number": rf"({_BE} )?",
 }  # fmt: skip
 LEADS = {kind: re.compile("^" + words, re.IGNORECASE) for kind, words in _LEADS.items()}
-"""With what an answer of each kind may be introduced."""
+"""Words that introduce an answer of each kind."""
 
 REFUSAL = re.compile(
     r"(?<![\w'])"
@@ -79,7 +79,7 @@ CORRECTION = re.compile(
     + r"(?![\w'])[\s,.:;!…-]*)+",
     re.IGNORECASE,
 )  # fmt: skip
-"""What one says before one puts something right."""
+"""Words before a correction."""
 _NOT_THIS = re.compile(
     r"^\W*((no|it's|i'm|i am|it is)\W+)?not (?P<wrong>.+?)[,;.]\s*((but|it's|i'm|it is|i am|rather) )?(?P<right>.+)$", re.IGNORECASE
 )  # fmt: skip
@@ -91,7 +91,7 @@ _ASIDE = re.compile(r"^\W*((hi+|hello|hey)\b\W*)?(bye|goodbye|let's|lets)\b", re
 
 
 def refuses(text: str) -> bool:
-    """Whether somebody does not want to say.
+    """Return whether the user refuses to answer.
 
     Example:
         >>> refuses("I'd rather not say."), refuses("hannover")
@@ -101,7 +101,7 @@ def refuses(text: str) -> bool:
 
 
 def has_none(text: str) -> bool:
-    """Whether somebody says that there is none.
+    """Return whether the user says that there is none.
 
     Example:
         >>> has_none("nothing special"), has_none("nothing compares to chess")
@@ -111,10 +111,10 @@ def has_none(text: str) -> bool:
 
 
 def answer(text: str, topic: str) -> list[Fact]:
-    """The facts in words that answer a question about `topic`, and make sense as an answer alone.
+    """Return the facts in a bare answer to a question about `topic`.
 
     Args:
-        text: As `phrase.plain` makes it.
+        text: The result of `phrase.plain`.
         topic: The topic's name.
 
     Example:
@@ -139,7 +139,7 @@ def answer(text: str, topic: str) -> list[Fact]:
 
 
 def _name(rest: str) -> tuple[str, ...]:
-    """A name that nothing introduces: more is asked of it, for anything may be said without introduction."""
+    """Return a bare name. The checks are strict, because anything may be said without an introduction."""
     first = re.split(r"[,.;:!?…\n]", rest.strip(), maxsplit=1)[0].split()
     if not first or not first[0][0].isalpha() or any(word.lower() in STATES for word in first[:3]):
         return ()
@@ -147,7 +147,7 @@ def _name(rest: str) -> tuple[str, ...]:
 
 
 def _of(topic: str, said: tuple[str, ...]) -> list[Fact]:
-    """The facts in words that nothing introduces: less may be a value there."""
+    """Return the facts in bare values. Fewer words may be a value here than after an introduction."""
     words = said[0].lower().split() if said else []
     if not words or (words != ["nice"] and (STATES.issuperset(words) or words[0] in REMARKS)):
         return []
@@ -155,11 +155,11 @@ def _of(topic: str, said: tuple[str, ...]) -> list[Fact]:
 
 
 def correction(text: str, topic: str, known: Collection[str], *, explicit: bool = False) -> list[Fact]:
-    """The facts in words that put right what was understood about `topic`: *no, Bremen*, *Bremen, not Hannover*.
+    """Return the facts in a correction: *no, Bremen*, *Bremen, not Hannover*.
 
     Args:
-        text: As `phrase.plain` makes it.
-        topic: The topic's name.
+        text: The result of `phrase.plain`.
+        topic: The topic to correct.
         known: The values that were understood.
         explicit: Whether only *Bremen, not Hannover* counts, and a mere *no, Bremen* does not.
 

@@ -1,4 +1,4 @@
-"""What somebody wants to be forgotten: *forget me*, *forget where I live*."""
+"""Requests to forget: *forget me*, *forget where I live*."""
 
 from __future__ import annotations
 
@@ -30,11 +30,11 @@ _OTHERWISE = re.compile(
     r"\b(i|we|you|they|he|she|people|everybody|everyone|who|to) (will |would |always |might |may |could )*)$",
     re.IGNORECASE,
 )
-"""Before *forget me*: it is no request."""
+"""Words before *forget me* that make it no request."""
 
 
 def wants_to_be_forgotten(text: str) -> bool:
-    """Whether somebody asks for all that is known of him to be forgotten.
+    """Return whether the user wants all that is known about them forgotten.
 
     Example:
         >>> wants_to_be_forgotten("please forget me"), wants_to_be_forgotten("don't forget me")
@@ -58,10 +58,10 @@ _OWN = re.compile(
 
 
 def to_forget(text: str, known: Mapping[str, tuple[str, ...]]) -> list[Fact] | None:
-    """Which facts somebody wants to be forgotten, of all that is known of him; None if he wants nothing of the kind.
+    """Return the known facts that the user wants forgotten; None if the text is no such request.
 
     Args:
-        text: As `phrase.plain` makes it.
+        text: The result of `phrase.plain`.
         known: Values by topic.
 
     Example:

@@ -1,4 +1,4 @@
-"""What somebody asks about himself: *do you know my name*, *where do I live*."""
+"""Questions of the user about themselves: *do you know my name*, *where do I live*."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from .words import word_set
 __all__ = ["EVERYTHING", "about_oneself", "inquiry", "of_whom"]
 
 EVERYTHING = "everything"
-"""In place of a topic: all that is known."""
+"""Stands for all topics."""
 
 ALSO = "(still |actually |really |again |exactly |currently |now |then |even |already |happen to )*"
 KNOW = "(know|remember|recall|learn|learnt|learned|find out|found out|say|tell me|told you|heard|noted|memori[sz]ed?)"
@@ -117,7 +117,7 @@ QUESTIONS = patterns(
         """,
     }
 )  # fmt: skip
-"""Questions for something that is not known to who asks."""
+"""Questions that leave the value open."""
 
 GUESSES = patterns(
     {
@@ -143,7 +143,7 @@ GUESSES = patterns(
         "club": "am i a member of (?!a |any )…",
     }
 )
-"""Questions whether something is so."""
+"""Questions that name a value to confirm."""
 
 _OPENING = re.compile(
     r"^\W*((hey|hi|hello|good (morning|day|evening)|there|ok|okay|so|and|but|well|now|please|say|oh)\b\W*)*",
@@ -162,7 +162,7 @@ _WRAP = re.compile(
     + " ?",
     re.IGNORECASE,
 )  # fmt: skip
-"""What only wraps a question: *do you know where I live*."""
+"""Words around a question: *do you know where I live*."""
 
 _SOMEBODY = patterns(
     {
@@ -178,7 +178,7 @@ _SOMEBODY = patterns(
 
 
 def of_whom(text: str, known: Mapping[str, tuple[str, ...]]) -> str:
-    """The topic under which somebody stands who is asked about by name; empty if he is not known.
+    """Return the topic of a person whom the user names; empty if the person is not known.
 
     Example:
         >>> of_whom("Who is Emma?", {"sister": ("Emma",)})
@@ -194,10 +194,10 @@ def of_whom(text: str, known: Mapping[str, tuple[str, ...]]) -> str:
 
 
 def inquiry(text: str) -> Fact | None:
-    """What somebody asks about himself: a fact without values, or with those that he wants to have confirmed.
+    """Return the fact that the user asks for; it has values if the user wants them confirmed.
 
     Args:
-        text: As `phrase.plain` makes it.
+        text: The result of `phrase.plain`.
 
     Example:
         >>> inquiry("Do you know where I live?"), inquiry("Do I live in Bremen?")
@@ -236,7 +236,7 @@ _OPEN = word_set(
     """do get find buy call ask say tell talk see start make mean bother disturb win lose use know hear understand look sound need
     help stop leave become put turn write spell pronounce reach pay order cook bake fix install learn think forget join owe miss"""
 )
-"""What one asks advice about, or the other's opinion."""
+"""Verbs of questions for advice or for an opinion."""
 _WRAPS = word_set("know remember recall tell say guess wonder ask")
 _ADVICE = re.compile(
     r"\b(?:can|could|may|might|should|shall|will|would|must|have to|need to|going to|if i|supposed)\b",
@@ -246,12 +246,12 @@ _PRIVATE = word_set("like love enjoy play have live work study speak own eat dri
 
 
 def about_oneself(text: str, question: nlp.QuestionWord, triples: tuple[nlp.Triple, ...]) -> bool:
-    """Whether a question is about something of the speaker's own: *how old is my sister*, *what do I drink*.
+    """Return whether a question is about the user's own affairs: *how old is my sister*, *what do I drink*.
 
     Args:
-        text: What was asked.
+        text: The question.
         question: Its kind.
-        triples: What it states.
+        triples: Its triples.
     """
     if _ADVICE.search(text):
         return False

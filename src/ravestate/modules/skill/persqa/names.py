@@ -1,4 +1,4 @@
-"""Small talk about the user: asks who he is, remembers it, and knows it when he comes back."""
+"""The module, its settings, slots and signals."""
 
 from __future__ import annotations
 
@@ -26,31 +26,31 @@ def _known(topics: tuple[str, ...]) -> tuple[str, ...]:
 
 
 class Settings(rs.Settings):
-    """What is asked, and how insistently."""
+    """The topics and the pace of the agent's questions."""
 
     topics: Annotated[tuple[str, ...], AfterValidator(_known)] = ASKED
-    """What to ask about, in this order. What the user tells of his own accord is learnt in any case."""
+    """Topics to ask about, in this order. The agent learns about the others as well, if the user mentions them."""
     gap: Annotated[float, Field(ge=0)] = 30.0
-    """Seconds that a question is left to the user before the next one."""
+    """Seconds from one question to the next."""
     within: Annotated[float, Field(gt=0)] = 90.0
     """Seconds for which a question waits for its answer."""
     ignored: Annotated[int, Field(ge=1)] = 2
-    """After so many questions that the user has left without a word, none is asked until he speaks."""
+    """After this many unanswered questions in a row, the agent asks none until the user speaks."""
 
 
 module = rs.Module("persqa", requires=[rawio, nlp, ontology, verbaliser, interloc, idle], settings=Settings)
 
 who: rs.Slot[ontology.Node | None] = module.slot("who", None, type=ontology.Node)
-"""The user, as memory has him; None as long as his name is not known."""
+"""The user's node in memory; None as long as their name is not known."""
 
 facts: rs.Collection[tuple[str, ...]] = module.collection("facts")
-"""What is known of him: values by topic (``home``, ``hobby``, ...); an empty tuple means that there are none."""
+"""Values by topic (``home``, ``hobby``, ...); an empty tuple means that there are none."""
 
 talk: rs.Slot[Talk] = module.slot("talk", Talk(), type=Talk)
-"""How the talk about him stands: what was asked, and what he would rather not say."""
+"""The state of the talk about the user: what was asked, and what they would rather not say."""
 
 reply = module.signal("reply", payload=Intent)
-"""The user has told or asked something about himself; with what to say to it."""
+"""The user has told or asked something about themselves; the payload is the reply."""
 
 noted = module.signal("noted", payload=Noted)
-"""Memory has been asked about the user, or has written down what he told."""
+"""Memory has looked up the user, or has saved what they told."""

@@ -1,7 +1,7 @@
-"""How sentences are recognised: patterns in lines, one regular expression each.
+"""Patterns for sentences: one regular expression per line, with two signs added.
 
-Two signs are added: ``…`` stands for the words that are wanted, and ``~`` at the end for the end of the sentence, which
-small words such as *again* may precede. White space at both ends of a line does not count.
+``…`` stands for the wanted words. ``~`` at the end of a line stands for the end of the sentence, with or without
+small words such as *again*. White space at both ends of a line does not count.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from collections.abc import Iterator, Mapping
 __all__ = ["Patterns", "either", "patterns", "wanted"]
 
 Patterns = tuple[tuple[str, re.Pattern[str]], ...]
-"""What is recognised, and how."""
+"""Names and their expressions."""
 
 _END = (
     r"( (again|now|then|actually|exactly|at the moment|currently|for a living|in my (free|spare) time|called|please|"
@@ -36,7 +36,7 @@ def patterns(lines: Mapping[str, str]) -> Patterns:
 
 
 def either(text: str) -> str:
-    """One expression that matches any of the lines.
+    """Return one expression that matches any of the lines.
 
     Example:
         >>> either('''
@@ -49,7 +49,7 @@ def either(text: str) -> str:
 
 
 def wanted(match: re.Match[str] | None) -> str:
-    """What stands at the ``…``; nothing if the pattern has none, or did not match."""
+    """Return the words at the ``…``; an empty string if the pattern has none, or did not match."""
     return "" if match is None else match.groupdict().get("wanted") or ""
 
 

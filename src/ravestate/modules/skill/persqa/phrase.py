@@ -1,4 +1,4 @@
-"""Pieces of what somebody says: where a value ends, and whether it can be one."""
+"""Values in sentences: where a value ends, and whether words can be one."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from .words import DETERMINERS, NEVER_IN, NO_EMPLOYER, NO_HOBBY, NO_PLACE, NO_SU
 __all__ = ["LONGEST", "is_value", "plain", "values"]
 
 LONGEST = 500
-"""So many characters are read: who says more does not answer a question."""
+"""Characters of an utterance that are read. A longer one answers no question."""
 
 MARK = re.compile(r"[.;:!?…\n()\[\]{}<>|\"“”„«»]+|,(?=\S*\s*)|\s[-–—]+(?:\s|$)")
 _TITLE = re.compile(r"\b(dr|mr|mrs|ms|prof|st)\.(?= ?\w)", re.IGNORECASE)
@@ -46,7 +46,7 @@ _ENDS: Mapping[Kind, str] = {
     "thing": "because|since|but|so|when|while|if|that|which|who|though|although|as|more|very much|a lot|in my|every",
     "number": "years?|yrs?|and|but|now|this|next",
 }
-"""What follows a value of each kind, and is none of it."""
+"""Words that follow a value of each kind without being part of it."""
 
 ENDS = {kind: re.compile(rf"\s(?:{words})\b.*$", re.IGNORECASE | re.DOTALL) for kind, words in _ENDS.items()}
 
@@ -59,7 +59,7 @@ A_PLACE = re.compile(
 
 
 def plain(text: str) -> str:
-    """What is read of a text: its beginning, with plain apostrophes and single spaces.
+    """Return the beginning of a text, with plain apostrophes and single spaces.
 
     Example:
         >>> plain("I’m\\t Ada")
@@ -71,7 +71,7 @@ def plain(text: str) -> str:
 
 
 def values(rest: str, topic: Topic) -> tuple[str, ...]:
-    """The values at the beginning of `rest`, the words after *I live in* or the like, as they are written down.
+    """Return the values at the beginning of `rest`, tidied. `rest` follows words such as *I live in*.
 
     Example:
         >>> from .topics import TOPICS
@@ -83,7 +83,7 @@ def values(rest: str, topic: Topic) -> tuple[str, ...]:
     for piece in pieces:
         value = _value(piece, topic)
         if value is None:
-            break  # what follows a piece that is none is no value either
+            break  # nothing after such a piece is a value
         if value.casefold() not in [known.casefold() for known in found]:
             found.append(value)
     return tuple(found[: 5 if topic.many else 1])
@@ -92,7 +92,7 @@ def values(rest: str, topic: Topic) -> tuple[str, ...]:
 def _pieces(rest: str, topic: Topic) -> Iterable[str]:
     if not topic.many and topic.kind != "people":
         rest = _TITLE.sub(r"\1", rest)
-        # quotes, at which a value ends, may also stand around it
+        # quotes end a value, but they may also stand around it
         return [MARK.split(rest.lstrip(" .,;:-\"'“„«([{"), maxsplit=1)[0]]
     sentence = re.split(r"[.;:!?…\n()\"]", rest.lstrip(" .,;:-\"'"), maxsplit=1)[0]
     sentence = ENDS[topic.kind].sub("", " " + sentence)
@@ -115,7 +115,7 @@ def _value(piece: str, topic: Topic) -> str | None:
 
 
 def is_value(value: str, topic: Topic) -> bool:
-    """Whether these words can be what `topic` asks for."""
+    """Return whether these words can be a value of `topic`."""
     words = value.lower().split()
     if not words or len(value) > 60 or len(words) > (4 if topic.kind in ("name", "people", "place") else 7):
         return False
@@ -156,7 +156,7 @@ def is_value(value: str, topic: Topic) -> bool:
 
 
 def _without_pictures(value: str) -> str:
-    """A value without the pictures around it, which are no part of a name; one that is nothing else stays."""
+    """Return a value without the emoji around it; an emoji alone stays."""
     if not any(map(str.isalnum, value)):
         return value
     while _is_picture(value[-1]):
@@ -167,10 +167,10 @@ def _without_pictures(value: str) -> str:
 
 
 def _is_picture(letter: str) -> bool:
-    """Whether a character is a picture, its shade, or what joins or colours pictures."""
+    """Return whether a character is an emoji, its shade, or a joiner of emoji."""
     return unicodedata.category(letter) in ("So", "Sk", "Cf") or letter == "\ufe0f"
 
 
 def _tells(letter: str) -> bool:
-    """Whether a character says anything: a letter of any script, or a picture."""
+    """Return whether a character is a letter of any script, or an emoji."""
     return letter.isalpha() or unicodedata.category(letter) == "So"

@@ -1,4 +1,4 @@
-"""What is known of the user after he has told something. Values: nothing is written here."""
+"""The facts about the user after they told something. Nothing is saved here."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ Facts = Mapping[str, tuple[str, ...]]
 
 @dataclass(frozen=True, slots=True)
 class News:
-    """What is new.
+    """The result of learning.
 
     Attributes:
-        facts: All that is known now.
-        topics: What was told about, known before or not.
-        changed: The topics whose old values are replaced or taken away.
-        new: The topics with values that were not known.
+        facts: All facts.
+        topics: The topics that the user told about.
+        changed: Topics whose old values were replaced or removed.
+        new: Topics with values that were not known.
     """
 
     facts: Facts
@@ -32,12 +32,12 @@ class News:
 
 
 def learn(facts: Facts, told: Iterable[Fact], instead_of: tuple[str, ...] = ()) -> News:
-    """Return what is known after somebody has `told` something; his name is none of it.
+    """Return the facts after the user has `told` something; the name is not among them.
 
     Args:
-        facts: What was known.
-        told: What he has told.
-        instead_of: Values that it corrects.
+        facts: The facts before.
+        told: The new facts.
+        instead_of: The values that they correct.
 
     Example:
         >>> learn({"hobby": ("chess",)}, [Fact("hobby", ("go",)), Fact("home", ("Bremen",))]).facts
@@ -72,7 +72,7 @@ def _strike(facts: dict[str, tuple[str, ...]], fact: Fact) -> None:
     if left or (not fact.values and TOPICS[fact.topic].kind not in ("place", "organisation")):
         facts[fact.topic] = left
     else:
-        facts.pop(fact.topic, None)  # there is another, which may be asked for
+        facts.pop(fact.topic, None)  # there is another one to ask for
 
 
 def _without(values: Iterable[str], others: Iterable[str]) -> tuple[str, ...]:
@@ -81,7 +81,7 @@ def _without(values: Iterable[str], others: Iterable[str]) -> tuple[str, ...]:
 
 
 def merged(remembered: Facts, told: Facts) -> Facts:
-    """What was known before, and what was told in this talk, which goes first."""
+    """Return remembered facts and those of this talk together; this talk goes first."""
     found = dict(remembered)
     for topic, values in told.items():
         before = remembered.get(topic, ()) if TOPICS[topic].many and values else ()
@@ -90,7 +90,7 @@ def merged(remembered: Facts, told: Facts) -> Facts:
 
 
 def told_apart(facts: Facts, remembered: Facts, told: Iterable[str]) -> Facts:
-    """Of what is known, what was told in this talk alone."""
+    """Return the facts that come from this talk alone."""
     return {
         topic: _without(facts[topic], remembered.get(topic, ())) if TOPICS[topic].many else facts[topic]
         for topic in told

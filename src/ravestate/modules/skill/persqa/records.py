@@ -1,4 +1,4 @@
-"""What memory has of people, in terms of topics."""
+"""People in memory: topics as nodes and relations."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ __all__ = ["known", "named", "note"]
 
 
 def named(graph: ontology.Graph, name: str) -> ontology.Node | None:
-    """The person of this name; of several the one of whom most is known, of these the oldest."""
+    """Return the person of this name; among several the one with the most relations, then the oldest."""
     people = graph.find("Person", {"name": name})
     if len(people) < 2:
         return people[0] if people else None
@@ -22,7 +22,7 @@ def named(graph: ontology.Graph, name: str) -> ontology.Node | None:
 
 
 def known(graph: ontology.Graph, person: ontology.Node) -> dict[str, tuple[str, ...]]:
-    """What is known of a person: values by topic, in the order of the topics. The name is not among them."""
+    """Return the values of a person by topic, in the order of the topics, without the name."""
     found = _related(graph, person)
     values = {topic: tuple(node["name"] for node in nodes) for topic, nodes in found.items()}
     for topic in TOPICS.values():
@@ -37,15 +37,15 @@ def note(
     facts: Mapping[str, tuple[str, ...]],
     once: Mapping[str, tuple[str, ...]],
 ) -> None:
-    """Write down what is known of a person. To do it twice does no harm.
+    """Save the facts about a person. Doing it twice does no harm.
 
-    Where there may be several values under a topic, those stay that somebody else has written down in the meantime.
+    Where a topic may have several values, values that others saved meanwhile stay.
 
     Args:
-        graph: Where to.
-        person: Of whom; he is saved as well.
+        graph: The memory.
+        person: The person; their node is saved as well.
         facts: Values by topic.
-        once: What may be written down of him and is not so any more, unless it is among `facts`.
+        once: Values that earlier calls may have saved; those not in `facts` are removed.
     """
     graph.save(person)
     related = _related(graph, person)
@@ -74,7 +74,7 @@ def note(
 
 
 def _related(graph: ontology.Graph, person: ontology.Node) -> dict[str, list[ontology.Node]]:
-    """The named nodes to which a person is related, by topic."""
+    """Return the named nodes to which a person is related, by topic."""
     found: dict[str, list[ontology.Node]] = {}
     for relation in graph.relations(person):
         topic = about(relation.name, relation.properties.get("role"))
@@ -84,7 +84,7 @@ def _related(graph: ontology.Graph, person: ontology.Node) -> dict[str, list[ont
 
 
 def _thing(graph: ontology.Graph, topic: Topic, value: str, others: Sequence[ontology.Node]) -> ontology.Node:
-    """The node that a value names; none of the `others`: nobody is his own friend, or brother and sister."""
+    """Return the node that a value names, but none of the `others`: nobody is their own friend."""
     for node in graph.find(topic.type, {"name": value}):
         if node not in others:
             return node

@@ -1,4 +1,4 @@
-"""What there is to say, as intents for the verbaliser."""
+"""The replies, as intents for the verbaliser."""
 
 from __future__ import annotations
 
@@ -13,42 +13,42 @@ from .wording import clause, joined, spoken
 __all__ = ["asking", "clauses", "learned", "memorable", "say", "stating", "summary"]
 
 PACKAGE = __name__.rpartition(".")[0]
-"""Where the phrases are."""
+"""The package with the phrases."""
 
 
 def say(intent: str, known: Facts, **parameters: str | None) -> Intent:
-    """Return an intent whose phrases may mention all that is known, and `parameters`."""
+    """Return an intent whose phrases may use all known facts, and `parameters`."""
     mentioned = {topic: spoken(topic, values) for topic, values in known.items() if values}
     return Intent(intent, {**mentioned, **parameters}, PACKAGE)
 
 
 def asking(topic: str, known: Facts) -> Intent:
-    """Ask about a topic."""
+    """Return the question about a topic."""
     return say(f"ask_{topic}", known)
 
 
 def learned(topic: str, values: tuple[str, ...], known: Facts) -> Intent:
-    """Show that `values` were understood."""
+    """Return a reply that shows which `values` were understood."""
     if not TOPICS[topic].asked:
         return stating("learned", topic, values, known)
     return say(f"learned_{topic}", known, **{topic: spoken(topic, values)})
 
 
 def stating(intent: str, topic: str, values: tuple[str, ...], known: Facts) -> Intent:
-    """Say something that has what is known about one topic as a clause: ``{fact}``."""
+    """Return a reply that states one topic as a clause: ``{fact}``."""
     return say(intent, known, fact=clause(topic, values))
 
 
 def memorable(remembered: Facts, chance: random.Random) -> str:
-    """One of the topics about which something is remembered."""
+    """Return one of the remembered topics."""
     return chance.choice([topic for topic, values in remembered.items() if values])
 
 
 def summary(known: Facts) -> Intent:
-    """Tell the user all that is known of him."""
+    """Return a reply that states all that is known."""
     return say("recall_everything", known, facts=clauses(known))
 
 
 def clauses(known: Facts) -> str:
-    """What is known, each topic as a clause."""
+    """Return all that is known, one clause per topic."""
     return joined([clause(topic, known[topic]) for topic in in_order(known) if known[topic]])

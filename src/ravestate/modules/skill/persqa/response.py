@@ -1,4 +1,4 @@
-"""What becomes of the user's words: what is known after them, and what to say to them."""
+"""The response to an utterance: the facts after it, and the reply."""
 
 from __future__ import annotations
 
@@ -28,13 +28,13 @@ T = TypeVar("T")
 
 @dataclass(frozen=True, slots=True)
 class Response:
-    """What comes of an utterance.
+    """The response to an utterance.
 
     Attributes:
-        answer: What to say to it; None if nothing.
-        user: As he is known after it.
-        errand: What is to be done with memory (None where there is none) before it can be answered: it returns the response
-            after that. A memory that fails is told in ``talk.trouble``; nothing is raised for it.
+        answer: The reply; None if there is none.
+        user: The user after the utterance.
+        errand: A task with memory (None where there is none) that comes before the reply. It returns the final response.
+            It raises nothing: a failure of memory stands in ``talk.trouble``.
     """
 
     answer: Intent | None
@@ -43,13 +43,13 @@ class Response:
 
 
 def respond_to(meaning: Meaning, user: Acquaintance, now: float, chance: random.Random) -> Response:
-    """Return what comes of an utterance.
+    """Return the response to an utterance.
 
     Args:
-        meaning: What was said.
-        user: As he was known before.
+        meaning: The meaning of the utterance.
+        user: The user before it.
         now: Seconds since the context began.
-        chance: Decides what is mentioned.
+        chance: Random numbers, for the choice of a topic to mention.
     """
     listening = replace(user, talk=user.talk.listening(leave=meaning.leave))
     match meaning.kind:
@@ -64,7 +64,7 @@ def respond_to(meaning: Meaning, user: Acquaintance, now: float, chance: random.
             none = Meaning("none", (Fact(meaning.topic, (), gone=True),), meaning.topic)
             return _told(none, closed, now, chance)
         case "which":
-            talk = replace(user.talk, ignored=0)  # the question stands
+            talk = replace(user.talk, ignored=0)  # the question stays open
             return Response(say("which", user.known), replace(user, talk=talk))
         case "mentioned":
             asking_on = replace(listening, talk=listening.talk.asking(meaning.topic, now))
@@ -124,10 +124,10 @@ def _told(meaning: Meaning, user: Acquaintance, now: float, chance: random.Rando
 
 
 async def _written(user: Acquaintance, name: str | None, memory: ontology.Memory | None) -> Acquaintance:
-    """Write down what is known of the user, who has said that this is his name, if he has."""
+    """Save the facts about the user, under their new name if they told one."""
     again = name is not None and not (user.name and same(user.name, name))
     try:
-        if user.who is not None:  # else it is kept for the talk
+        if user.who is not None:  # else the facts stay in the talk
             user = await _at_once(
                 memory, lambda graph: (user.renamed(graph, name) if again and name else user).noted(graph)
             )
@@ -136,7 +136,7 @@ async def _written(user: Acquaintance, name: str | None, memory: ontology.Memory
         user = replace(user, talk=replace(user.talk, trouble=str(error)))
     if again:
         return replace(user, who=ontology.Node("Person", {NAME: name}))  # for as long as the talk lasts
-    with contextlib.suppress(RavestateError):  # where nothing can be written, reading may go on
+    with contextlib.suppress(RavestateError):  # reading may work where writing fails
         return await _at_once(memory, user.recall)
     return user
 
@@ -172,7 +172,7 @@ def _of_name(name: str, before: Acquaintance, user: Acquaintance, chance: random
 
 
 def _main(meaning: Meaning, news: News) -> str:
-    """What is worth an answer: what was asked, else the first that is new."""
+    """Return the topic to reply to: the one that was asked for, else the first new one."""
     if meaning.topic in news.topics:
         return meaning.topic
     return next((topic for topic in news.topics if topic in news.new), news.topics[0])
@@ -201,7 +201,7 @@ def _asked(fact: Fact, user: Acquaintance, now: float) -> Response:
         if any(known.values()):
             return Response(summary(known), replace(user, talk=replace(user.talk, reminded=True)))
         return Response(say("recall_nothing", known), user)
-    if not topic:  # what nobody has thought of
+    if not topic:  # no topic covers it
         return Response(say("recall_not", known), user)
     answers = {name: known[name] for name in (topic, *TOPICS[topic].besides) if known.get(name)}
     if answers:
@@ -222,7 +222,7 @@ def _asked(fact: Fact, user: Acquaintance, now: float) -> Response:
 
 
 def _struck(facts: tuple[Fact, ...], user: Acquaintance) -> Response:
-    """Forget something of what he has told."""
+    """Forget some of the facts that the user told."""
     gone: dict[str, tuple[str, ...]] = {}
     left = dict(user.facts)
     for fact in facts:
@@ -244,10 +244,10 @@ def _struck(facts: tuple[Fact, ...], user: Acquaintance) -> Response:
 
 
 async def _forget(user: Acquaintance, memory: ontology.Memory | None) -> Response:
-    """Forget the user, and do not ask him again."""
+    """Forget the user, and ask them nothing more."""
 
     def forget(graph: ontology.Graph) -> None:
-        found = user.recall(graph)  # he may be remembered although memory failed when he came
+        found = user.recall(graph)  # memory may have failed when the user came
         if found.who is not None:
             graph.forget(found.who)
 

@@ -1,4 +1,4 @@
-"""When the user is asked, how he is understood, and who says what."""
+"""The rules: when the agent asks, how it learns, and when it replies."""
 
 from __future__ import annotations
 
@@ -25,13 +25,13 @@ from .understanding import Heard, understand
         verbaliser.intent,
         rawio.output,
         talk,
-    ),  # the output too: else another might say something instead
+    ),  # the output too, so that nobody else speaks at the same time
     weight=1.2,
     cooldown=20.0,
-    detached=True,  # thus the intent, in a causal group of its own, may still be worded
+    detached=True,  # else the intent could not be worded in the same causal group
 )
 async def ask(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Nothing happens: ask the user about himself, or show him that he is remembered."""
+    """Ask the user about themselves, or show that they are remembered."""
     settings: Settings = ctx.settings
     now = ctx[talk]
     if now.quiet:
@@ -45,7 +45,7 @@ async def ask(ctx: rs.RuleContext) -> rs.Resign | None:
         return rs.Resign(f"the user left {now.ignored} questions without a word")
     known = known_of(ctx)
     remembered = {name: had for name, had in now.remembered.items() if had and had == known.get(name)}
-    if remembered and not now.reminded:  # of what still is so
+    if remembered and not now.reminded:  # only facts that still hold
         topic = memorable(remembered, ctx.random)
         values = now.remembered[topic]
         ctx[talk] = replace(now, reminded=True, question=None).mentioning(topic, values)
@@ -72,10 +72,10 @@ async def ask(ctx: rs.RuleContext) -> rs.Resign | None:
     emits=(reply, noted),
 )
 async def listen(ctx: rs.RuleContext) -> None:
-    """Learn what the user tells of himself, and raise what to say to it, if it is for this module to answer.
+    """Learn what the user tells about themselves, and raise a reply if this module has one.
 
-    What he has told is in the slots before memory is asked to keep it, so that the next utterance, which does not wait, builds
-    on it. What memory makes of it is for `acknowledge`, which sees the slots as they are then.
+    The slots change before memory saves anything, because the next utterance does not wait. `acknowledge` puts the result
+    of memory into the slots later.
     """
     settings: Settings = ctx.settings
     heard = Heard(
@@ -97,7 +97,7 @@ async def listen(ctx: rs.RuleContext) -> None:
         if memory is not None and response.user.talk.trouble not in (
             "",
             base.talk.trouble,
-        ):  # else it is told already
+        ):  # else it was logged before
             ctx.log.error("%s", response.user.talk.trouble)
         ctx.emit(noted, Noted(base, response.user, before.name))
     if response.answer is not None and meaning.aloud:
@@ -106,7 +106,7 @@ async def listen(ctx: rs.RuleContext) -> None:
 
 @module.rule(when=noted.max_age(None).detached(), writes=(talk, who, facts, interloc.users), background=True)
 async def acknowledge(ctx: rs.RuleContext) -> None:
-    """Know what memory has made of the user, and tell others his name."""
+    """Put the result of memory into the slots, and the user's name into `interloc.users`."""
     base, after, called = ctx.payload(noted)
     now = acquaintance_of(ctx)
     keep(ctx, now, now.rebased(base, after))
@@ -119,15 +119,15 @@ async def acknowledge(ctx: rs.RuleContext) -> None:
 
 @module.rule(when=reply, writes=verbaliser.intent)
 async def respond(ctx: rs.RuleContext) -> None:
-    """Say what there is to say to the user's words."""
+    """Say the reply."""
     ctx[verbaliser.intent] = ctx.payload(reply)
 
 
 @module.rule(when=rawio.output.changed.max_age(None).detached(), writes=talk, background=True)
 async def overhear(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Whoever makes the agent speak unasked has the user's next words: they are no answer to the question before."""
+    """Notice that the agent said something else after its question: the user's next words may answer that."""
     if not any(letter.isalpha() for letter in ctx.payload(rawio.output.changed)):
-        return rs.Resign("that was no word")  # a feeling that goes with an answer, say
+        return rs.Resign("that was no word")  # a sign of emotion beside an answer, say
     ctx[talk] = ctx[talk].speaking()
     return None
 
@@ -140,7 +140,7 @@ async def overhear(ctx: rs.RuleContext) -> rs.Resign | None:
     background=True,
 )
 async def welcome(ctx: rs.RuleContext) -> rs.Resign | None:
-    """A platform knows who has come: so does memory, perhaps. Others greet; this module reminds him when it is quiet."""
+    """Look up a user who comes with a name. `hibye` greets them; this module reminds them later, in a silence."""
     if len(ctx[interloc.users]) > 1:
         return rs.Resign("somebody is there already")
     before = acquaintance_of(ctx)
@@ -163,7 +163,7 @@ async def welcome(ctx: rs.RuleContext) -> rs.Resign | None:
     background=True,
 )
 async def part(ctx: rs.RuleContext) -> rs.Resign | None:
-    """The user has left: the next talk is another one, with who is left or comes."""
+    """Begin a new talk when the user leaves."""
     left, known = person_of(ctx.payload(interloc.users.removed).item), ctx[who]
     others = list(ctx[interloc.users].values())
     if len(others) > 1 or (others and (left is None or known is None or left[NAME] != known[NAME])):
@@ -174,14 +174,14 @@ async def part(ctx: rs.RuleContext) -> rs.Resign | None:
 
 
 def person_of(item: object) -> ontology.Node | None:
-    """Who an item of `interloc.users` is; None for one without a name."""
+    """Return the person of an item of `interloc.users`; None for one without a name."""
     if isinstance(item, ontology.Node):
         return item if item.get(NAME) else None
     return ontology.Node("Person", {NAME: item.strip()}) if isinstance(item, str) and item.strip() else None
 
 
 async def begin(ctx: rs.RuleContext, user: Acquaintance) -> None:
-    """Talk with this user; ask memory about him."""
+    """Begin a talk with this user, and ask memory about them."""
     keep(ctx, acquaintance_of(ctx), user)
     memory = ctx[ontology.memory]
     if memory is None or user.who is None:
@@ -195,17 +195,17 @@ async def begin(ctx: rs.RuleContext, user: Acquaintance) -> None:
 
 
 def known_of(ctx: rs.RuleContext) -> Facts:
-    """All that is known of the user, his name included."""
+    """Return all that is known about the user, with their name."""
     return acquaintance_of(ctx).known
 
 
 def acquaintance_of(ctx: rs.RuleContext) -> Acquaintance:
-    """The user as the slots have him."""
+    """Return the user from the slots."""
     return Acquaintance(ctx[who], dict(ctx[facts]), ctx[talk])
 
 
 def keep(ctx: rs.RuleContext, before: Acquaintance, after: Acquaintance) -> None:
-    """Put into the slots what is different."""
+    """Write the differences to the slots."""
     if after.who != before.who:
         ctx[who] = after.who
     if after.talk != before.talk:

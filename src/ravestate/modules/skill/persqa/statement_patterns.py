@@ -1,4 +1,4 @@
-"""The words in which somebody states a fact of himself, or takes one back."""
+"""Patterns for sentences that state a fact about the user, or take one back."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ OWN = r"my ((very )?(best|closest|close|good|other|new|older|elder|younger|big|l
 
 
 def _called(nouns: str) -> str:
-    """How one tells of somebody who is called by what he is to the speaker: *my sister is called Emma*."""
+    """Return patterns for sentences about a relative's name: *my sister is called Emma*."""
     return rf"""
         {OWN}({nouns})s?('s? names?| names?)? (is|are)( called| named)? …
         {OWN}({nouns})'s (called|named) …
@@ -137,7 +137,7 @@ STATED = patterns(
         """,
     }
 )  # fmt: skip
-"""What is so; ``hobby:verb`` says what one does."""
+"""Facts that hold; ``hobby:verb`` marks what one does."""
 
 HAVING = patterns(
     {
@@ -145,7 +145,7 @@ HAVING = patterns(
         for relative in RELATIVES
     }
 )
-"""Whom one has, without saying how he is called."""
+"""Relatives without their name."""
 
 GONE = patterns(
     {
@@ -199,4 +199,4 @@ GONE = patterns(
         """,
     }
 )  # fmt: skip
-"""What is not, or no longer, so."""
+"""Facts that do not hold, or no longer."""

@@ -1,4 +1,4 @@
-"""What somebody states of himself, whether he was asked or not: *I live in Hannover and work as a baker*."""
+"""Statements of the user about themselves: *I live in Hannover and work as a baker*."""
 
 from __future__ import annotations
 
@@ -22,22 +22,22 @@ _JOINED = re.compile(
     rf"(?<=\w )(and|but) (?={ADVERBS}(?:live|work|study|come from|moved to|grew up|was born|am|belong to|joined)\b)",
     re.IGNORECASE,
 )
-"""A second verb that shares its subject: *I live in Ulm and work as a baker*."""
+"""A second verb with the same subject: *I live in Ulm and work as a baker*."""
 _UNREAL = re.compile(
     r"\b(?:if|when|whenever|wish|unless|until|once|suppose|imagine|pretend|say|says|said|whether|where|before|while|after|"
     r"dreamt|dreamed|thought|think|thinks|hope|because)(?: that)? $",
     re.IGNORECASE,
 )
-"""Before a statement: it is none of how things are."""
+"""Words before a statement that make it hypothetical."""
 
 
 def statements(text: str, *, persons: Collection[str] = (), asked: str = "") -> list[Fact]:
-    """The facts that somebody states of himself, one for each topic.
+    """Return the facts that a text states, one for each topic.
 
     Args:
-        text: As `plain` makes it.
-        persons: What in it is known to be a person's name.
-        asked: The topic that he was asked about, or an empty string.
+        text: The result of `plain`.
+        persons: The persons' names in it.
+        asked: The topic of the open question, or an empty string.
 
     Example:
         >>> statements("My name is Ada and I live in new york.")
@@ -50,7 +50,9 @@ def statements(text: str, *, persons: Collection[str] = (), asked: str = "") -> 
         known = found.get(fact.topic)
         if known is None or (known.gone and not fact.gone):  # I don't live in Ulm, I live in Bremen
             found[fact.topic] = fact
-    if asked == "home" and "origin" in found and "home" not in found:  # he says that he is from there
+    if (
+        asked == "home" and "origin" in found and "home" not in found
+    ):  # the user says that they are from there
         origin = found.pop("origin")
         found["home"] = Fact("home", origin.values, origin.gone)
     return list(found.values())
@@ -93,7 +95,7 @@ def _denied(text: str) -> Iterator[Fact]:
 
 
 def relative_in(text: str) -> str:
-    """Somebody whom the speaker says to have without telling a name, as a topic; empty if there is none.
+    """Return the relative whom the user mentions without a name, as a topic; empty if there is none.
 
     Example:
         >>> relative_in("I have two brothers")
@@ -104,7 +106,7 @@ def relative_in(text: str) -> str:
 
 
 def likings(said: Iterable[str]) -> list[Fact]:
-    """What somebody likes: what one does, a hobby, and all else.
+    """Return activities as hobbies, and all else as likings.
 
     Example:
         >>> likings(["rock climbing", "pizza"])
@@ -121,7 +123,7 @@ def likings(said: Iterable[str]) -> list[Fact]:
 
 
 def _being(text: str, persons: Collection[str], asked: str) -> Iterator[Fact]:
-    """*I am ...*: a name, or an occupation."""
+    """Yield the facts in *I am ...*: a name, or an occupation."""
     for match in _I_AM.finditer(text):
         if _UNREAL.search(text[: match.start()]):
             continue
@@ -143,7 +145,7 @@ def _being(text: str, persons: Collection[str], asked: str) -> Iterator[Fact]:
 
 
 def worker(text: str) -> list[Fact]:
-    """The facts in *baker at Siemens*: an occupation, and where."""
+    """Return the facts in *baker at Siemens*: an occupation and an employer."""
     said = values(text, TOPICS["occupation"])
     if not said:
         return []
@@ -154,12 +156,12 @@ def worker(text: str) -> list[Fact]:
 
 
 def _heads(value: str) -> bool:
-    """Whether the noun that heads it is an occupation: *head of school* has *head*, *school teacher* has *teacher*."""
+    """Return whether the head noun is an occupation: *head* in *head of school*, *teacher* in *school teacher*."""
     return value.lower().split(" of ")[0].split()[-1] in OCCUPATIONS
 
 
 def _is_person(value: str, text: str, persons: Collection[str]) -> bool:
-    """Whether a value is known to be somebody's name."""
+    """Return whether a value is a person's name."""
     low = value.lower()
     return low.split()[0] not in STATES and any(low == person.lower() for person in persons)
 
@@ -169,7 +171,7 @@ _KEPT = frozenset(["ski", "do", "go"])
 
 
 def gerund(text: str) -> str:
-    """Turn what one does into a hobby.
+    """Return a verb phrase as a hobby.
 
     Example:
         >>> gerund("read books and swim")
@@ -184,7 +186,7 @@ def gerund(text: str) -> str:
 
 
 def _gerund(verb: str, *, sure: bool) -> str:
-    """`sure`: that it is a verb."""
+    """Return the gerund of a verb; with `sure` the word is known to be a verb."""
     low = verb.lower()
     if low.endswith("ing") or not (sure or low in VERBS):
         return verb

@@ -1,4 +1,4 @@
-"""How the talk about the user stands. Values, and how they follow from one another."""
+"""The state of the talk about the user, and its transitions."""
 
 from __future__ import annotations
 
@@ -8,28 +8,28 @@ from dataclasses import dataclass, field, fields, replace
 __all__ = ["FORGET", "TRIES", "Question", "Talk"]
 
 FORGET = "forget"
-"""What is asked about when the user wants to be forgotten; no topic."""
+"""The topic of the question whether the user really wants to be forgotten."""
 
 ENOUGH = 1_000
-"""Whoever was asked so often is not asked again."""
+"""A number of tries after which a topic is never asked again."""
 
 TRIES = 2
-"""So often a topic is brought up in one talk at most."""
+"""The greatest number of questions about one topic in a talk."""
 
 CORRECTABLE = 2
-"""So many utterances long "no, Bremen" means what was learnt last."""
+"""Utterances for which "no, Bremen" corrects the last fact."""
 
 
 @dataclass(frozen=True, slots=True)
 class Question:
-    """What the agent has asked.
+    """A question of the agent.
 
     Attributes:
-        topic: What about.
-        since: When, in seconds since the context began.
-        turns: How often the user has spoken since without answering it.
+        topic: Its topic.
+        since: Seconds from the beginning of the context to the question.
+        turns: The number of utterances since, without an answer.
         heard: Whether it has been said.
-        spoken_over: Whether the agent has said something else since, unasked: a mere no may be meant for that.
+        spoken_over: Whether the agent has said something else since, unasked: a mere no may answer that.
     """
 
     topic: str
@@ -40,31 +40,31 @@ class Question:
 
     @property
     def fresh(self) -> bool:
-        """Whether nobody has said anything since."""
+        """Whether nobody has spoken since."""
         return not self.turns and not self.spoken_over
 
 
 @dataclass(frozen=True, slots=True)
 class Talk:
-    """How the talk stands.
+    """The state of the talk.
 
     Attributes:
-        question: What was asked and is not answered yet.
-        tries: How often each topic was asked.
-        closed: Topics that are not asked in this talk any more.
-        ignored: How many questions in a row the user has left without a word.
-        told: Topics that the user has told about in this talk.
-        last: The topic that was learnt, or mentioned, last.
-        latest: What was said about it.
-        age: How often the user has spoken since.
+        question: The open question.
+        tries: The number of questions about each topic.
+        closed: Topics that this talk does not ask about any more.
+        ignored: The number of unanswered questions in a row.
+        told: Topics that the user told about in this talk.
+        last: The topic that was learnt or mentioned last.
+        latest: Its values.
+        age: The number of utterances since then.
         met: Whether memory was asked about the user.
-        remembered: What it had of him then.
-        once: What he has told in this talk, whether it still counts or not.
-        newcomer: Whether it had never heard of him.
-        reminded: Whether the user knows that he is remembered.
-        trouble: Why memory failed last; empty while it works.
-        warned: Whether the user was told so.
-        quiet: Whether the user has taken leave.
+        remembered: The facts that memory had.
+        once: All values of this talk, also those that no longer hold.
+        newcomer: Whether memory did not know the user.
+        reminded: Whether the agent has shown that it remembers.
+        trouble: The last failure of memory; empty while it works.
+        warned: Whether the user knows about the trouble.
+        quiet: Whether the user has said goodbye.
     """
 
     question: Question | None = None
@@ -85,7 +85,7 @@ class Talk:
     quiet: bool = False
 
     def asking(self, topic: str, now: float) -> Talk:
-        """The agent asks about `topic`."""
+        """Ask about `topic`."""
         return replace(
             self,
             question=Question(topic, now),
@@ -93,14 +93,14 @@ class Talk:
         )
 
     def pending(self, now: float, within: float) -> Question | None:
-        """The question that words of now may answer: it is not too old, and the user has not left it behind."""
+        """Return the question that the user may answer now; None if it is too old or was passed over."""
         question = self.question
         if question is None or question.turns > 1 or now - question.since > within:
             return None
         return question
 
     def listening(self, *, leave: bool) -> Talk:
-        """The user speaks; `leave`: he says goodbye."""
+        """Count an utterance of the user; `leave` means a goodbye."""
         question = self.question
         return replace(
             self,
@@ -111,7 +111,7 @@ class Talk:
         )
 
     def speaking(self) -> Talk:
-        """The agent says something: the question itself, an answer to the user, or something else."""
+        """Count an utterance of the agent: its question, an answer to the user, or something else."""
         question = self.question
         if question is None or question.spoken_over:
             return self
@@ -120,15 +120,15 @@ class Talk:
         return self if question.turns else replace(self, question=replace(question, spoken_over=True))
 
     def waiting(self) -> Talk:
-        """The question was left without a word."""
+        """Give the question up; the user has not answered it."""
         return replace(self, question=None, ignored=self.ignored + 1)
 
     def closing(self, *topics: str) -> Talk:
-        """These topics are not asked any more."""
+        """Close topics for this talk."""
         return replace(self, question=None, closed=self.closed | set(topics))
 
     def learning(self, topics: Collection[str], last: str, latest: tuple[str, ...]) -> Talk:
-        """The user has told about `topics`; what matters most of it are the `latest` values about the `last` one."""
+        """Note that the user told about `topics`; a correction would concern the `latest` values of `last`."""
         answered = self.question is not None and self.question.topic in topics
         return replace(
             self,
@@ -140,7 +140,7 @@ class Talk:
         )
 
     def striking(self, gone: Mapping[str, tuple[str, ...]]) -> Talk:
-        """These values, by topic, are to be forgotten; nobody asks for others."""
+        """Remove values by topic, and ask for no others."""
         remembered = {
             topic: tuple(value for value in values if value not in gone.get(topic, ()))
             for topic, values in self.remembered.items()
@@ -151,11 +151,11 @@ class Talk:
         return replace(talk, remembered=remembered, once={**self.once, **once}, tries={**self.tries, **tries})
 
     def mentioning(self, topic: str, values: tuple[str, ...]) -> Talk:
-        """The agent says what it knows about a topic, which the user may put right."""
+        """Note that the agent states a topic, which the user may correct."""
         return replace(self, last=topic, latest=values, age=0)
 
     def rebased(self, base: Talk, after: Talk) -> Talk:
-        """The talk as it is now, with what has changed from `base` to `after`; not where it has gone on since `base`."""
+        """Return this state with the changes from `base` to `after`, except where it has changed since `base`."""
         names = [one.name for one in fields(Talk)]
         changed = [name for name in names if getattr(self, name) == getattr(base, name)]
         return replace(self, **{name: getattr(after, name) for name in changed})

@@ -1,4 +1,4 @@
-"""What people are asked about, and what they tell of themselves: one table."""
+"""The topics: one table of all that the agent may know about a person."""
 
 from __future__ import annotations
 
@@ -10,37 +10,37 @@ from typing import Literal
 __all__ = ["ASKED", "NAME", "RELATIVES", "TOPICS", "Fact", "Topic", "about", "due", "favourite", "in_order"]
 
 Kind = Literal["name", "place", "activity", "work", "organisation", "subject", "people", "thing", "number"]
-"""What the words of an answer are; it decides how they are read and written."""
+"""The kind of a value. It decides how the value is read and written."""
 
 
 @dataclass(frozen=True, slots=True)
 class Topic:
-    """Something to know of a person.
+    """Something to know about a person.
 
-    Its phrases are the intents ``ask_<name>`` and ``learned_<name>``; what is not asked for needs none of its own.
+    A topic that the agent asks for has the intents ``ask_<name>`` and ``learned_<name>``.
     """
 
     name: str
-    """Also the parameter for its values in phrases."""
+    """The name; also the parameter of phrases with the values."""
     kind: Kind
     relation: str = ""
-    """The relation from the person in memory; empty for a property of his."""
+    """The relation from the person in memory; empty for a property of the person."""
     type: str = ""
-    """The type of the node at its other end."""
+    """The type of the node at the other end of the relation."""
     clause: str = ""
-    """What is known, said to the person."""
+    """The clause that states the values to the user."""
     many: bool = False
-    """Whether there may be several."""
+    """Whether there may be several values."""
     only_with: str = ""
-    """The topic that must be known for this one to be asked: its follow-up."""
+    """The topic that must be known before this one is asked."""
     asked: bool = True
-    """Whether the agent asks for it of its own accord."""
+    """Whether the agent asks for it."""
     nouns: str = ""
-    """What one calls the persons or animals that it is about, as a pattern: *my sister*."""
+    """Nouns for these persons or animals, as a pattern: *my sister*."""
     role: bool = False
-    """Whether the relation stands for several topics, and has in its property ``role`` for which."""
+    """Whether several topics share the relation; its property ``role`` then tells them apart."""
     besides: tuple[str, ...] = ()
-    """Topics that answer a question for it as well: who was born in Ulm need not be asked where he comes from."""
+    """Topics that make the question unnecessary: a birthplace answers the question for the origin."""
 
 
 NAME = "name"
@@ -49,13 +49,13 @@ NAME = "name"
 def _relative(
     name: str, relation: str, nouns: str, *, many: bool = True, role: bool = False, type: str = "Person"
 ) -> Topic:
-    """Somebody of one's own, whose name may be known."""
+    """Return the topic of a relative, or of a pet."""
     clause = f"your {name} is {{}}"
     return Topic(name, "people", relation, type, clause, many, asked=False, nouns=nouns, role=role)
 
 
 class _Topics(dict[str, Topic]):
-    """Favourites are topics as well, without being listed: *favourite food*."""
+    """The topics; favourites (*favourite food*) are topics without being listed."""
 
     def __missing__(self, name: str) -> Topic:
         if not name.startswith("favourite "):
@@ -98,20 +98,20 @@ TOPICS: Mapping[str, Topic] = _Topics(
 """All topics by name, in the order in which they are asked."""
 
 ASKED = tuple(topic.name for topic in TOPICS.values() if topic.asked)
-"""What the agent asks for."""
+"""The topics that the agent asks for."""
 
 RELATIVES = tuple(topic for topic in TOPICS.values() if topic.nouns)
-"""Who is called by what he is to the user."""
+"""The topics with nouns: *my sister*."""
 
 NOT_EMPLOYED = frozenset(
     ["student", "pupil", "retired", "self-employed", "freelancer", "freelance", "pensioner"]
 )
-"""Occupations without an employer to ask for."""
+"""Occupations without an employer."""
 
 
 @dataclass(frozen=True, slots=True)
 class Fact:
-    """What somebody has said of himself.
+    """A fact that somebody has told about themselves.
 
     Example: ``Fact("hobby", ("chess", "football"))``.
     """
@@ -119,11 +119,11 @@ class Fact:
     topic: str
     values: tuple[str, ...]
     gone: bool = False
-    """That it is not, or no longer, so; without values: that there is none."""
+    """Whether the fact does not hold, or no longer; without values, that there is none."""
 
 
 def favourite(words: str) -> str:
-    """The topic of something that one likes best.
+    """Return the topic of a favourite.
 
     Example:
         >>> favourite("favorite Food")
@@ -133,14 +133,14 @@ def favourite(words: str) -> str:
 
 
 def about(relation: str, role: object) -> str:
-    """The topic for which a relation in memory stands; empty if it stands for none."""
+    """Return the topic of a relation in memory; empty if there is none."""
     if isinstance(role, str) and (role in TOPICS or role.startswith("favourite ")):
         return role if TOPICS[role].relation == relation else ""
     return next((t.name for t in TOPICS.values() if t.relation == relation and not t.role), "")
 
 
 def in_order(topics: Iterable[str]) -> list[str]:
-    """Topics in the order of the table, favourites last."""
+    """Return topics in the order of the table, favourites last."""
     order = list(TOPICS)
     return sorted(set(topics), key=lambda name: (order.index(name) if name in order else len(order), name))
 
@@ -154,17 +154,17 @@ def due(
     last: str = "",
     limit: int,
 ) -> str:
-    """The topic to ask about next, or an empty string.
+    """Return the topic to ask about next, or an empty string.
 
-    The follow-up of the `last` topic goes first, then what was asked least, in the order of `wanted`.
+    The follow-up of the `last` topic goes first, then the topic with the fewest tries, in the order of `wanted`.
 
     Args:
         wanted: Names of topics.
         known: The values by topic; an empty tuple means that there are none.
-        closed: Topics that are not to be asked.
-        tries: How often each was asked.
-        last: The topic that was last talked about.
-        limit: So often a topic is asked at most.
+        closed: Topics not to ask about.
+        tries: The number of questions about each.
+        last: The topic of the talk.
+        limit: The greatest number of questions about one topic.
 
     Example:
         >>> due(["name", "home"], {"name": ("Ada",)}, [], {}, limit=2)

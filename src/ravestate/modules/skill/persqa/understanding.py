@@ -1,4 +1,4 @@
-"""What the user's words mean for the talk about him."""
+"""The meaning of an utterance for the talk about the user."""
 
 from __future__ import annotations
 
@@ -21,17 +21,17 @@ from .words import VERBS
 __all__ = ["Heard", "Meaning", "persons_in", "understand"]
 
 Kind = Literal[
-    "nothing",  # that concerns persqa
+    "nothing",  # for persqa
     "told",
     "corrected",
-    "declined",  # he would rather not say
-    "none",  # he has no hobby
+    "declined",  # the user would rather not say
+    "none",  # no hobby, for example
     "unsure",
-    "which",  # he said no more than yes
-    "mentioned",  # somebody of his own, whose name he did not tell
-    "asked",  # what is known of him
-    "strike",  # he wants something of what he told to be forgotten
-    "forget",  # he wants to be forgotten
+    "which",  # the user said no more than yes
+    "mentioned",  # a relative without a name
+    "asked",  # about themselves
+    "strike",  # forget some facts
+    "forget",  # forget everything
     "forget_yes",
     "forget_no",
 ]
@@ -43,12 +43,12 @@ LEAVE = re.compile(
     r"i (?:really )?(?:have to|must|need to|gotta|got to) (?:go|leave|run))\b(?! to\b)",
     re.IGNORECASE,
 )
-"""Takes leave."""
+"""A goodbye."""
 
 
 @dataclass(frozen=True, slots=True)
 class Heard:
-    """An utterance, and what `nlp` made of it."""
+    """An utterance with the results of `nlp`."""
 
     text: str
     yesno: nlp.YesNo = field(default_factory=nlp.YesNo)
@@ -61,15 +61,15 @@ class Heard:
 
 @dataclass(frozen=True, slots=True)
 class Meaning:
-    """What an utterance means.
+    """The meaning of an utterance.
 
     Attributes:
-        kind: What the user does.
-        facts: What he tells, or asks.
-        topic: The question that he answers, by its topic.
-        leave: Whether he takes leave.
-        aloud: Whether it wants a reply. The user's own questions, farewells and games go first: what he tells on
-            the side is learnt in silence.
+        kind: The act of the user.
+        facts: The facts that they tell, or ask for.
+        topic: The topic of the question that they answer.
+        leave: Whether they say goodbye.
+        aloud: Whether the agent replies. Questions, goodbyes and games of the user go first: what they tell on the side
+            is learnt in silence.
     """
 
     kind: Kind
@@ -82,12 +82,12 @@ class Meaning:
 def understand(
     heard: Heard, talk: Talk, known: Mapping[str, tuple[str, ...]], now: float, within: float
 ) -> Meaning:
-    """Return what an utterance means.
+    """Return the meaning of an utterance.
 
     Args:
         heard: The utterance.
-        talk: How the talk stands before it.
-        known: The values by topic, the name among them.
+        talk: The talk before it.
+        known: The values by topic, with the name.
         now: Seconds since the context began.
         within: Seconds for which a question waits for its answer.
     """
@@ -98,7 +98,7 @@ def understand(
     if wants_to_be_forgotten(text):
         return Meaning("forget", leave=leave)
     if topic == FORGET:
-        fresh = pending is not None and pending.fresh  # a yes to something else must not do it
+        fresh = pending is not None and pending.fresh  # a yes to something else must not delete anything
         return _of_forgetting(heard, leave) if fresh else Meaning("nothing", leave=leave)
     if (strike := to_forget(text, known)) is not None:
         everything = any(fact.topic == EVERYTHING for fact in strike)
@@ -150,13 +150,13 @@ def _of_forgetting(heard: Heard, leave: bool) -> Meaning:
 
 
 def may_stand_alone(heard: Heard) -> bool:
-    """Whether an utterance may be an answer by itself: no sentence about others, no request, not adverbs alone."""
+    """Return whether an utterance may be a bare answer: not a sentence about others, a request, or adverbs alone."""
     if heard.yesno and not _YES_AND.match(heard.text):
         return False  # hard to say
     if heard.pos and not _TELLING & set(heard.pos):
         return False
     if len(heard.tokens) < 3:
-        return True  # Bill Gates is no sentence, whatever a parser makes of him
+        return True  # Bill Gates is no sentence, although a parser may make one of it
     for triple in heard.triples:
         subject = str(triple.subject).lower()
         if subject == "you" and triple.predicate.split()[0] not in VERBS:
@@ -171,7 +171,7 @@ _YES_AND = re.compile(
     r"oh|actually|honestly)\b\W+\w",
     re.IGNORECASE,
 )
-"""A yes that goes on: *yes, chess*."""
+"""A yes with an answer after it: *yes, chess*."""
 _TELLING = frozenset(["NOUN", "PROPN", "VERB", "ADJ", "NUM", "X", "SYM"])
 _SPEAKER = frozenset(
     ["i", "we", "my", "our", "you", "it", "that", "this", "they", "these", "those", "his", "her", "their"]
@@ -193,7 +193,7 @@ def _of_yesno(yesno: nlp.YesNo, topic: str, text: str) -> Kind:
 
 
 def _matters(fact: Fact, known: Mapping[str, tuple[str, ...]], topic: str) -> bool:
-    """Whether a denial says anything: it denies what is known, or that there is anything."""
+    """Return whether a denial matters: it denies a known fact, or that there is any."""
     if fact.topic == NAME:
         return any(value in known.get(NAME, ()) for value in fact.values)
     if fact.values:
@@ -203,7 +203,7 @@ def _matters(fact: Fact, known: Mapping[str, tuple[str, ...]], topic: str) -> bo
 
 
 def _before_question(text: str) -> str:
-    """What is said before a question in the same breath: *hannover* in *hannover, and you?*."""
+    """Return the words before a question in the same breath: *hannover* in *hannover, and you?*."""
     parts = _TURNED.split(text.rstrip(" ?"), maxsplit=1)
     return parts[0].strip() if len(parts) > 1 else ""
 
@@ -215,7 +215,7 @@ _TURNED = re.compile(
 
 
 def persons_in(heard: Heard) -> frozenset[str]:
-    """The names of persons in an utterance: those that `nlp` has found, and what has a capital and is nothing else."""
+    """Return the persons' names in an utterance: those that `nlp` found, and capitalised words that are nothing else."""
     plain_words = {word for word, pos in zip(heard.tokens, heard.pos, strict=False) if pos in _NO_NAMES}
     other = {word for entity in heard.entities if entity.label != "PERSON" for word in entity.text.split()}
     found = {

@@ -1,4 +1,4 @@
-"""How values are written down, and how they are said."""
+"""The spelling of values, and their wording in sentences."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from .words import SMALL
 __all__ = ["among", "clause", "joined", "same", "spoken", "tidy"]
 
 BARE = frozenset(["retired", "self-employed", "freelance", "unemployed"])
-"""Occupations that take no article."""
+"""Occupations without an article."""
 
 
 def tidy(text: str, topic: Topic) -> str:
-    """Write a value as it is written: names with capitals, the rest in the user's words.
+    """Return a value in its usual spelling: names with capitals, the rest in the user's words.
 
     Example:
         >>> tidy("new york", TOPICS["home"]), tidy("Nurse", TOPICS["occupation"]), tidy("ibm", TOPICS["employer"])
@@ -46,7 +46,7 @@ def tidy(text: str, topic: Topic) -> str:
 def _capital(word: str, *, first: bool) -> str:
     if word in SMALL and not first:
         return word
-    # not str.title, which would make "O'Brien'S" of it, nor capitalize, which would undo "McKay"
+    # str.title would write "O'Brien'S", and str.capitalize "Mckay"
     parts = word.split("-")
     word = "-".join(
         part if index and part in SMALL else part[:1].upper() + part[1:] for index, part in enumerate(parts)
@@ -55,7 +55,7 @@ def _capital(word: str, *, first: bool) -> str:
 
 
 def same(one: str, other: str) -> bool:
-    """Whether two values mean the same.
+    """Return whether two values mean the same.
 
     Example:
         >>> same("The Red Cross", "red cross")
@@ -65,7 +65,7 @@ def same(one: str, other: str) -> bool:
 
 
 def among(value: str, others: Iterable[str]) -> bool:
-    """Whether one of `others` means the same as `value`."""
+    """Return whether one of `others` means the same as `value`."""
     return any(same(value, other) for other in others)
 
 
@@ -75,7 +75,7 @@ def _key(value: str) -> str:
 
 
 def joined(values: Sequence[str]) -> str:
-    """Enumerate.
+    """Return the values as an enumeration.
 
     Example:
         >>> joined(["chess", "football", "tea"])
@@ -85,7 +85,7 @@ def joined(values: Sequence[str]) -> str:
 
 
 def spoken(topic: str, values: Sequence[str]) -> str:
-    """Values as they are said within a sentence.
+    """Return values as they stand in a sentence.
 
     Example:
         >>> spoken("occupation", ["engineer"])
@@ -103,7 +103,7 @@ def _article(noun: str) -> str:
 
 
 def clause(topic: str, values: Sequence[str]) -> str:
-    """What is known, as a clause said to the user.
+    """Return a fact as a clause that the user hears.
 
     Example:
         >>> clause("home", ["Hannover"])

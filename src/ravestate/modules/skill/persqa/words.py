@@ -1,4 +1,4 @@
-"""Words that decide what can be a value."""
+"""Words that decide whether a phrase can be a value."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ __all__ = [
 
 
 def word_set(text: str) -> frozenset[str]:
-    """The words of a text."""
+    """Return the words of a text."""
     return frozenset(text.split())
 
 
@@ -42,14 +42,14 @@ STATES = word_set(
     sing stay move forget shut leave doing being having having such bit thing pleasure doubt allergic unsure possible impossible likely most yay sir madam turn ten twenty thirty forty fifty sixty good-bye question welcome nonsense rubbish bullshit fuck shit damn
     """
 )
-"""Words with which no name begins: how one is, and what one says instead of a name."""
+"""First words that no name has: states, and things that people say instead of a name."""
 
 NEVER_IN = word_set(
     """i i'm im you you're youre he she we they it's don't dont doesn't isn't aren't won't can't cannot is are was were do does
     did has have had will would could can might must shall should what why how when who where me us them yourself myself not that's there's what's who's let's let he's she's we're they're want wanna think guess know mean need feel i've i'd i'll you've you'll tell
     """
 )
-"""Words that stand in sentences and in no value."""
+"""Words of sentences that no value has."""
 
 NO_PLACE = word_set(
     """fear peace hope love house flat apartment dorm home nowhere everywhere somewhere here there abroad bed general fact
@@ -74,7 +74,7 @@ NO_HOBBY = word_set(
 )
 
 NOT_DONE = word_set("thing king ring spring string morning evening wedding pudding clothing building ceiling")
-"""Words that end like *sailing*, and are nothing that one does."""
+"""Words that end like *sailing* without being activities."""
 
 OCCUPATIONS = word_set(
     """accountant actor actress analyst architect artist assistant attorney author baker banker barber barista bartender biologist
@@ -90,7 +90,7 @@ OCCUPATIONS = word_set(
     administrator astronaut astronomer apprentice
     """
 )
-"""What *I am a ...* makes an occupation, where nobody has asked for one."""
+"""Nouns that *I am a ...* makes an occupation without being asked."""
 
 VERBS = word_set(
     """read play cook bake dance swim run paint draw sing travel hike climb cycle bike sew knit write collect ski surf fish hunt
@@ -98,7 +98,7 @@ VERBS = word_set(
     skate act study learn work tinker craft crochet spend meet hang visit relax sleep eat drink solve take grow keep
     """
 )
-"""What one does in one's free time."""
+"""Verbs for activities in one's free time."""
 
 DETERMINERS = word_set("a an the my your his her our their this that it some any")
 
@@ -107,12 +107,12 @@ REMARKS = word_set(
     cool great awesome amazing sorry stop help please maybe perhaps whatever wow oops nonsense next skip pass tell shut go come wait
     interesting raining snowing sunny cloudy windy rainy very too so really nice true false right wrong exactly take see have indeed unfortunately hell whose sort be look can"""
 )
-"""With these words begins what is no answer, unless something is called so: *New York*, but *no chance*."""
+"""First words of remarks that are no answers, except in names: *New York*, but *no chance*."""
 
 SMALL = word_set(
     "of the and in on upon am an at der die das den von van de da di del la le du y zu near for bei a"
 )
-"""Words that stay small within a name."""
+"""Words without a capital inside a name."""
 
 NO_STUDENT = word_set("good bad new old lazy high-school high school college university uni phd exchange")
-"""What sort of student is no subject."""
+"""Words before *student* that are no subject."""

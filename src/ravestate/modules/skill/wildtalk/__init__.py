@@ -1,4 +1,4 @@
-"""Generative small talk: when nothing more specific has an answer, a language model has one."""
+"""Small talk by a language model, where no other module has an answer."""
 
 from __future__ import annotations
 

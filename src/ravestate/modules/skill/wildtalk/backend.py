@@ -1,4 +1,4 @@
-"""What small talk needs of a language model: text, piece by piece, from a conversation."""
+"""The interface between small talk and a language model."""
 
 from __future__ import annotations
 
@@ -11,22 +11,22 @@ __all__ = ["Backend", "Message", "Progress", "Role"]
 Role = Literal["system", "user", "assistant"]
 
 Progress = Callable[[float], None]
-"""Told how far a model has been loaded: 0.0 to 1.0, on the event loop."""
+"""A callback with the loaded fraction of a model, 0.0 to 1.0, on the event loop."""
 
 
 @dataclass(frozen=True, slots=True)
 class Message:
-    """One utterance of a conversation: who (`role`) said what (`text`)."""
+    """An utterance (`text`) of a conversation, with its speaker (`role`)."""
 
     role: Role
     text: str
 
 
 class Backend(Protocol):
-    """A language model, wherever it runs. An instance belongs to one event loop."""
+    """A language model. An instance belongs to one event loop."""
 
     async def load(self, progress: Progress | None = None) -> None:
-        """Get ready to answer; called again it does nothing. `stream` calls it if nobody did.
+        """Get ready to answer, once. `stream` does it as well.
 
         Raises:
             PlatformError: A package, a file or a server is missing or broken. The message says what to do.
@@ -48,11 +48,11 @@ class Backend(Protocol):
         ``contextlib.aclosing`` where you may leave before its end.
 
         Args:
-            messages: The conversation, oldest first; the last one is to be answered.
-            max_tokens: At most so many tokens (about three quarters of an English word each).
-            temperature: 0 is always the likeliest word; 1 is as the model has learnt it.
+            messages: The conversation, oldest first; the last message is to be answered.
+            max_tokens: The greatest number of tokens (each about three quarters of an English word).
+            temperature: The randomness: 0 always takes the likeliest word, 1 is the model's own distribution.
             seed: The same seed and messages give the same answer, where the model allows it.
-            stop: The model stops before it writes any of these.
+            stop: Texts before which the model stops.
 
         Raises:
             PlatformError: The model failed, or its server refused, stalled or broke off.
@@ -60,5 +60,5 @@ class Backend(Protocol):
         ...
 
     async def close(self) -> None:
-        """Let go of everything; called again it does nothing."""
+        """Release everything. A second call does nothing."""
         ...

@@ -1,4 +1,4 @@
-"""Whether somebody asks for a fact, which small talk is no source of."""
+"""Questions for facts, which small talk leaves alone."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ _ASKS = re.compile(
     r"wer|wen|wem|wessen|was|welche[rsnm]?|wann|wo|wie (?:viele?|alt|groß|weit|lang|hoch|tief|schnell|schwer))"
     r"(?:'s|'re|s)?\b"
 )
-# About the two who talk.
+# The user and the agent.
 _PERSONAL = re.compile(
     r"\b(?:i|me|my|mine|we|us|our|you|your|yours|ich|mir|mich|meine?[rnms]?|wir|uns|unsere?[rnms]?|du|dir|dich|"
     r"deine?[rnms]?|sie|ihnen|ihre?[rnms]?)\b"
 )
-# "And its capital?", "is Scotland a country?": of the world, and not of the weather here and now.
+# "And its capital?", "is Scotland a country?"; not the weather here and now.
 _ASKS_OF_IT = re.compile(
     r"(?:(?:what|how) about |of |in |for )?(?:its|their) \w+(?: \w+)?\W*$|of (?:the )?\w+(?: \w+)?\?$|"
     r"(?:is|are|was|were|does|do|did|has|have|can) (?:the |an? )?(?!(?:it|there|that|this|those|these|they|he|she|anybody|anyone|"
@@ -37,10 +37,10 @@ _CHAT = re.compile(
 
 
 def asks_for_fact(text: str) -> bool:
-    """Guess whether `text` asks for something that one has to know: "Who wrote Hamlet?", not "Who are you?".
+    """Guess whether `text` asks for a fact: "Who wrote Hamlet?", not "Who are you?".
 
-    It looks at a few words of English and German, and errs on both sides; a linguistic module knows better, and
-    its rules come before small talk anyway.
+    The guess looks at a few words of English and German, and errs on both sides. Modules that know better have rules that
+    come before small talk.
 
     Example:
         >>> asks_for_fact("What is the capital of Peru?"), asks_for_fact("What is your name?")

@@ -1,4 +1,4 @@
-"""What has been said so far, and the prompt that is made of it."""
+"""The conversation so far, and the prompt made of it."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ EXAMPLES = (
 )
 """The default of the setting `examples`."""
 
-# What templates use to mark who speaks. Said by a user it would let him speak as the system.
+# Marks of templates for the speaker. With them a user could speak as the system.
 _MARKERS = re.compile(
     r"<\|[^|<>\n]{0,40}\|>|</?s>|\[/?INST\]|<</?SYS>>|</?(?:start|end)_of_turn>|</?think>", re.IGNORECASE
 )
@@ -34,7 +34,7 @@ _CUT = "…"
 class History:
     """The last turns of one conversation, within a budget.
 
-    A turn is what the user said and what was answered to it.
+    A turn is an utterance of the user with its answer.
 
     Example:
         >>> history = History()
@@ -44,12 +44,12 @@ class History:
     """
 
     def __init__(self, *, turns: int = 6, characters: int = 4000) -> None:
-        """Begin without a past.
+        """An empty history.
 
         Args:
-            turns: So many turns are remembered, the one that is to be answered included; at least 1.
-            characters: What is remembered has at most so many characters (about 4 make a token); what is to be
-                answered is cut to it, all older is left out from where it does not fit.
+            turns: The number of turns, with the one to be answered; at least 1.
+            characters: The number of characters (about 4 make a token). The last utterance is cut to it; of the earlier
+                ones the oldest are left out.
         """
         if turns < 1 or characters < 1:
             raise ValueError(f"turns and characters must be at least 1, not {turns} and {characters}")
@@ -58,19 +58,19 @@ class History:
         self._messages: deque[Message] = deque()
 
     def __len__(self) -> int:
-        """How many messages are remembered."""
+        """Return the number of messages."""
         return len(self._messages)
 
     def heard(self, text: str) -> None:
-        """Remember what the user said."""
+        """Add an utterance of the user."""
         self.add(Message("user", text))
 
     def said(self, text: str) -> None:
-        """Remember what the agent said, whoever worded it."""
+        """Add an utterance of the agent, from whichever module."""
         self.add(Message("assistant", text))
 
     def add(self, message: Message) -> None:
-        """Remember what somebody said."""
+        """Add a message."""
         message = Message(message.role, self._clean(message.text))
         if not message.text:
             return
@@ -85,7 +85,7 @@ class History:
                 self._messages.popleft()
 
     def forget(self) -> None:
-        """Begin anew, for another person."""
+        """Start again, for another person."""
         self._messages.clear()
 
     def prompt(
@@ -94,9 +94,9 @@ class History:
         name: str = "Ravestate",
         examples: Iterable[tuple[str, str]] = (),
     ) -> tuple[Message, ...]:
-        """Return the persona, examples of an utterance and its answer, and what is remembered, oldest first.
+        """Return the prompt: the persona, the examples, and the history, oldest first.
 
-        User and agent take turns strictly in it, and the user begins: several templates demand that.
+        User and agent take turns strictly, and the user begins: several templates demand that.
         """
         left = self._characters
         kept: list[Message] = []
@@ -119,6 +119,6 @@ class History:
     # ------------------------------------------------------------------------------- internals
 
     def _clean(self, text: str) -> str:
-        # Far more than the budget is not even looked at: somebody may paste a book.
+        # Somebody may paste a book: anything far beyond the budget is dropped at once.
         text = text[: 4 * self._characters]
         return " ".join(_MARKERS.sub(" ", printable(text)).split())

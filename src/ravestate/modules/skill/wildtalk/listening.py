@@ -1,4 +1,4 @@
-"""Small talk without a language model: the agent listens, and says that it does."""
+"""Small talk without a language model: short replies of a listener."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ TO_A_QUESTION = (
     "Good question. I have no answer to it.",
 )
 RECENT = 4
-"""Messages in which no phrase is repeated."""
+"""The number of last messages whose phrases are not repeated."""
 
 
 class ListeningBackend:
-    """A stand-in for a missing language model. It has a phrase for remarks, and one for questions."""
+    """A stand-in for a missing language model, with phrases for remarks and for questions."""
 
     async def load(self, progress: Progress | None = None) -> None:
         """Do nothing: there is no model to load."""

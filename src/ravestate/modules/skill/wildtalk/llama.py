@@ -23,7 +23,7 @@ _OWN_MODEL = "--set wildtalk.model_path=/path/to/model.gguf"
 
 
 class LlamaBackend:
-    """Runs a GGUF file by llama.cpp, in a process that all contexts with the same file share.
+    """A GGUF file, run by llama.cpp in a process that all contexts with the same file share.
 
     Example:
         ```python
@@ -43,14 +43,14 @@ class LlamaBackend:
         threads: int = 0,
         read_timeout: float = 60.0,
     ) -> None:
-        """Nothing is looked for or loaded yet.
+        """Nothing is searched or loaded yet.
 
         Args:
             model_path: The GGUF file; None takes the bundled SmolLM2-135M-Instruct.
-            context_tokens: How much the model remembers, all conversations of this process together.
-            parallel: How many conversations may be answered at once; others wait.
+            context_tokens: The size of the context in tokens, for all conversations of this process together.
+            parallel: The number of conversations that are answered at once; others wait.
             threads: CPU threads; 0 takes half of the cores. With as many threads as cores, one other busy
-                program makes the model fifty times slower, for its threads wait for each other.
+                program makes the model fifty times slower, because its threads wait for each other.
             read_timeout: Seconds without a word after which the model counts as stuck.
         """
         self._model_path = model_path
@@ -61,9 +61,9 @@ class LlamaBackend:
         self._loading = asyncio.Lock()
 
     async def load(self, progress: Progress | None = None) -> None:
-        """See `Backend.load`. Loading takes 0.5 s for the bundled model; it is done once per process.
+        """See `Backend.load`. Loading happens once per process; the bundled model takes 0.5 s.
 
-        Cancelling it gives the model up, unless somebody else waits for it as well.
+        Cancelling it ends the model's process, unless another context waits for it as well.
         """
         async with self._loading:
             if self._client is not None and self._process is not None and self._process.alive:
@@ -86,7 +86,7 @@ class LlamaBackend:
                 raise
 
     async def close(self) -> None:
-        """Let go of the model; its process ends with its last user."""
+        """Release the model; its process ends with its last user."""
         async with self._loading:
             await self._close()
 
@@ -109,8 +109,8 @@ class LlamaBackend:
                 yield piece
         except PlatformError as error:
             if self._process is not process:
-                return  # it was let go of in the middle of an answer
-            # A connection that broke is the first sign of an end that takes some milliseconds.
+                return  # the backend was closed in the middle of an answer
+            # A broken connection comes some milliseconds before the end of the process.
             grace = 0.5 if error.__cause__ is not None else 0.0
             if obituary := await asyncio.to_thread(process.obituary, grace):
                 raise PlatformError(
@@ -159,13 +159,13 @@ def bundled_model() -> Path:
 
 
 def checked_model(path: Path | str | None = None) -> Path:
-    """Return the absolute path of the model to load, having looked whether it can be one.
+    """Return the absolute path of the model to load, after a check of the file.
 
     Args:
         path: The user's file, ``~`` allowed; None or empty for the bundled one.
 
     Raises:
-        PlatformError: xllamacpp or the file is missing, or the file is no GGUF file.
+        PlatformError: xllamacpp or the file is missing, or it is not a GGUF file.
     """
     if importlib.util.find_spec("xllamacpp") is None:
         raise PlatformError(

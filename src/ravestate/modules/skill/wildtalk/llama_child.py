@@ -1,9 +1,9 @@
-"""The process that a model runs in: llama.cpp's server on the loopback interface.
+"""The process of a model: llama.cpp's server on the loopback interface.
 
-Run as a file of its own by `llama_process`, so it imports nothing of Ravestate. Its configuration comes as
-one line of JSON on standard input; what happens goes out as lines of JSON, ``{"progress": 0.5}``,
-``{"ready": "http://127.0.0.1:40123"}`` or ``{"error": "..."}``. It ends when standard input does, that is, with
-its parent, however that ended.
+`llama_process` runs it as a file of its own, so it imports nothing of Ravestate. It reads its configuration as one
+line of JSON from standard input, and writes lines of JSON: ``{"progress": 0.5}``,
+``{"ready": "http://127.0.0.1:40123"}`` or ``{"error": "..."}``. It ends when standard input ends, and so with its
+parent.
 """
 
 from __future__ import annotations
@@ -20,10 +20,10 @@ _STEP = 4 << 20  # bytes
 
 
 def _main() -> None:
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the parent, who closes us in order
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the parent, who closes this process in order
     config: dict[str, Any] = json.loads(sys.stdin.readline())
     out = os.fdopen(os.dup(1), "w", encoding="utf-8")
-    os.dup2(2, 1)  # whatever llama.cpp prints is no message of ours
+    os.dup2(2, 1)  # the prints of llama.cpp are no messages to the parent
 
     def say(**message: object) -> None:
         out.write(json.dumps(message) + "\n")
@@ -37,13 +37,13 @@ def _main() -> None:
         say(error=f"{type(error).__name__}: {error}")
         os._exit(1)
     say(ready=server.listening_address)
-    while os.read(0, 4096):  # nothing comes; it is the end that counts
+    while os.read(0, 4096):  # nothing arrives but the end
         pass
     os._exit(0)
 
 
 def _await_reason() -> None:
-    """Let llama.cpp write down why: it logs in a thread, which its end would cut off."""
+    """Give llama.cpp time to log the reason: its logging thread would be cut off."""
     for _ in range(100):
         before = os.fstat(2).st_size
         time.sleep(0.02)
@@ -53,8 +53,8 @@ def _await_reason() -> None:
 
 def _load(config: dict[str, Any], say: Any) -> Any:
     path: str = config["path"]
-    # The slow part of loading is the disk. Reading the file first shows how far it is; llama.cpp then
-    # maps what is in memory already.
+    # The slow part of loading is the disk. Reading the file first shows the progress; llama.cpp then maps what is
+    # in memory already.
     size, done, shown = os.path.getsize(path), 0, 0.0
     with open(path, "rb", buffering=0) as file:
         while block := file.read(_STEP):

@@ -1,7 +1,7 @@
 """A language model in a process of its own, shared by all contexts of this process.
 
-Why a process: loading holds Python's lock from the first to the last byte, so that in a thread it would
-stop every event loop for seconds; and whatever a model file does to llama.cpp, the agent lives on.
+In a thread, loading would stop every event loop for seconds: it holds Python's lock from the first to the last byte.
+And when a model file crashes llama.cpp, the agent lives on.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ __all__ = ["LlamaProcess", "ModelKey", "drop", "take"]
 
 @dataclass(frozen=True, slots=True)
 class ModelKey:
-    """What makes two users share a process: the file and how it is run."""
+    """The file and its options; users with the same key share a process."""
 
     path: Path
     context_tokens: int
@@ -35,7 +35,7 @@ class ModelKey:
 
 
 class LlamaProcess:
-    """One model's process. All methods block: call them in a worker thread; any thread will do."""
+    """The process of one model. All methods block and are thread-safe."""
 
     def __init__(self, key: ModelKey) -> None:
         """Nothing is started yet."""
@@ -51,12 +51,12 @@ class LlamaProcess:
     def start(self, progress: Callable[[float], None] | None = None) -> str:
         """Load the model, unless it is loaded; return the address of its server.
 
-        A process that has died meanwhile is replaced.
+        A process that has died is replaced.
 
         Raises:
             PlatformError: The model cannot be loaded; the message has llama.cpp's reason.
         """
-        with self._starting:  # whoever comes second waits until the first has loaded it
+        with self._starting:  # a second caller waits for the first
             if not self.alive:
                 self._end()
                 self._spawn()
@@ -76,9 +76,9 @@ class LlamaProcess:
         return self._process.pid if self._process is not None and self.alive else None
 
     def obituary(self, grace: float = 0.0) -> str:
-        """Say how the process ended and what it last said; empty while it runs.
+        """Return how the process ended, with its last message; an empty string while it runs.
 
-        A process that is about to end is waited for, for `grace` seconds.
+        The call waits up to `grace` seconds for a process that is about to end.
         """
         process = self._process
         if process is None:
@@ -94,7 +94,7 @@ class LlamaProcess:
         return f"{how}: {reason}" if reason else how
 
     def close(self) -> None:
-        """End the process. It has nothing to save."""
+        """Kill the process. It has nothing to save."""
         self._closed = True
         if self._process is not None:
             self._process.kill()  # a `start` that is under way reads the end of its pipe, and fails
@@ -108,7 +108,7 @@ class LlamaProcess:
             raise PlatformError("wildtalk: the model was closed while it was loading")
         self._errors = tempfile.TemporaryFile()  # noqa: SIM115  # `_end` closes it
         try:
-            # -P: the files beside the child are not to be imported in place of packages of their name.
+            # -P: the files beside the child must not be imported in place of packages with their names.
             self._process = subprocess.Popen(
                 [sys.executable, "-P", str(Path(__file__).with_name("llama_child.py"))],
                 stdin=subprocess.PIPE,
@@ -129,7 +129,7 @@ class LlamaProcess:
             "key": self.secret,
         }
         assert self._process.stdin is not None
-        with contextlib.suppress(OSError):  # it died at once: its end tells more
+        with contextlib.suppress(OSError):  # it died at once; its exit says more
             self._process.stdin.write(json.dumps(config) + "\n")
             self._process.stdin.flush()
 
@@ -155,7 +155,7 @@ class LlamaProcess:
         )
 
     def _reason(self) -> str:
-        """What llama.cpp said was wrong: the first and most exact line is the one to show."""
+        """Return llama.cpp's reason: its first line is the most exact one."""
         if self._errors is None:
             return ""
         self._errors.seek(0)
@@ -209,7 +209,7 @@ def take(key: ModelKey) -> LlamaProcess:
 
 
 def drop(process: LlamaProcess) -> None:
-    """Take one user off `process`; without users it ends. Blocks for some milliseconds then."""
+    """Remove one user of `process`; the last one ends it, which blocks for some milliseconds."""
     with _sharing:
         process.users -= 1
         if process.users:

@@ -21,11 +21,13 @@ if TYPE_CHECKING:
 
 __all__ = ["OpenAIBackend"]
 
-_BODY_LIMIT = 1 << 20  # bytes of an answer that is no stream; of an error a thousandth is shown
+_BODY_LIMIT = (
+    1 << 20
+)  # bytes of an answer without a stream, and characters of a line; of an error a thousandth is shown
 
 
 class OpenAIBackend:
-    """Streams answers from ``POST {base_url}/chat/completions``.
+    """A client of ``POST {base_url}/chat/completions``.
 
     Example:
         ```python
@@ -48,13 +50,13 @@ class OpenAIBackend:
         """Nothing is contacted yet.
 
         Args:
-            base_url: Where the protocol begins; with most servers it ends in ``/v1``.
-            model: The name by which the server knows the model.
-            api_key: Sent as a bearer token; never shown in a message.
-            connect_timeout: Seconds until a server that does not answer the call counts as absent.
+            base_url: The address of the API; with most servers it ends in ``/v1``.
+            model: The model's name on the server.
+            api_key: A bearer token; no message shows it.
+            connect_timeout: Seconds to wait for a connection.
             read_timeout: Seconds of silence after which a server counts as stalled. The first word of an
                 answer may take long: some servers load the model for it.
-            extra: More fields of the request, for what only one server knows.
+            extra: More fields of the request, for a particular server.
 
         Raises:
             PlatformError: `base_url` is no web address.
@@ -153,7 +155,7 @@ class OpenAIBackend:
 
     @property
     def _place(self) -> str:
-        """The address without what may be secret in it."""
+        """The address without secrets."""
         scheme, _, rest = self._base_url.partition("://")
         host, slash, path = rest.partition("/")
         return f"{scheme}://{host.rpartition('@')[2]}{slash}{path}"
@@ -181,9 +183,9 @@ class OpenAIBackend:
         return httpx.AsyncClient(
             headers={"Authorization": f"Bearer {self._key}"} if self._key else {},
             timeout=httpx.Timeout(self._read_timeout, connect=self._connect_timeout),
-            # A proxy that is meant for the world would be asked for its own localhost.
+            # A proxy would look for localhost on its own machine.
             trust_env=not here,
-            # Certificates take 30 ms to read, and are of no use here.
+            # Certificates take 30 ms to read, and http needs none.
             verify=not self._base_url.startswith("http://"),
         )
 
@@ -205,7 +207,7 @@ class OpenAIBackend:
                 try:
                     async with asyncio.timeout(
                         self._read_timeout
-                    ):  # a comment that only keeps alive is no event
+                    ):  # a comment that only keeps the connection open is no event
                         event = await anext(events, None)
                 except TimeoutError as error:
                     raise self._stalled() from error
@@ -225,14 +227,14 @@ class OpenAIBackend:
     def _events(self, answer: httpx.Response) -> AsyncGenerator[ServerSentEvent, None]:
         from httpx_sse import EventSource
 
-        # The stand-in lends `EventSource` the text: with a limit, and also where the server names no content type.
+        # `EventSource` gets a stand-in: the text has a limit, and a server need not name the content type.
         bounded = SimpleNamespace(
             headers={"content-type": "text/event-stream"}, aiter_text=lambda: self._bounded(answer)
         )
         return EventSource(cast("httpx.Response", bounded)).aiter_sse()
 
     async def _bounded(self, answer: httpx.Response) -> AsyncGenerator[str, None]:
-        """Yield the text of `answer`, and the empty line that ends its last event; refuse an endless line."""
+        """Yield the text of `answer`, and an empty line after its last event; refuse an endless line."""
         length = 0
         async for text in answer.aiter_text():
             _, ended, rest = text.rpartition("\n")
@@ -336,7 +338,7 @@ def _short(text: str, length: int = 300) -> str:
 
 
 def _error(body: str) -> Mapping[str, Any]:
-    """The part of an error's body that says what is wrong; servers differ in where they put it."""
+    """Return the part of an error's body with the reason; servers differ in where they put it."""
     try:
         document: Any = json.loads(body)
     except ValueError:
@@ -360,7 +362,7 @@ def _unsupported(status: int, body: str) -> str | None:
 
 
 def _withdraw(body: dict[str, object], parameter: str) -> bool:
-    """Take an optional `parameter` out of the request; False if it is not there or not optional."""
+    """Remove an optional `parameter` from the request; return whether that was possible."""
     if parameter not in ("max_tokens", "temperature", "seed", "stop") or parameter not in body:
         return False
     value = body.pop(parameter)

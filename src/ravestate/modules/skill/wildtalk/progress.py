@@ -1,4 +1,4 @@
-"""A progress bar on standard error, for what takes long."""
+"""A progress bar on standard error."""
 
 from __future__ import annotations
 
@@ -11,11 +11,10 @@ __all__ = ["ProgressBar"]
 
 
 class ProgressBar:
-    """Shows how far something is, once it has taken `delay` seconds, and only to a person.
+    """A progress bar that appears after `delay` seconds, and only for a person.
 
-    On a terminal it is a bar of tqdm, which goes when it is done. Where something else owns the terminal (a prompt that
-    redirects standard error and prints it line by line, so that nothing can be taken back), it is one line. Elsewhere
-    it is nothing.
+    On a terminal it is a bar of tqdm, removed at the end. It is one line where a prompt owns the terminal, because the
+    prompt prints standard error line by line. Elsewhere it is nothing.
 
     Example:
         ```python
@@ -25,7 +24,7 @@ class ProgressBar:
     """
 
     def __init__(self, label: str, *, delay: float = 1.0, stream: TextIO | None = None) -> None:
-        """`stream`: where to show it, by default standard error as it is at the first call."""
+        """`stream`: where to show it, by default standard error at the first call."""
         self._label = label
         self._delay = delay
         self._stream = stream

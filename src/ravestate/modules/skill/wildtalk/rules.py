@@ -1,4 +1,4 @@
-"""When the model talks, and what it is told."""
+"""The rules: when the model talks, and with which prompt."""
 
 from __future__ import annotations
 
@@ -22,18 +22,18 @@ from .transformers import TransformersBackend
 from .utterance import Utterance
 
 INTERRUPTED = "…"
-"""Stands at the end of an utterance that was interrupted."""
+"""The end of an interrupted utterance."""
 
 KEPT = 64
-"""Messages that are remembered at most; the settings say how many of them the model is told."""
+"""The number of messages in the history; the settings say how many of them go into a prompt."""
 
 LONGEST = 20_000
-"""Characters of a message that are remembered: an utterance of megabytes is cut."""
+"""Characters of a message in the history; longer ones are cut."""
 
 
 @module.rule(when=rs.startup, writes=(model, trouble))
 async def choose_model(ctx: rs.RuleContext) -> None:
-    """Make the backend that the settings name. Nothing is loaded before it is needed, but a file is looked for."""
+    """Make the backend from the settings. A model file is checked now, and loaded at the first question."""
     settings: Settings = ctx.settings
     try:
         ctx[model] = make_backend(settings)
@@ -48,7 +48,7 @@ async def choose_model(ctx: rs.RuleContext) -> None:
 
 @module.rule(when=rs.shutdown, reads=model)
 async def let_go(ctx: rs.RuleContext) -> None:
-    """Let go of the model."""
+    """Close the backend."""
     backend = ctx[model]
     if backend is not None:
         await backend.close()
@@ -56,13 +56,13 @@ async def let_go(ctx: rs.RuleContext) -> None:
 
 @module.rule(when=rawio.input.changed.max_age(None).detached(), writes=history, background=True)
 async def hear(ctx: rs.RuleContext) -> None:
-    """Remember what the user says."""
+    """Add the user's words to the history."""
     remember(ctx, "user", ctx.payload(rawio.input.changed))
 
 
 @module.rule(when=rawio.output.changed.max_age(None).detached(), writes=history, background=True)
 async def note(ctx: rs.RuleContext) -> None:
-    """Remember what the agent says, whichever rule worded it."""
+    """Add the agent's words to the history, from whichever rule."""
     said = ctx.payload(rawio.output.changed)
     lately = list(ctx[history].values())[-2:]
     if not (said.endswith(INTERRUPTED) and Message("assistant", said) in lately):  # `chat` was first
@@ -74,7 +74,7 @@ async def note(ctx: rs.RuleContext) -> None:
     reads=(model, interloc.agent),
     writes=(rawio.output, rawio.speaking, history, trouble),
     emits=rawio.piece,
-    until=rawio.input.changed | rs.shutdown,  # a model that is still loading would hold up the end
+    until=rawio.input.changed | rs.shutdown,  # a model that is still loading would delay the end
 )
 async def chat(ctx: rs.RuleContext) -> rs.Resign | None:
     """Answer with small talk, piece by piece; a new utterance interrupts it."""
@@ -140,7 +140,7 @@ async def chat(ctx: rs.RuleContext) -> rs.Resign | None:
         ctx[rawio.output] = shown + INTERRUPTED if shown else settings.no_model
         return None
     except asyncio.CancelledError:
-        if shown:  # what was said was said, and before what interrupted it
+        if shown:  # keep the words that were said, before those that interrupted them
             remember(ctx, "assistant", shown + INTERRUPTED)
             ctx[rawio.output] = shown + INTERRUPTED
         raise
@@ -150,14 +150,14 @@ async def chat(ctx: rs.RuleContext) -> rs.Resign | None:
 
 
 def tell(ctx: rs.RuleContext, error: PlatformError) -> None:
-    """Log what is wrong with the model, once however often it is asked in vain."""
+    """Log what is wrong with the model, once."""
     if ctx[trouble] != str(error):
         ctx.log.error("%s", error)
         ctx[trouble] = str(error)
 
 
 def remember(ctx: rs.RuleContext, role: Role, text: str) -> None:
-    """Add to the history what was said; forget what is older than is kept.
+    """Add a message to the history, and drop the oldest.
 
     Each message has a key of its own, so that none is lost when several are said at once (L13).
     """
@@ -171,8 +171,8 @@ def make_backend(settings: Settings) -> Backend:
     """Return the backend that `settings` name.
 
     Raises:
-        PlatformError: The address of the server is none.
-        ModelMissing: The bundled model is wanted, and its package is not installed.
+        PlatformError: The server's address is malformed.
+        ModelMissing: The package of the bundled model is not installed.
     """
     if settings.backend == "openai":
         return OpenAIBackend(

@@ -1,7 +1,7 @@
 """Small talk by a causal model in the format of Hugging Face's transformers: GPT-2 and its many successors.
 
-Slower and ten times heavier than a GGUF file run by llama.cpp; for models that there is no such file of, and for models of
-one's own.
+It is slower and ten times heavier than llama.cpp with a GGUF file. Use it for models without such a file, and for your
+own.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ __all__ = ["TransformersBackend", "cut", "transcript"]
 T = TypeVar("T")
 
 ANSWERS = "Agent:"
-"""Begins the line that a model without a chat template is to go on with."""
+"""The beginning of the line that a model without a chat template continues."""
 
 LOADER = "ravestate-model-loader"
 """The name of a thread that loads a model."""
@@ -35,7 +35,7 @@ SPEAKERS = {"user": "User:", "assistant": ANSWERS}
 
 
 class TransformersBackend:
-    """Runs a causal model in a thread of this process; contexts with the same model share it.
+    """A causal model in a thread of this process; contexts with the same model share it.
 
     Example:
         ```python
@@ -46,10 +46,10 @@ class TransformersBackend:
     """
 
     def __init__(self, model: str, *, read_timeout: float = 60.0) -> None:
-        """Nothing is looked for or loaded yet.
+        """Nothing is searched or loaded yet.
 
         Args:
-            model: A folder with a model, or a model's name on the hub, from which it is fetched once.
+            model: A folder with a model, or a model's name on the hub; it is downloaded once.
             read_timeout: Seconds without a word after which the model counts as stuck.
         """
         self._name = model
@@ -57,14 +57,14 @@ class TransformersBackend:
         self._model: _Model | None = None
 
     async def load(self, progress: Progress | None = None) -> None:
-        """See `Backend.load`. The library tells nothing of its progress but the end."""
+        """See `Backend.load`. The library reports no progress but the end."""
         if self._model is None:
             self._model = await _in_background(_Model.shared, self._name)
         if progress is not None:
             progress(1.0)
 
     async def close(self) -> None:
-        """Let go of the model; it is freed with its last user."""
+        """Release the model; its last user frees it."""
         self._model = None
 
     async def stream(
@@ -76,10 +76,10 @@ class TransformersBackend:
         seed: int | None = None,
         stop: Sequence[str] = (),
     ) -> AsyncGenerator[str, None]:
-        """See `Backend.stream`. A model without a chat template is given a transcript to go on with."""
+        """See `Backend.stream`. A model without a chat template continues a transcript."""
         await self.load()
         model = self._model
-        assert model is not None  # it has been loaded
+        assert model is not None  # `load` has set it
         loop = asyncio.get_running_loop()
         pieces: asyncio.Queue[str | BaseException | None] = asyncio.Queue()
         left = threading.Event()
@@ -124,14 +124,14 @@ class TransformersBackend:
 
 
 async def _in_background(work: Callable[[str], T], argument: str) -> T:
-    """Like ``asyncio.to_thread``, but the end of the loop does not wait for it: fetching a model may take an hour."""
+    """Run `work` in a thread that the end of the loop does not wait for: a download may take an hour."""
     outcome: concurrent.futures.Future[T] = concurrent.futures.Future()
-    outcome.set_running_or_notify_cancel()  # it cannot be cancelled, but nobody need wait for it
+    outcome.set_running_or_notify_cancel()  # the thread cannot be cancelled, but its caller can
 
     def job() -> None:
         try:
             outcome.set_result(work(argument))
-        except BaseException as error:  # whatever it is, it is for whoever waits
+        except BaseException as error:  # any exception belongs to the caller
             outcome.set_exception(error)
 
     threading.Thread(target=job, name=LOADER, daemon=True).start()
@@ -139,7 +139,7 @@ async def _in_background(work: Callable[[str], T], argument: str) -> T:
 
 
 class _Model:
-    """A model and its tokenizer, in memory once however many contexts use it."""
+    """A model and its tokenizer, loaded once for all contexts."""
 
     _loaded: ClassVar[WeakValueDictionary[str, _Model]] = WeakValueDictionary()
     _loading = threading.Lock()
@@ -160,7 +160,7 @@ class _Model:
         try:
             self.tokenizer: Any = library.AutoTokenizer.from_pretrained(place)
             self.model: Any = library.AutoModelForCausalLM.from_pretrained(place)
-        except Exception as error:  # the library raises whatever its many parts raise
+        except Exception as error:  # the library raises all kinds of exceptions
             raise PlatformError(
                 f"wildtalk: the model {name!r} cannot be loaded: {_first_line(error)}. Name a folder that holds one, or "
                 "a model's name on the hub: --set wildtalk.model=gpt2"
@@ -172,7 +172,7 @@ class _Model:
 
     @classmethod
     def shared(cls, name: str) -> _Model:
-        """The model of a name: loaded, if nobody has it."""
+        """Return the model of a name; load it if needed."""
         with cls._loading:
             found = cls._loaded.get(name)
             if found is None:
@@ -180,7 +180,7 @@ class _Model:
             return found
 
     def prompt(self, messages: Sequence[Message]) -> tuple[str, tuple[str, ...]]:
-        """What the model is to go on with, and the texts by which its answer ends. Blocks: a template must be compiled."""
+        """Return the text to continue, and the texts that end the answer. It blocks: a template must be compiled."""
         if self.tokenizer.chat_template is None:
             return transcript(messages), ("\n",)
         turns = [{"role": message.role, "content": message.text} for message in messages]
@@ -195,11 +195,11 @@ class _Model:
         tell: Callable[[str | BaseException | None], None],
         left: threading.Event,
     ) -> None:
-        """Write an answer, in a thread: tell each piece, then None, or what has gone wrong."""
+        """Write an answer, in a thread: report each piece, then None, or an exception."""
         try:
             self._write(prompt, max_tokens, temperature, seed, tell, left)
             tell(None)
-        except Exception as error:  # of whatever part of the library: told to who waits
+        except Exception as error:  # any exception goes to the caller
             tell(error)
 
     def _write(
@@ -234,7 +234,7 @@ class _Model:
         sampling = (
             {"do_sample": True, "temperature": temperature} if temperature > 0 else {"do_sample": False}
         )
-        # One answer at a time: two would be no faster, and the library's random numbers are those of the whole process.
+        # One answer at a time: two would be no faster, and the library's random numbers belong to the whole process.
         with self._writing:
             if left.is_set():
                 return
@@ -253,7 +253,7 @@ class _Model:
 
 
 def transcript(messages: Sequence[Message]) -> str:
-    """A conversation as text, for models that know nothing of turns.
+    """Return a conversation as text, for models without turns.
 
     Example:
         >>> print(transcript([Message("system", "A talk."), Message("user", "Hello!")]))
@@ -270,9 +270,9 @@ def transcript(messages: Sequence[Message]) -> str:
 
 
 def cut(text: str, stops: Sequence[str], *, last: bool) -> tuple[str, bool]:
-    """What of a growing text may be shown, and whether one of `stops` has ended it.
+    """Return the part of a growing text to show, and whether one of `stops` has ended it.
 
-    As long as it is not the `last`, an end that might become a stop is held back.
+    Unless it is the `last`, an end that might become a stop is held back.
 
     Example:
         >>> cut("Hello.\\nUser", ["\\nUser:"], last=False)

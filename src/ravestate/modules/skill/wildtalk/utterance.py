@@ -1,4 +1,4 @@
-"""Makes what a model writes into what an agent says, while it is being written."""
+"""From the raw output of a model to the agent's words, while the model writes."""
 
 from __future__ import annotations
 
@@ -9,15 +9,15 @@ from ravestate.modules._text import without_controls
 
 __all__ = ["Utterance"]
 
-# Where a model goes on with the conversation by itself, or shows the marks of its template.
+# Signs that a model continues the conversation by itself, or shows the marks of its template.
 _ROLES = ("User", "Human", "Assistant", "System", "Bot", "AI")
 _MARKS = r"<\|[^|<>\n]{1,16}\|>|</?s>|\[/?INST\]|<(?:start|end)_of_turn>|^\#{2,4}\s"
-# How the end of a text may go on: as a mark, or as the beginning of a sentence.
+# Unfinished ends of a text: they may become a mark, or the beginning of a sentence.
 _BEGUN = re.compile(r"(?:<[|/]?[^|<>\n]{0,16}\|?|\[/?[INST]{0,4}|^\#{1,4}|[\"“‘(\[]+)\Z", re.MULTILINE)
-# What is no word, such as an emoji, belongs to the sentence before it.
+# Signs other than words, such as an emoji, belong to the sentence before them.
 _SENTENCE_END = re.compile(r"[.!?…。！？]+[\"”’)\]]*(?:\s+[^\w\s\"“‘(\[]+)*\s+(?=[\"“‘(\[]?\w)")
 _ABBREVIATION = re.compile(r"\b(?:Mr|Mrs|Ms|Dr|Prof|St|vs|e\.g|i\.e|etc|[A-Z])\.\s*\Z")
-# Pictures, their variants, and what joins them.
+# Emoji, their variants, and their joiners.
 _EMOJI = re.compile(
     "[\U0001f000-\U0001faff\u2600-\u27bf\u2b00-\u2bff\u2300-\u23ff\u200d\u20e3\ufe0e\ufe0f\U000e0020-\U000e007f]"
 )
@@ -25,15 +25,14 @@ _QUOTES = '"“”«»'
 
 
 class Utterance:
-    """Takes pieces of a model's output; gives the part of it that may be said.
+    """A filter for a model's output: it takes pieces, and returns the part to say.
 
-    It leaves out what the model thinks aloud, its own name in front, quotation marks around all of it,
-    control characters, and emoji, of which small models are fond: one is left where there is nothing else, and feelings
-    are a matter of `emotion`. White space becomes single spaces. It is `complete`, and takes no more, after
-    `sentences` sentences, and where the model begins to speak for somebody else.
+    It removes thinking aloud, the agent's own name in front, quotation marks around everything, and control characters. It
+    also removes emoji, which small models overuse, unless nothing else is left; `emotion` shows feelings. White space
+    becomes single spaces. It is `complete`, and takes no more, after `sentences` sentences, or when the model begins to
+    speak for somebody else.
 
-    However the output is cut into pieces, the same is said. To that end it holds back an end that may yet turn
-    out to be a mark.
+    The result does not depend on how the output is cut into pieces, because an end that may become a mark is held back.
 
     Example:
         >>> utterance = Utterance("Rosie")
@@ -44,7 +43,7 @@ class Utterance:
     """
 
     def __init__(self, name: str = "Ravestate", *, sentences: int = 2) -> None:
-        """`name`: the agent's own; `sentences`: at most so many, at least 1."""
+        """`name`: the agent's; `sentences`: the greatest number, at least 1."""
         if sentences < 1:
             raise ValueError(f"sentences must be at least 1, not {sentences}")
         self._names = tuple(f"{n}:" for n in (name, *_ROLES) if n)
@@ -60,11 +59,11 @@ class Utterance:
 
     @property
     def text(self) -> str:
-        """What has been said so far."""
+        """The words so far."""
         return self._said
 
     def feed(self, piece: str) -> str:
-        """Take the next piece; return what may be said now."""
+        """Take the next piece; return the words to say now."""
         if self.complete:
             return ""
         piece = without_controls(piece)
@@ -74,7 +73,7 @@ class Utterance:
         return self._say(last=False)
 
     def finish(self) -> str:
-        """The model has ended: return what was held back."""
+        """End the output; return the words that were held back."""
         rest = "" if self.complete else self._say(last=True)
         if not self.worth_saying() and self._emoji:
             rest = self._said = self._emoji
@@ -82,19 +81,19 @@ class Utterance:
         return rest
 
     def worth_saying(self) -> bool:
-        """Whether there is anything in it but punctuation."""
+        """Return whether there is anything but punctuation."""
         return any(unicodedata.category(character)[0] not in "PZC" for character in self._said)
 
     # ------------------------------------------------------------------------------- internals
 
     def _say(self, *, last: bool) -> str:
         text = self._written
-        # Of whatever begins before `sure` it is known what it is.
+        # Everything before `sure` has been classified.
         sure = len(text) if last else self._sure(text)
         start = self._past_thoughts(text)
         if start > sure:
             return ""
-        front = self._front.match(text, start)  # may yet grow, but then `sure` is before it
+        front = self._front.match(text, start)  # it may yet grow, but then `sure` is before it
         assert front is not None  # it matches the empty string
         start, quoted = front.end(), any(mark in front[0] for mark in _QUOTES)
         cut = self._cut(text, start)
@@ -103,7 +102,7 @@ class Utterance:
             sure = cut
         said = " ".join(text[start : max(start, sure)].split())
         if not last:
-            # White space and closing quotation marks are said with what follows them.
+            # White space and closing quotation marks wait for the text after them.
             said = said.rstrip(_QUOTES + " ")
         elif quoted:
             said = said.rstrip(_QUOTES + " ")
@@ -121,7 +120,7 @@ class Utterance:
         return sure
 
     def _past_thoughts(self, text: str) -> int:
-        """Where the answer begins, after what a reasoning model thinks first."""
+        """Return where the answer begins, after the thoughts of a reasoning model."""
         start = len(text) - len(text.lstrip())
         if not text.startswith("<think>", start):
             return start

@@ -1,4 +1,4 @@
-"""Files of all kinds, read into documents: one file of code for each kind."""
+"""Readers for files of all kinds, each in a file of its own."""
 
 from __future__ import annotations
 
@@ -24,23 +24,23 @@ KINDS = {
     ".ndjson": "jsonl",
     ".zim": "zim",
 }
-"""How a file's name ends, and what reads it."""
+"""The reader for each ending of a file's name."""
 
 
 def kind_of(path: Path) -> str | None:
-    """What reads this file; None if nothing does."""
+    """Return the reader's name for a file; None if there is none."""
     return KINDS.get(path.suffix.lower())
 
 
 def read(path: Path, source: str) -> Iterator[Document]:
-    """Yield the documents of a file; it is read while you take them.
+    """Yield the documents of a file, while it is read.
 
     Args:
-        path: The file; its ending says what it is.
-        source: Where answers will say that they are from.
+        path: The file; its ending names its kind.
+        source: The source that answers name.
 
     Raises:
-        Unreadable: It cannot be read, is not what its ending says, or what reads it is not installed: the message says
+        Unreadable: The file cannot be read, is of another kind than its ending, or a library is missing. The message says
             why, without the file's name.
     """
     kind = kind_of(path)

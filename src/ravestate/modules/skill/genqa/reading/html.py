@@ -1,4 +1,4 @@
-"""HTML: what a reader sees of a page, heading by heading."""
+"""A reader for HTML: the visible text of a page, one document per heading."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _HEADINGS = {"h1", "h2", "h3", "h4", "h5", "h6"}
 
 
 def read(path: Path, source: str) -> Iterator[Document]:
-    """A document for each heading."""
+    """Yield a document for each heading."""
     if (size := path.stat().st_size) > LARGEST:
         raise Unreadable(f"it has {size >> 20} MB, and a page may have {LARGEST >> 20}")
     content = path.read_bytes()
@@ -36,12 +36,12 @@ def read(path: Path, source: str) -> Iterator[Document]:
 
 
 def documents_in(content: bytes | str, title: str, source: str) -> Iterator[Document]:
-    """The documents of a page.
+    """Yield the documents of a page.
 
     Args:
-        content: Bytes in any encoding that they or HTML's rules tell.
-        title: Is used if the page has none of its own.
-        source: Where it is from.
+        content: The page; bytes in any encoding that it declares.
+        title: The title, if the page has none of its own.
+        source: The source that answers name.
 
     Raises:
         Unreadable: beautifulsoup4 is not installed.
@@ -52,11 +52,9 @@ def documents_in(content: bytes | str, title: str, source: str) -> Iterator[Docu
         raise Unreadable("genqa needs beautifulsoup4 to read HTML: pip install 'ravestate[genqa]'") from error
     logging.getLogger("bs4.dammit").setLevel(
         logging.ERROR
-    )  # it warns of characters, and does not say of which file
+    )  # it warns about characters, without naming the file
     with warnings.catch_warnings():
-        warnings.simplefilter(
-            "ignore"
-        )  # that it looks like a file name, like XML...: it is read all the same
+        warnings.simplefilter("ignore")  # it warns about XML and about texts like file names
         page: Any = bs4.BeautifulSoup(content, "html.parser")
     for hidden in page.find_all(_UNSEEN):
         hidden.decompose()

@@ -1,4 +1,4 @@
-"""JSON lines: a document in each line, as ``{"title": "...", "text": "...", "source": "..."}``."""
+"""A reader for JSON lines: a document per line, ``{"title": "...", "text": "...", "source": "..."}``."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ __all__ = ["read"]
 
 
 def read(path: Path, source: str) -> Iterator[Document]:
-    """A document for each line; ``text`` is needed, ``title`` and ``source`` may be left out."""
+    """Yield a document for each line; only ``text`` is required."""
     with path.open("rb") as lines:
         for number, line in enumerate(lines, start=1):
             if not line.strip():

@@ -1,4 +1,4 @@
-"""PDF: the text of its pages, as far as it has any."""
+"""A reader for PDF: the text of its pages."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ __all__ = ["read"]
 
 
 def read(path: Path, source: str) -> Iterator[Document]:
-    """A document for each page; its source names the page."""
+    """Yield a document for each page; its source names the page."""
     try:
         import pypdf
     except ImportError as error:
         raise Unreadable("genqa needs pypdf to read PDF: pip install 'ravestate[genqa]'") from error
     library: Any = pypdf
-    logging.getLogger("pypdf").setLevel(logging.ERROR)  # it warns of each oddity that it copes with
+    logging.getLogger("pypdf").setLevel(logging.ERROR)  # it warns about each oddity that it copes with
     try:
         reader = library.PdfReader(path)
         if reader.is_encrypted and not reader.decrypt(""):

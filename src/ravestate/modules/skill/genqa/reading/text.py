@@ -1,4 +1,4 @@
-"""Plain text, and the decoding of what other kinds of text begin with."""
+"""A reader for plain text, and the decoding for other readers."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from .unreadable import Unreadable
 __all__ = ["decoded", "read"]
 
 LARGEST = 64 << 20
-"""Bytes of a text file: more than anybody writes, and it is held in memory."""
+"""Bytes of a text file, which is held in memory."""
 
 _MARKS = (
     (codecs.BOM_UTF8, "utf-8"),
@@ -25,12 +25,12 @@ _MARKS = (
 
 
 def read(path: Path, source: str) -> Iterator[Document]:
-    """One document, titled after the file."""
+    """Yield one document with the file's name as its title."""
     yield Document(path.stem.replace("_", " "), source, passages_of(decoded(path)))
 
 
 def decoded(path: Path) -> str:
-    """The text of a file: UTF-8, or what its byte order mark says.
+    """Return the text of a file: UTF-8, or the encoding of its byte order mark.
 
     Raises:
         Unreadable: It is in another encoding, binary, or huge.

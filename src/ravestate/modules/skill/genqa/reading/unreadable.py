@@ -1,4 +1,4 @@
-"""What is raised for a file that cannot be read."""
+"""The exception for a file that cannot be read."""
 
 from __future__ import annotations
 
@@ -6,4 +6,4 @@ __all__ = ["Unreadable"]
 
 
 class Unreadable(Exception):
-    """A file cannot be read; the message says why. Others can."""
+    """A file that cannot be read; the message says why."""

@@ -1,4 +1,4 @@
-"""ZIM, the files of Kiwix (Wikipedia, Wiktionary and others for reading offline)."""
+"""A reader for ZIM, the files of Kiwix (Wikipedia, Wiktionary and others for reading offline)."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ __all__ = ["read"]
 
 
 def read(path: Path, source: str) -> Iterator[Document]:
-    """The documents of each article; redirections and pictures are passed over."""
+    """Yield the documents of each article; redirections and pictures are passed over."""
     try:
         reader: Any = import_module("libzim.reader")
     except ImportError as error:
@@ -29,7 +29,7 @@ def read(path: Path, source: str) -> Iterator[Document]:
         raise Unreadable(f"it is no ZIM file, or damaged ({error})") from error
     for number in range(count):
         try:
-            entry = archive._get_entry_by_id(number)  # the only way that libzim has to go through all of them
+            entry = archive._get_entry_by_id(number)  # libzim has no other way to go through all of them
             if entry.is_redirect:
                 continue
             item = entry.get_item()

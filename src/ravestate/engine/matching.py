@@ -1,4 +1,4 @@
-"""The pool: spikes are born into their causal groups and offered to whoever lacks them (L11, L12, L21)."""
+"""Matching: spikes are born into causal groups and offered to the activations that lack them (L11, L12, L21)."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import Any
 
 from ravestate.engine import trace
 from ravestate.engine.activation import CANCEL, GATHERING, NEVER, RUNNING, Activation
-from ravestate.engine.contests import Contests
+from ravestate.engine.conflict_sets import ConflictSets
 from ravestate.engine.deadlines import WATCH
 from ravestate.engine.effects import Cancel, CancelReason, Spiked
 from ravestate.engine.group import Group
@@ -15,16 +15,18 @@ from ravestate.engine.spike import Spike
 from ravestate.engine.watch import Watch
 from ravestate.policy.model import Need, SignalPlan
 
-__all__ = ["Pool"]
+__all__ = ["Matching"]
 
 
-class Pool(Contests):
-    """Births of spikes, causal groups, and offers."""
+class Matching(ConflictSets):
+    """The conflict sets, and the births, groups and offers of spikes."""
 
     def _parents(self, run: Activation | None) -> tuple[Spike, ...]:
+        """Return the parents of the spikes that a run raises; none for a detached rule or from outside (L19)."""
         return () if run is None or run.clause.rule.detached else run.stands_on
 
     def _origin(self, run: Activation | None) -> tuple[tuple[Spike, ...], Group]:
+        """Return the parents and the causal group of the spikes that a run raises."""
         parents = self._parents(run)
         return parents, self._group_of(parents)
 
@@ -33,7 +35,7 @@ class Pool(Contests):
         return Group(self._groups)
 
     def _group_of(self, parents: tuple[Spike, ...]) -> Group:
-        """The causal group of a spike with these parents: theirs merge (L11)."""
+        """Return the causal group of a spike with these parents, after merging theirs (L11)."""
         if not parents:
             return self._new_group()
         root = parents[0].group.root()
@@ -44,6 +46,7 @@ class Pool(Contests):
         return root
 
     def _merge(self, one: Group, other: Group) -> Group:
+        """Merge two causal groups into the older one, and return it."""
         root, merged = (one, other) if one.id < other.id else (other, one)
         root.absorb(merged)
         if self.tracer is not None:
@@ -58,7 +61,7 @@ class Pool(Contests):
         return root
 
     def _offer_again(self, group: Group) -> None:
-        """Offer the spikes of a group that has merged, in their order: until now coherence kept some apart (L12).
+        """Offer the spikes of a merged group again, oldest first: coherence kept some of them apart until now (L12).
 
         As at its birth, a spike goes to the activations that are older than it, the oldest first.
         """
@@ -91,11 +94,11 @@ class Pool(Contests):
         run: Activation | None,
         lineage: Lineage | None = None,
     ) -> None:
-        """A spike is born, and offered to whoever lacks it (L11, L12)."""
+        """Create a spike, and offer it to the activations that lack it (L11, L12)."""
         self._spikes += 1
         source = 0 if run is None else run.id
         if run is not None and run.told == "wiped" and parents:
-            return  # it stands on what has been withdrawn, and so would this (L20)
+            return  # the run stands on a wiped spike, and so would this one (L20)
         if self.tracer is not None:
             ids = tuple(parent.id for parent in parents)
             self.tracer(trace.Born(self.now, self._spikes, signal.name, group.id, ids, source, payload))
@@ -121,7 +124,7 @@ class Pool(Contests):
         for need in signal.uncontested:
             self._offer(need, spike)
         if signal.contests:
-            self._contest(signal, spike)
+            self._offer_to_sets(signal, spike)
         if not spike.holders:
             self._forget(spike)
 
@@ -147,12 +150,12 @@ class Pool(Contests):
             for activation in sorted(lacking, key=_age) if len(lacking) > 1 else tuple(lacking):
                 if need.kin != need.bit and not self._coherent(activation, need, spike):
                     continue
-                if activation.missing & need.bit:  # still: an earlier one may have changed it
+                if activation.missing & need.bit:  # an earlier offer may have changed that
                     self._acquire(activation, need, spike)
                     self._stir(activation)
                     self._update(activation)
         if need.detached and clause.asks_detached:
-            return  # it is looked at; it makes no activation of its own
+            return  # a detached need only looks: it begins no activation
         self._activations += 1
         activation = self._new_activation(clause, self._activations)
         self._acquire(activation, need, spike)
@@ -168,7 +171,7 @@ class Pool(Contests):
         self._update(activation)
 
     def _watch(self, spike: Spike) -> None:
-        """Show a new spike to the `until` conditions of runs (L21)."""
+        """Offer a new spike to the `until` conditions of runs (L21)."""
         for need in spike.signal.watchers:
             for run, watch in list(self._watches.get(need.clause, {}).items()):
                 if run.state == RUNNING and all(
@@ -176,20 +179,21 @@ class Pool(Contests):
                 ):
                     held = watch.spikes[need.index]
                     if held is None or not need.min_age or held.born + need.max_age < self.now:
-                        watch.spikes[need.index] = spike  # else the older one ripens first
+                        watch.spikes[need.index] = spike  # otherwise the older one ripens first
                         self._watched_by.setdefault(spike, {})[watch] = None
                         if held is not None and held not in watch.spikes:
                             self._unwatch(watch, held)
                     self._judge(watch)
 
     def _unwatch(self, watch: Watch, spike: Spike) -> None:
-        """A watch keeps a spike no longer."""
+        """Let a watch give a spike up."""
         watches = self._watched_by.get(spike, {})
         watches.pop(watch, None)
         if not watches:
             self._watched_by.pop(spike, None)
 
     def _judge(self, watch: Watch) -> None:
+        """Interrupt the run of a watch whose condition is met, or set the time at which it will be (L21)."""
         due = watch.met_at(self.now)
         if due is None or watch.run.state != RUNNING:
             return
@@ -200,6 +204,7 @@ class Pool(Contests):
             self._cancel(watch.run, "interrupted")
 
     def _cancel(self, run: Activation, reason: CancelReason) -> None:
+        """Ask for the end of a run."""
         run.step(CANCEL)
         run.told = reason
         run.deadline = NEVER

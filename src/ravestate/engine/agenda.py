@@ -1,12 +1,12 @@
-"""The waves in which an instant is settled: who starts, who is asked, who waits (L15-L17, L22).
+"""The agenda: the order in which ready activations start, ask for consent, or wait (L15-L17, L22).
 
-1. Rules that exclude nobody start at once.
-2. When none of these is left (those that ended without waiting have reported by then), ready writers ask for
-   consent, the greatest utility first (``consent.py``).
-3. When nobody may start any more, the built-in flags are brought up to date.
+1. Rules that write no slot start at once.
+2. When none of them is left, ready writers ask for consent, the greatest utility first (``consent.py``). By then, runs
+   that never suspend have ended.
+3. When no writer may start either, the engine updates the built-in flags.
 
-So whoever waits is asked again in the same instant in which a classifier ends, and never before all that could
-end in this instant has ended.
+So a waiting activation asks again in the same instant in which a classifier ends, and only after everything that ends
+in this instant.
 """
 
 from __future__ import annotations
@@ -29,30 +29,29 @@ from ravestate.errors import RuleError
 from ravestate.policy.model import Clause, RulePlan, SlotPlan
 from ravestate.policy.policy import Policy
 
-__all__ = ["Waves"]
+__all__ = ["Agenda"]
 
 
 ASKABLE = (READY, WAITING)
 
 
-class Waves(Slots):
-    """The pool and its slots, and who of the ready may run."""
+class Agenda(Slots):
+    """The slots and their signals, and the order of ready activations."""
 
     def __init__(self, policy: Policy, patience: float) -> None:
         super().__init__(policy)
         self.patience = patience
-        self._line: list[
-            tuple[int, float, int, int, Activation]
-        ] = []  # who is asked in this instant, best first
+        # The activations that ask in this instant, the best first.
+        self._queue: list[tuple[int, float, int, int, Activation]] = []
         self._horizon: Horizon | None = None
         self.ran: dict[int, float] = {}
-        """When rules with a cooldown ran last."""
+        """When each rule with a cooldown last ran (seconds)."""
         self._activity = policy.slot_of["core:activity"]
         self._pressure = policy.slot_of["core:pressure"]
 
     def look(self) -> None:
-        """Make all activations visible for somebody who looks in: those on benches wait for the best of their contest."""
-        for best in list(self.benches):
+        """Unfold all alternatives for an observer; each waits for the best clause of its conflict set."""
+        for best in list(self.alternatives):
             spike = best.spikes[0]
             assert spike is not None  # it is ready, or runs
             self.unfold(best)
@@ -62,13 +61,13 @@ class Waves(Slots):
                     self._refuse(other, Refusal.by(best, other))
 
     def horizon(self) -> Horizon:
-        """What may yet come: looked at once, as long as nobody starts."""
+        """Return what may yet come; it stays valid until an activation starts or changes."""
         if self._horizon is None:
             self._horizon = Horizon(self)
         return self._horizon
 
     def effective(self, clause: Clause) -> float:
-        """The effective utility of a clause now (L9): utility x weight x recovery, in nats."""
+        """Return the effective utility of a clause now (L9): utility x weight x recovery, in nats."""
         cooldown = clause.rule.cooldown
         if cooldown:
             ran = self.ran.get(clause.rule.index)
@@ -77,7 +76,7 @@ class Waves(Slots):
         return clause.base
 
     def recovery(self, clause: Clause) -> tuple[float, float, float]:
-        """Effective utility (nats), its slope (nats per second), and when the rule has recovered (seconds)."""
+        """Return the effective utility (nats), its slope (nats per second), and the time of recovery (seconds)."""
         rule = clause.rule
         ran = self.ran.get(rule.index)
         if not rule.cooldown or ran is None or self.now - ran >= rule.cooldown:
@@ -85,10 +84,11 @@ class Waves(Slots):
         return self.effective(clause), clause.base / rule.cooldown, ran + rule.cooldown
 
     def order(self, activation: Activation) -> tuple[float, int, int]:
-        """By what ready activations are asked: the greatest utility, then the first declared, then the oldest."""
+        """Return the sort key of ready activations: the greatest utility, the first declared, the oldest."""
         return (-self.effective(activation.clause), activation.clause.index, activation.id)
 
     def _start_free(self) -> None:
+        """Start the ready activations that need no consent."""
         free = self._free
         self._free = []
         for activation in free:
@@ -105,7 +105,7 @@ class Waves(Slots):
             self._start(activation)
 
     def _claimed(self, activation: Activation) -> Activation | None:
-        """A run of the same rule on one of the same spikes: all that excludes a rule without slots (L10)."""
+        """Return a run of the same rule on one of the same spikes: it alone excludes a rule without slots (L10)."""
         for spike in activation.firm_spikes():
             if spike.claims is not None:
                 other = spike.claims.get(activation.clause.rule.index)
@@ -114,6 +114,7 @@ class Waves(Slots):
         return None
 
     def _guarded(self, activation: Activation) -> bool:
+        """Return whether the predicates on slots hold; if not, the activation is ready no longer."""
         clause = activation.clause
         if clause.guards and not all(self.holds(s, g, clause.rule) for s, g in clause.guards):
             self._horizon = None
@@ -123,14 +124,15 @@ class Waves(Slots):
         return True
 
     def _consent_round(self) -> None:
-        """Ask the ready, older causes first and of one cause the best first, until one would read what another, just started, is about to write.
+        """Ask for consent: older causes first, and the best first within a cause.
 
-        That one is asked in the next wave: as long as rules do not wait, none overwrites what another wrote.
+        An activation that would read a slot of a rule that has just started asks in the next round. So it sees what
+        that rule writes before it suspends.
         """
-        line = self._line
+        queue = self._queue
         self._horizon = None
         for activation in self._asking:
-            heapq.heappush(line, (*self._turn(activation), activation))
+            heapq.heappush(queue, (*self._turn(activation), activation))
         self._asking.clear()
         if self._dirty or self._stirred:
             again: dict[Activation, None] = {}
@@ -141,29 +143,29 @@ class Waves(Slots):
                 again.update(self.hoping)
                 self._stirred = False
             for activation in again:
-                heapq.heappush(line, (*self._turn(activation), activation))
+                heapq.heappush(queue, (*self._turn(activation), activation))
         written: set[int] = set()
         later: list[tuple[int, float, int, int, Activation]] = []
-        while line:
-            entry = heapq.heappop(line)
+        while queue:
+            entry = heapq.heappop(queue)
             activation = entry[4]
             if activation.state not in ASKABLE or not self._guarded(activation):
                 continue
             rule = activation.clause.rule
             if rule.cooldown and (turn := self._turn(activation)) > entry[:4]:
-                heapq.heappush(line, (*turn, activation))  # it has run meanwhile, and recovers
+                heapq.heappush(queue, (*turn, activation))  # its rule has run meanwhile, and recovers
                 continue
             if written and not rule.readable.isdisjoint(written):
                 if self._is_taken(activation):
-                    later.append(entry)  # it will have to wait, or will have lost by then
+                    later.append(entry)  # it will wait then, or will have lost
                 elif self._ask(activation, start=False):
                     later.append(entry)
                     break
             elif self._ask(activation):
                 written.update(rule.slots)
         for entry in later:
-            heapq.heappush(line, entry)
-        if self.waiting and not line and not self._acts and not self._free:
+            heapq.heappush(queue, entry)
+        if self.waiting and not queue and not self._acts and not self._free:
             best = stalemate(self, self._refused)
             if best is None:
                 self._refused.clear()
@@ -171,18 +173,18 @@ class Waves(Slots):
                 self._start(best)
 
     def _is_taken(self, activation: Activation) -> bool:
-        """Whether one of its slots is taken in one of its groups."""
+        """Return whether one of its slots is taken in one of its groups."""
         slots = activation.clause.rule.slots
         return any(slot in group.taken for group in activation.firm_groups() if group.taken for slot in slots)
 
     def _turn(self, activation: Activation) -> tuple[int, float, int, int]:
-        """When it is asked: what was caused earlier is answered earlier; of one cause the best goes first."""
+        """Return the sort key of the queue: older causes first, and the best first within a cause."""
         groups = activation.firm_groups()
         cause = groups[0].id if len(groups) == 1 else min(group.id for group in groups)
         return (cause, *self.order(activation))
 
     def _ask(self, activation: Activation, *, start: bool = True) -> bool:
-        """Start an activation if it has consent, unless it is not to `start` now; else let it wait. Whether it has consent."""
+        """Return whether an activation has consent. With consent it starts, unless `start` is false; otherwise it waits."""
         if not activation.clause.rule.slots:
             free = self._claimed(activation) is None
             if free and start:
@@ -202,6 +204,7 @@ class Waves(Slots):
         return False
 
     def _refuse(self, activation: Activation, refusal: Refusal) -> None:
+        """Let an activation wait."""
         activation.step(REFUSE)
         self._lose_interest(activation)
         self.waiting[activation] = self._refused[activation] = None
@@ -220,7 +223,7 @@ class Waves(Slots):
             self.tracer(trace.Waits(self.now, activation.id, activation.clause.rule.name, names, until))
 
     def patience_of_rivals(self, activation: Activation) -> float | None:
-        """Until when, at the latest, the rivals that a waiting activation waits for have patience (seconds)."""
+        """Return when the patience of the last pressured rival of a waiting activation ends (seconds)."""
         names = activation.waits_for
         times: list[float] = []
         for group in activation.firm_groups():
@@ -230,6 +233,7 @@ class Waves(Slots):
         return max(times, default=None)
 
     def _press(self, group: Group, rival: Clause, member: Activation | None, by: Activation) -> None:
+        """Put a rival under pressure, unless it is already: an activation, or (None) the clause in stand-by (L16)."""
         patience = self.patience if rival.rule.patience is None else rival.rule.patience
         until = self.now + patience
         if member is not None:
@@ -250,7 +254,7 @@ class Waves(Slots):
             self.tracer(trace.Pressed(self.now, rival.rule.name, by.clause.rule.name, lacks, until))
 
     def _pressed_for_nothing(self, rival: Activation) -> bool:
-        """Whether, when its patience ends, nobody waits for it any more, or it no longer depends on luck (L16)."""
+        """Return whether a rival may stay at the end of its patience: no activation waits for it, or it is sure (L16)."""
         slots = rival.clause.rule.slotset
         groups = rival.firm_groups()
         waited = any(
@@ -264,7 +268,7 @@ class Waves(Slots):
         return all(Horizon(self).viable(rival.clause, rival, group, slots) == FIRM for group in groups)
 
     def _start(self, activation: Activation) -> None:
-        """It takes its slots in its groups, and its function runs (L17)."""
+        """Start an activation: it takes its slots in its groups, and its function runs (L17)."""
         activation.step(GRANT)
         self._horizon = None
         if activation.pressed != NEVER:
@@ -306,15 +310,15 @@ class Waves(Slots):
         self._out.append(Run(activation.id, rule.rule, payloads, values))
 
     def _set_flag(self, flag: SlotPlan, value: bool) -> None:
-        """Change a built-in flag; the agent may well have no rule that hears it."""
+        """Change a built-in flag, and signal the change only if something may hear it."""
         if flag.heard or self.tracer is not None or self.watched or flag.index in self.policy.guarded:
             self._change(flag, value, (), None)
         else:
             self.values[flag.index] = value
 
     def _settle_flags(self) -> bool:
-        """Bring ``core:activity`` and ``core:pressure`` up to date (L22); whether one has changed."""
-        pressure = any(not a.clause.reflexive for a in (*self.benches, *self.waiting))
+        """Update ``core:activity`` and ``core:pressure`` (L22); return whether one has changed."""
+        pressure = any(not a.clause.reflexive for a in (*self.alternatives, *self.waiting))
         if pressure != self.read(self._pressure.index):
             self._set_flag(self._pressure, pressure)
             return True

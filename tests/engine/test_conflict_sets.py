@@ -1,4 +1,4 @@
-"""Contests: what one sees without a trace is what one sees with it."""
+"""Conflict sets: with and without a trace the same happens."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def test_a_rule_of_two_clauses_gives_a_spike_up_for_both(trace: bool) -> None:
         assert (ran, sim.read(out)) == (["asks"], "fallback")
 
 
-def test_groups_merge_whether_anybody_hears_the_slot_or_not(trace: bool) -> None:
+def test_groups_merge_with_and_without_a_listener_of_the_slot(trace: bool) -> None:
     m = rs.Module("m")
     a, b = m.signal("a"), m.signal("b")
     unheard, wanted = m.slot("unheard", 0), m.slot("wanted", 0)
