@@ -222,7 +222,11 @@ export interface Node {
   note?: string;
 }
 
-/** A spike passed a rule by: its `payload` did not fit, its cause was `consumed`, or the rule had `caused` it. */
+/**
+ * A rule did not take a spike.
+ *
+ * Its `payload` did not fit, its cause was `consumed`, or the rule itself had `caused` it.
+ */
 export interface Passed {
   kind: "passed";
   time: number;
@@ -336,7 +340,7 @@ export interface Term {
   nats: number;
 }
 
-/** A run was told to end: `interrupted`, `timeout`, `wiped`. */
+/** The engine asked a run to end: `interrupted`, `timeout`, `wiped`. */
 export interface Told {
   kind: "told";
   time: number;
@@ -360,7 +364,7 @@ export type TraceRecord =
   | Settled
   | Gap;
 
-/** A ready activation is kept waiting, for rivals or for holders of a slot (L15). */
+/** A ready activation waits for rivals, or for runs that hold a slot (L15). */
 export interface Waits {
   kind: "waits";
   time: number;
