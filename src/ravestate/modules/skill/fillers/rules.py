@@ -24,7 +24,7 @@ ENOUGH = 5.0
     background=True,
 )
 async def notice_no_answer(ctx: rs.RuleContext) -> None:
-    """Nobody is kept waiting, which `idle` would notice, but whoever answers has not said a word: say so."""
+    """Raise `impatient` when a rule runs long without output. (`idle` notices rules that wait.)"""
     await ctx.sleep(ctx.settings.unanswered_after)
     ctx.emit(idle.impatient)
 
