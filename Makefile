@@ -54,7 +54,7 @@ bench: setup ## measure speed against the peers and the floor
 
 .PHONY: quality
 quality: setup ## measure how well text is understood
-	@PYTHONPATH=tests $(BIN)/python -m quality.measure quality.modules $(ARGS)
+	@PYTHONPATH=tests $(BIN)/python -m quality.measure quality.modules quality.language quality.skills $(ARGS)
 
 # ------------------------------------------------------------------------------------------- to work on it
 

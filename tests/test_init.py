@@ -1,4 +1,4 @@
-"""The names of the package and of the built-in modules; each is loaded at its first use."""
+"""The names of the package and of the built-in modules; each loads at its first use."""
 
 import pytest
 
@@ -17,7 +17,7 @@ def test_dir_lists_every_built_in_module() -> None:
     assert set(modules.BUILT_IN) | {"BUILT_IN"} == set(modules.__all__) <= set(dir(modules))
 
 
-def test_a_misspelt_name_is_met_by_the_right_one() -> None:
+def test_a_misspelt_name_gets_a_hint() -> None:
     with pytest.raises(AttributeError, match="ravestate has no 'Modul'; did you mean 'Module'"):
         _ = rs.Modul  # type: ignore[attr-defined]
     with pytest.raises(AttributeError, match="no built-in module 'rawoi'; did you mean 'rawio'"):

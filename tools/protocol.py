@@ -54,6 +54,11 @@ FILES = {
         constants=("VERSION", "LONGEST_TEXT", "CLOSING_CODES"),
         checked="ServerFrame",
     ),
+    "frontend/src/board/protocol.ts": Source(
+        "ravestate.board.protocol",
+        types={"ClientFrame": "CLIENT", "ServerFrame": "SERVER"},
+        constants=("VERSION", "CLOSING_CODES", "LOSSES", "VERDICTS"),
+    ),
 }
 
 
@@ -101,7 +106,7 @@ def _constants(code: str) -> Iterator[tuple[str, str]]:
 
 def _interface(name: str, schema: Schema) -> str:
     if "properties" not in schema:
-        return f"{_comment(schema.get('description', ''))}export type {name} = {_type(schema)};"
+        return _comment(schema.get("description", "")) + _union(name, schema)
     text, _, section = schema.get("description", "").partition("\n\nAttributes:\n")
     documented = dict(re.findall(r"^ {4}(\w+): ((?:.|\n {5,})+)", section, re.MULTILINE))
     lines = [f"{_comment(text)}export interface {name} {{"]
@@ -198,6 +203,7 @@ def _key(name: str) -> str:
 
 def _comment(text: str, indent: int = 0) -> str:
     """Return a JSDoc comment with its line feed; nothing for an empty text."""
+    text = re.split(r"\n\n(?:Args|Raises|Returns|Example):\n", text)[0]
     plain = re.sub(r"``(.+?)``", r"`\1`", text).strip()
     pad = " " * indent
     paragraphs = [" ".join(part.split()) for part in plain.split("\n\n") if part]

@@ -77,22 +77,22 @@ def test_what_a_signal_carries_is_raised(signal: rs.Signal[Any], payload: dict[s
 @pytest.mark.parametrize(
     ("signal", "payload", "words"),
     [
-        (plain, {"payload": 7}, r"lab:plain carries no payload: leave it away, or declare its type"),
+        (plain, {"payload": 7}, r"lab:plain carries no payload: leave it out, or declare its type"),
         (plain, {"payload": False}, r"lab:plain carries no payload"),
         (word, {}, r"lab:word carries a payload of type str: give one"),
         (word, {"payload": 7}, r"a payload of type str, not int"),
         (word, {"payload": None}, r"a payload of type str, not NoneType"),
         (measure, {"payload": "1"}, r"a payload of type float, not str"),
         (numbers, {"payload": "1"}, r"a payload of type list\[int\], not str"),
-        (pair, {"payload": [1, 2]}, r"tuple\[int, int\], for which JSON has no words: only a rule or a program"),
-        (point, {"payload": {"x": 1}}, r"a payload of type Point, for which JSON has no words"),
-        (colour, {"payload": "red"}, r"a payload of type Colour, for which JSON has no words"),
+        (pair, {"payload": [1, 2]}, r"tuple\[int, int\], which JSON cannot express: only a rule or a program"),
+        (point, {"payload": {"x": 1}}, r"a payload of type Point, which JSON cannot express"),
+        (colour, {"payload": "red"}, r"a payload of type Colour, which JSON cannot express"),
         (text.changed, {"payload": 7}, r"lab:text:changed carries a payload of type str, not int"),
         (text.changed, {}, r"lab:text:changed carries a payload of type str: give one"),
         (perhaps.changed, {"payload": 7}, r"a payload of type str, not int"),
-        (place.changed, {"payload": {"x": 1}}, r"type Point, for which JSON has no words"),
+        (place.changed, {"payload": {"x": 1}}, r"type Point, which JSON cannot express"),
         (lamp.changed, {"payload": 1}, r"a payload of type bool, not int"),
-        (people.added, {"payload": ["ada", 1]}, r"a change in the collection lab:people: write the slot"),
+        (people.added, {"payload": ["ada", 1]}, r"a change of the collection lab:people: write the slot"),
         (people.changed, {}, r"write the slot"),
     ],
 )  # fmt: skip
@@ -108,7 +108,7 @@ def test_what_has_no_type_takes_anything_unless_it_holds_what_json_cannot_say(ho
     check_value(free, "new", holds)
     for foreign in (Point(1), [Point(1)], {"a": Point(1)}, {1: 2}, (1, 2), [(1, 2)]):
         with pytest.raises(
-            rs.RavestateError, match=rf"lab:free holds a {type(foreign).__name__}, for which JSON"
+            rs.RavestateError, match=rf"lab:free holds a {type(foreign).__name__}, which JSON"
         ):
             check_value(free, "new", foreign)
         with pytest.raises(rs.RavestateError, match="lab:free holds a"):
@@ -120,7 +120,7 @@ def test_a_collection_is_written_whatever_its_items_are() -> None:
 
 
 def test_what_json_cannot_write_to_a_slot_is_told_to_be_so() -> None:
-    with pytest.raises(rs.RavestateError, match="lab:place takes Point, for which JSON has no words"):
+    with pytest.raises(rs.RavestateError, match="lab:place takes Point, which JSON cannot express"):
         check_value(place, {"x": 1}, None)
     check_value(place, None, Point(1))  # its default
 
@@ -159,7 +159,7 @@ def test_of_a_type_of_containers_the_container_is_asked_for(
 def test_containers_that_json_does_not_know_are_not_written(kind: Any) -> None:
     slot = rs.Module("boxes").slot("box", 0, type=kind)
     for value in ("banana", ["a"], None):
-        with pytest.raises(rs.RavestateError, match=r"boxes:box takes .*, for which JSON has no words"):
+        with pytest.raises(rs.RavestateError, match=r"boxes:box takes .*, which JSON cannot express"):
             check_value(slot, value, None)
 
 

@@ -59,7 +59,7 @@ def endless() -> list[object]:
         (float("inf"), Rendered("inf", json=False)),
         ({1, 2}, Rendered("{1, 2}", json=False)),
         (Loud(), Rendered("<Loud whose repr fails: RuntimeError>", json=False)),
-        (Liar(a=1), Rendered("<Liar that cannot be shown: RuntimeError>", json=False)),
+        (Liar(a=1), Rendered("<Liar that cannot be read: RuntimeError>", json=False)),
         ("<b>", Rendered('"<b>"')),
     ],
 )

@@ -16,7 +16,7 @@ from ravestate.board.recorder import Gap
 from ravestate.board.trace_file import MOST_VALUES, open_trace, read_apart, read_trace, save_trace
 from ravestate.board.why_not import why_not
 from ravestate.board.wire import data_of, record_of
-from ravestate.engine.trace import Born, Record
+from ravestate.engine.trace import Born, Record, Settled
 from ravestate.errors import PlatformError
 from ravestate.modules import rawio
 from ravestate.testing import simulate
@@ -166,3 +166,16 @@ def test_a_recording_is_read_in_a_process_of_its_own(tmp_path: Path, monkeypatch
     assert read_apart(data) == whole
     with pytest.raises(ValueError, match="it is not JSON"):
         read_apart(b"{")
+
+
+def test_a_failure_keeps_its_traceback_in_a_recording() -> None:
+    try:
+        raise ValueError("out of ink")
+    except ValueError as error:
+        settled = Settled(1.0, 1, "m:draw", "failed", "ValueError('out of ink')", False, error)
+    data = data_of(settled)
+    assert data["error"].startswith("Traceback (most recent call last):")
+    assert data["error"].endswith("ValueError: out of ink\n")
+    read = record_of(data)
+    assert data_of(read) == data
+    assert "error" not in data_of(Settled(1.0, 1, "m:draw", "done", "", True))

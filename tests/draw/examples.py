@@ -1,4 +1,4 @@
-"""Diagrams to test with: the paper's figures as rules, and arbitrary ones for Hypothesis."""
+"""Diagrams for tests: the paper's figures as rules, and arbitrary ones from Hypothesis."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ def prompting() -> Module:
 
 
 def many_rules(count: int) -> Module:
-    """Rules in number, with hubs, chains, conjunctions, alternatives, ages and loops; always the same."""
+    """Many rules with hubs, chains, conjunctions, alternatives, ages and loops; the same in each call."""
     module = Module("many")
     said, answer, memory = module.slot("input"), module.slot("output"), module.slot("memory")
     heard: list[Condition] = [said.changed, memory.changed]
@@ -91,7 +91,7 @@ def many_rules(count: int) -> Module:
 
 
 def star(points: int, pairs: bool) -> Diagram:
-    """A slot on which everything hangs: rules that write one other slot, or rules with a signal each."""
+    """One slot that all rules read. They write one other slot, or each emits its own signal."""
     nodes = [Node("in", "slot", "input", "rawio"), Node("out", "slot", "intent", "verbaliser")]
     edges: list[Edge] = []
     for i in range(points):
@@ -134,7 +134,7 @@ names = st.one_of(
 
 @st.composite
 def diagrams(draw: st.DrawFn, most_nodes: int = 14, most_edges: int = 30) -> Diagram:
-    """Any nodes, joined in any way."""
+    """Any nodes with any edges."""
     kinds = draw(st.lists(st.sampled_from(NODE_KINDS), max_size=most_nodes))
     nodes = tuple(Node(f"n{i}", kind, draw(names), draw(names), draw(names)) for i, kind in enumerate(kinds))
     edges: list[Edge] = []

@@ -1,7 +1,7 @@
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ravestate.draw.acyclic import STRONG, backward
+from ravestate.draw.acyclic import STRONG, feedback_arcs
 
 edges_of_ten = st.lists(
     st.tuples(st.integers(0, 9), st.integers(0, 9), st.sampled_from((1, 2, STRONG, 3 * STRONG))).filter(
@@ -24,23 +24,23 @@ def has_cycle(edges: list[tuple[int, int]]) -> bool:
 
 @given(edges_of_ten)
 def test_no_cycle_is_left(edges: list[tuple[int, int, int]]) -> None:
-    turned = backward(10, edges)
+    turned = feedback_arcs(10, edges)
     assert not has_cycle([(v, u) if t else (u, v) for (u, v, _), t in zip(edges, turned, strict=True)])
 
 
 @given(edges_of_ten)
-def test_what_is_on_no_cycle_stays(edges: list[tuple[int, int, int]]) -> None:
+def test_an_edge_on_no_cycle_keeps_its_direction(edges: list[tuple[int, int, int]]) -> None:
     forward = [(u, v, w) for u, v, w in edges if u < v]
-    assert not any(backward(10, forward))
+    assert not any(feedback_arcs(10, forward))
 
 
 @given(edges_of_ten)
-def test_strong_edges_stay_where_weak_ones_break_the_cycle(edges: list[tuple[int, int, int]]) -> None:
+def test_strong_edges_stay_if_weak_ones_break_the_cycle(edges: list[tuple[int, int, int]]) -> None:
     forward = [(u, v, STRONG) for u, v, w in edges if u < v and w >= STRONG]
     weak = [(u, v, 1) for u, v, w in edges if w < STRONG]
-    assert not any(backward(10, [*forward, *weak])[: len(forward)])
+    assert not any(feedback_arcs(10, [*forward, *weak])[: len(forward)])
 
 
 def test_a_loop_is_cut_at_its_weak_edge() -> None:
-    assert backward(3, [(0, 1, STRONG), (1, 2, STRONG), (2, 0, 1)]) == [False, False, True]
-    assert backward(3, [(2, 0, 1), (0, 1, STRONG), (1, 2, STRONG)]) == [True, False, False]
+    assert feedback_arcs(3, [(0, 1, STRONG), (1, 2, STRONG), (2, 0, 1)]) == [False, False, True]
+    assert feedback_arcs(3, [(2, 0, 1), (0, 1, STRONG), (1, 2, STRONG)]) == [True, False, False]

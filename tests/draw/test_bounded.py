@@ -1,4 +1,4 @@
-"""Layers of bounded size, and what they are for: pictures that suit a landscape screen."""
+"""Layers of bounded size, for pictures that suit a landscape screen."""
 
 import os
 import subprocess
@@ -13,15 +13,15 @@ from hypothesis import strategies as st
 from draw.examples import EDGE_KINDS, games, many_rules, prompting, question_answering, star
 from draw.test_layout import check, laid_out
 from ravestate.declare.module import Module
-from ravestate.draw.bounded import bounded, shaped
+from ravestate.draw.bounded import bounded_layers, fit_to_screen
 from ravestate.draw.build import build
 from ravestate.draw.graph import Diagram, Edge
-from ravestate.draw.simplex import Arc, layers
+from ravestate.draw.simplex import Arc, network_simplex
 
 
 @st.composite
 def graphs(draw: st.DrawFn) -> tuple[int, list[Arc]]:
-    """A connected graph without cycles: every vertex but the first has a predecessor."""
+    """A connected graph without cycles: each vertex except the first has a predecessor."""
     count = draw(st.integers(1, 30))
     arcs = [
         (draw(st.integers(0, v - 1)), v, draw(st.integers(1, 4)), draw(st.integers(1, 2)))
@@ -37,33 +37,37 @@ def graphs(draw: st.DrawFn) -> tuple[int, list[Arc]]:
 
 
 @given(graphs(), st.integers(1, 8))
-def test_no_layer_holds_more_and_every_arc_has_its_length(graph: tuple[int, list[Arc]], most: int) -> None:
+def test_no_layer_exceeds_the_bound_and_each_arc_has_its_length(
+    graph: tuple[int, list[Arc]], most: int
+) -> None:
     count, arcs = graph
-    found = bounded(layers(count, arcs), arcs, most)
+    found = bounded_layers(network_simplex(count, arcs), arcs, most)
     assert max(Counter(found).values()) <= most
     assert min(found) == 0
     for u, v, _, length in arcs:
         assert found[v] - found[u] >= length
 
 
-def test_chains_that_have_begun_run_on_before_others_begin() -> None:
+def test_a_chain_continues_before_another_chain_begins() -> None:
     arcs = [(0, head, 1, 1) for head in (1, 3, 5, 7)] + [(head, head + 1, 1, 1) for head in (1, 3, 5, 7)]
-    found = bounded(layers(9, arcs), arcs, 2)
+    found = bounded_layers(network_simplex(9, arcs), arcs, 2)
     assert [found[head] for head in (1, 3, 5, 7)] == [1, 1, 3, 3]
     assert all(found[head + 1] == found[head] + 1 for head in (1, 3, 5, 7))
 
 
-def test_what_is_wide_enough_keeps_its_layers() -> None:
+def test_a_picture_that_is_wide_enough_keeps_its_layers() -> None:
     arcs = [(0, v, 1, 1) for v in range(1, 40)]
-    ranks = layers(40, arcs)
-    assert shaped(ranks, arcs, lambda _: (1000.0, 800.0)) == ranks
-    assert shaped(ranks, arcs, lambda _: (100.0, 700.0)) == ranks  # not wide, but no higher than a screen
-    assert shaped(ranks, arcs, lambda _: (100.0, 2000.0)) == ranks  # folding does not help
+    ranks = network_simplex(40, arcs)
+    assert fit_to_screen(ranks, arcs, lambda _: (1000.0, 800.0)) == ranks
+    assert (
+        fit_to_screen(ranks, arcs, lambda _: (100.0, 700.0)) == ranks
+    )  # not wide, but no higher than a screen
+    assert fit_to_screen(ranks, arcs, lambda _: (100.0, 2000.0)) == ranks  # a bound does not help
 
 
 @pytest.mark.parametrize("points", [20, 30, 60, 120])
 @pytest.mark.parametrize("pairs", [False, True], ids=["ends", "chains"])
-def test_what_hangs_on_one_hub_fills_a_landscape_screen(points: int, pairs: bool) -> None:
+def test_the_neighbours_of_a_hub_fill_a_landscape_screen(points: int, pairs: bool) -> None:
     diagram = star(points, pairs)
     layout = laid_out(diagram)
     assert 1.0 <= layout.width / layout.height <= 2.0
@@ -71,14 +75,14 @@ def test_what_hangs_on_one_hub_fills_a_landscape_screen(points: int, pairs: bool
 
 
 @pytest.mark.parametrize("module", [question_answering(), games(), prompting(), many_rules(120)], ids=repr)
-def test_the_examples_are_no_higher_than_wide(module: Module) -> None:
+def test_the_examples_are_at_least_as_wide_as_high(module: Module) -> None:
     layout = laid_out(build(module.rules))
     assert layout.width >= layout.height
 
 
 @st.composite
 def tangled_stars(draw: st.DrawFn) -> Diagram:
-    """What hangs on one hub, and a few edges to and fro, some of them with labels."""
+    """A hub with neighbours, and a few edges in both directions, some of them with labels."""
     diagram = star(draw(st.integers(8, 20)), draw(st.booleans()))
     ids = st.sampled_from([node.id for node in diagram.nodes])
     edges = [
@@ -90,13 +94,13 @@ def tangled_stars(draw: st.DrawFn) -> Diagram:
 
 
 @given(tangled_stars())
-def test_in_a_folded_picture_nothing_overlaps_and_every_line_joins_its_nodes(diagram: Diagram) -> None:
+def test_with_bounded_layers_nothing_overlaps_and_each_line_joins_its_nodes(diagram: Diagram) -> None:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("ravestate.draw.bounded._SCREEN", 200.0)
         check(diagram)
 
 
-def test_in_a_folded_picture_lines_run_from_left_to_right() -> None:
+def test_with_bounded_layers_lines_run_from_left_to_right() -> None:
     diagram = star(60, pairs=True)
     layout = laid_out(diagram)
     for edge in diagram.edges:

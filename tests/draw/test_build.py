@@ -13,7 +13,7 @@ def is_short(text: str) -> bool:
     return len(text) < 5
 
 
-def test_one_constraint_leads_straight_to_its_rule() -> None:
+def test_a_single_constraint_leads_directly_to_its_rule() -> None:
     module = Module("m")
     said, answer = module.slot("input"), module.slot("output")
     rule(module, "echo", said.changed, reads=said, writes=answer)
@@ -52,7 +52,7 @@ def test_detached_rules_emit_detached() -> None:
     assert kinds == {"emits_detached"}
 
 
-def test_only_signals_that_are_heard_are_drawn_of_a_slot() -> None:
+def test_a_slot_emits_only_signals_with_a_listener() -> None:
     module = Module("m")
     lit = module.flag("lit")
     rule(module, "r", lit.true, writes=lit)
@@ -92,7 +92,7 @@ def test_constraints_are_annotated() -> None:
     }
 
 
-def test_detached_constraints_and_interruptions_have_lines_of_their_own() -> None:
+def test_detached_constraints_and_interruptions_have_their_own_lines() -> None:
     module = Module("m")
     a, b = module.signal("a"), module.signal("b")
     rule(module, "r", a.detached() & b, until=b.min_age(1.0).max_age(None))

@@ -11,7 +11,7 @@ TOKEN = re.compile(r'"(?:[^"\\\n]|\\.)*"|//[^\n]*|[A-Za-z0-9_.]+|->|[\[\]{}=,;]|
 
 
 @given(diagrams())
-def test_it_is_made_of_whole_tokens_whatever_the_names(diagram: Diagram) -> None:
+def test_any_name_gives_whole_tokens(diagram: Diagram) -> None:
     text = dot(diagram)
     at = 0
     while at < len(text):
@@ -26,7 +26,7 @@ def test_quotes_backslashes_and_entities_are_escaped() -> None:
     assert 'label="m\ufffd\\nsay \\"\\\\N\\" &amp;lt;"' in text
 
 
-def test_each_kind_has_a_look_of_its_own() -> None:
+def test_each_kind_looks_different() -> None:
     nodes = (Node("a", "slot", "a"), Node("b", "rule", "b"))
     kinds = ("reads", "writes", "emits", "emits_detached", "condition", "condition_detached")
     looks = {dot(Diagram(nodes, (Edge("a", "b", kind),))).splitlines()[-2] for kind in kinds}
@@ -40,7 +40,7 @@ def test_a_loop_as_text() -> None:
     assert 'label=" ≥ 10 s "' in text
 
 
-def test_its_comments_explain_what_is_in_the_picture_and_nothing_else() -> None:
+def test_the_comments_explain_the_kinds_in_the_picture_alone() -> None:
     text = dot(Diagram((Node("a", "signal", "a"), Node("b", "rule", "b")), (Edge("a", "b", "condition"),)))
     comments = [line.split(":")[0].strip() for line in text.splitlines() if line.startswith("  //")]
     assert comments == ["// signal", "// rule", "// condition"]

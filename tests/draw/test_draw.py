@@ -9,7 +9,7 @@ from ravestate.policy.compile import compile_policy
 @pytest.mark.parametrize(
     ("format", "start"), [("svg", "<?xml"), ("dot", "digraph"), ("mermaid", "flowchart LR")]
 )
-def test_a_policy_draws_itself(format: str, start: str) -> None:
+def test_a_policy_draws_a_diagram(format: str, start: str) -> None:
     policy = compile_policy(games())
     text = policy.diagram(format)  # type: ignore[arg-type]
     assert text.startswith(start) and text == draw(policy, format)
@@ -22,18 +22,18 @@ def test_svg_is_the_default() -> None:
     assert policy.diagram() == policy.diagram("svg")
 
 
-def test_an_unknown_format_is_refused_with_those_that_exist() -> None:
+def test_the_message_for_an_unknown_format_names_the_known_ones() -> None:
     with pytest.raises(ValueError, match="'png' is unknown: write one of 'svg', 'dot', 'mermaid'"):
         draw(compile_policy(games()), "png")
     assert list(FORMATS) == ["svg", "dot", "mermaid"]
 
 
-def test_a_policy_without_rules_is_drawn_too() -> None:
+def test_a_policy_without_rules_has_a_diagram() -> None:
     policy = compile_policy(Module("empty"))
     assert all(policy.diagram(format) for format in ("svg", "dot", "mermaid"))
 
 
-def test_required_modules_are_drawn_with_it() -> None:
+def test_the_diagram_has_the_required_modules() -> None:
     base = Module("base")
     ping = base.signal("ping", input=True)
     rule(base, "sound", ping)

@@ -14,7 +14,7 @@ def test_two_nodes_of_one_id_are_refused() -> None:
         Diagram((A, A), ())
 
 
-def test_an_edge_to_nowhere_is_refused() -> None:
+def test_an_edge_to_an_unknown_node_is_refused() -> None:
     with pytest.raises(ValueError, match="'c', which is no node"):
         Diagram((A, B), (Edge("a", "c", "emits"),))
 

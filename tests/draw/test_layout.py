@@ -31,7 +31,7 @@ def at_side(point: Point, box: Box) -> bool:
 
 
 def enters(line: tuple[Point, ...], box: Box) -> bool:
-    """Whether a line runs through the inside of a box (each piece clipped at its four borders)."""
+    """Return whether a line runs through the inside of a box; each piece is clipped at the four borders."""
     low = (box.x + NEAR, box.y + NEAR)
     high = (box.x + box.width - NEAR, box.y + box.height - NEAR)
     for a, b in pairwise(line):
@@ -69,7 +69,7 @@ def check(diagram: Diagram) -> None:
 
 
 @given(diagrams())
-def test_nothing_overlaps_and_every_line_joins_its_nodes(diagram: Diagram) -> None:
+def test_nothing_overlaps_and_each_line_joins_its_nodes(diagram: Diagram) -> None:
     check(diagram)
 
 
@@ -79,7 +79,7 @@ def test_examples_neither_overlap_nor_cross_nodes(module: Module) -> None:
 
 
 @given(diagrams())
-def test_lines_of_strangers_never_run_upon_each_other(diagram: Diagram) -> None:
+def test_lines_without_a_common_node_never_overlap(diagram: Diagram) -> None:
     layout = laid_out(diagram)
     for (e, line), (f, other) in combinations(zip(diagram.edges, layout.lines, strict=True), 2):
         if {e.source, e.target} & {f.source, f.target}:
@@ -97,12 +97,12 @@ def test_lines_of_strangers_never_run_upon_each_other(diagram: Diagram) -> None:
                     assert shared < NEAR, f"{e} and {f}"
 
 
-def test_nothing_takes_no_room() -> None:
+def test_an_empty_diagram_has_no_size() -> None:
     layout = laid_out(Diagram((), ()))
     assert (layout.width, layout.height) == (0.0, 0.0)
 
 
-def test_causes_stand_left_of_their_effects() -> None:
+def test_causes_are_left_of_their_effects() -> None:
     layout = laid_out(build(games().rules))
     x = {name: box.x for name, box in layout.boxes.items()}
     assert (
@@ -116,7 +116,7 @@ def test_causes_stand_left_of_their_effects() -> None:
     )
 
 
-def test_a_loop_runs_back_where_it_is_detached() -> None:
+def test_a_loop_runs_backwards_at_its_detached_edge() -> None:
     diagram = build(prompting().rules)
     layout = laid_out(diagram)
     back = [e for e, line in zip(diagram.edges, layout.lines, strict=True) if line[-1][0] < line[0][0]]

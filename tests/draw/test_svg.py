@@ -27,26 +27,26 @@ def texts(root: ElementTree.Element, tag: str) -> list[str]:
 
 
 @given(diagrams())
-def test_it_is_well_formed_whatever_the_names(diagram: Diagram) -> None:
+def test_any_name_gives_a_well_formed_document(diagram: Diagram) -> None:
     titles = texts(parsed(diagram), "title")
     for node in diagram.nodes:
         assert any(clean(node.label) in title for title in titles)
 
 
-def test_names_are_shown_as_they_are() -> None:
+def test_names_are_shown_unchanged() -> None:
     node = Node("a", "rule", '<b>&amp; "c"', module="m<n")
     root = parsed(Diagram((node,), ()))
     assert '<b>&amp; "c"' in texts(root, "text") and "m<n" in texts(root, "text")
     assert 'rule m<n:<b>&amp; "c"' in texts(root, "title")
 
 
-def test_a_long_name_is_whole_in_its_title() -> None:
+def test_the_title_has_the_whole_of_a_long_name() -> None:
     root = parsed(Diagram((Node("a", "slot", "x" * 300),), ()))
     assert "slot " + "x" * 300 in texts(root, "title")
     assert not any("x" * 300 in text for text in texts(root, "text"))
 
 
-def test_it_can_be_heard_as_well_as_seen() -> None:
+def test_a_screen_reader_finds_a_title_and_a_description() -> None:
     root = parsed(build(games().rules))
     assert root.get("role") == "img"
     ids = {element.get("id"): element for element in root.iter()}
@@ -57,7 +57,7 @@ def test_it_can_be_heard_as_well_as_seen() -> None:
     )
 
 
-def test_the_edges_are_told_in_words() -> None:
+def test_each_edge_has_a_title_in_words() -> None:
     titles = texts(parsed(build(prompting().rules)), "title")
     assert "prompt:Answered reads prompt:input" in titles
     assert "prompt:Prompt writes prompt:output" in titles
@@ -71,14 +71,14 @@ def legend(diagram: Diagram) -> list[str]:
     return [text.text or "" for text in key.iter(f"{SVG}text")]
 
 
-def test_the_legend_has_the_whole_notation_where_all_of_it_is_used() -> None:
+def test_the_legend_of_a_picture_with_every_kind_has_the_whole_notation() -> None:
     nodes = tuple(Node(kind, kind) for kind in NODES)
     diagram = Diagram(nodes, tuple(Edge("slot", "rule", kind) for kind in EDGES))
     plain, junctions = list(NODES.values())[:4], list(NODES.values())[4:]
     assert legend(diagram) == [*plain, *EDGES.values(), *junctions]
 
 
-def test_the_legend_explains_what_is_in_the_picture_and_nothing_else() -> None:
+def test_the_legend_explains_the_kinds_in_the_picture_alone() -> None:
     assert legend(Diagram((), ())) == []
     module = Module("m")
     rule(module, "r", module.signal("a"))
@@ -89,19 +89,19 @@ def test_the_legend_explains_what_is_in_the_picture_and_nothing_else() -> None:
     ]  # fmt: skip
 
 
-def test_it_is_light_and_dark_and_loads_nothing() -> None:
+def test_the_picture_has_a_light_and_a_dark_mode_and_loads_nothing() -> None:
     text = svg(build(games().rules))
     assert "prefers-color-scheme:dark" in text
     assert "href" not in text and "@import" not in text and "<script" not in text
     assert re.findall(r"https?://[^\"]*", text) == ["http://www.w3.org/2000/svg"]
 
 
-def test_every_head_that_is_used_is_defined() -> None:
+def test_each_used_head_is_defined() -> None:
     text = svg(Diagram((Node("a", "slot"), Node("b", "rule")), (Edge("a", "b", "reads"),)))
     assert set(re.findall(r"url\(#([^)]*)\)", text)) <= set(re.findall(r'marker id="([^"]*)"', text))
 
 
-def test_pictures_on_one_page_share_no_ids() -> None:
+def test_two_pictures_share_no_ids() -> None:
     one, two = svg(build(games().rules)), svg(build(prompting().rules))
     assert not set(re.findall(r' id="([^"]*)"', one)) & set(re.findall(r' id="([^"]*)"', two))
 
@@ -125,7 +125,7 @@ def test_the_same_rules_give_the_same_bytes_in_any_process(format: str) -> None:
     assert len(outputs) == 1
 
 
-def test_a_policy_of_120_rules_is_drawn_whole() -> None:
+def test_a_policy_of_120_rules_is_complete() -> None:
     diagram = build(many_rules(120).rules)
     assert sum(node.kind == "rule" for node in diagram.nodes) == 120
     titles = texts(parsed(diagram), "title")

@@ -18,13 +18,13 @@ def test_a_shortened_text_fits(text: str, limit: float) -> None:
     assert short == text or "…" in short
 
 
-def test_both_ends_of_a_long_name_stay() -> None:
+def test_a_long_name_keeps_both_ends() -> None:
     short = shorten("first_" + "x" * 100 + "_last", 13.0, 200.0)
     assert short.startswith("first_") and short.endswith("_last")
 
 
 @pytest.mark.parametrize("bad", ["\x00", "\n", "\ud800", "\ufffe", "\u202e", "\u2028", "\x85"])
-def test_what_no_text_can_carry_is_replaced(bad: str) -> None:
+def test_control_characters_and_the_like_are_replaced(bad: str) -> None:
     assert clean(f"a{bad}b") == "a\ufffdb"
 
 

@@ -15,7 +15,7 @@ def gaps(draw: st.DrawFn) -> list[Segment]:
 
 
 @given(gaps())
-def test_verticals_of_strangers_do_not_touch(segments: list[Segment]) -> None:
+def test_verticals_of_different_nets_do_not_touch(segments: list[Segment]) -> None:
     found = tracks(segments)
     for (p, q, y, z), (r, s, a, b), (one, two) in (
         zip(*zip(*combinations(segments, 2), strict=True), combinations(found.of, 2), strict=True)
@@ -27,7 +27,7 @@ def test_verticals_of_strangers_do_not_touch(segments: list[Segment]) -> None:
 
 
 @given(gaps())
-def test_stubs_of_strangers_do_not_lie_upon_each_other(segments: list[Segment]) -> None:
+def test_stubs_of_different_nets_do_not_overlap(segments: list[Segment]) -> None:
     found = tracks(segments)
     joined = {(p, q) for p, q, _, _ in segments}
     for (p, _, y, _), one in zip(segments, found.of, strict=True):
@@ -44,6 +44,6 @@ def test_straight_lines_need_no_track(segments: list[Segment]) -> None:
             assert track is None
 
 
-def test_a_hub_takes_one_track() -> None:
+def test_a_hub_needs_one_track() -> None:
     assert tracks([(0, i, 50.0, 10.0 * i) for i in range(1, 9)]).count == 1
     assert tracks([(i, 0, 10.0 * i, 50.0) for i in range(1, 9)]).count == 1

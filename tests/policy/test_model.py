@@ -1,4 +1,4 @@
-"""The numbered form: what the engine looks up is numbered once, in declaration order."""
+"""The records of a policy: signals, slots, rules and clauses, numbered in declaration order."""
 
 import functools
 
@@ -34,13 +34,13 @@ def test_signals_and_slots_are_numbered_in_declaration_order() -> None:
     )
 
 
-def test_a_signal_knows_how_it_is_kept_and_whose_it_is() -> None:
+def test_a_signal_has_its_slot_and_overflow_policy() -> None:
     plan = policy.signal_of["demo:seen"]
     assert (plan.keep_latest, plan.limit, plan.slot) == (True, 4, None)
     assert policy.signal_of["demo:lit:true"].slot == policy.slot_of["demo:lit"].index
 
 
-def test_needs_have_bits_and_hang_on_their_signals() -> None:
+def test_a_need_has_a_bit_and_is_a_listener_of_its_signal() -> None:
     first, second = policy.rule_plan("demo:work").clauses
     assert [need.bit for need in first.needs] == [1, 2]
     assert (first.all_bits, first.firm_bits, first.asks_detached, first.simple) == (3, 1, True, False)
@@ -55,7 +55,7 @@ def test_needs_have_bits_and_hang_on_their_signals() -> None:
     assert policy.rule_plan("demo:thread").clauses[0].simple
 
 
-def test_a_rule_knows_what_it_may_do() -> None:
+def test_a_rule_has_its_slots_and_signals() -> None:
     plan = policy.rule_plan("demo:work")
     names = {name: s.index for name, s in policy.signal_of.items()}
     assert plan.raises == tuple(names[f"demo:{s}"] for s in ("seen", "lit:changed", "lit:true", "lit:false"))
@@ -64,7 +64,7 @@ def test_a_rule_knows_what_it_may_do() -> None:
     assert str(plan) == "demo:work"
 
 
-def test_only_what_runs_on_the_loop_can_be_interrupted() -> None:
+def test_only_a_coroutine_can_be_interrupted() -> None:
     assert RulePlan(0, work).interruptible
     assert not RulePlan(0, thread).interruptible
     for function in (work.function, thread.function):

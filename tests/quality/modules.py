@@ -1,4 +1,4 @@
-"""The modules as `measure.py` asks them: each function bears the name of a set."""
+"""The functions for `measure.py`; each has the name of a set."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from pathlib import Path
 from quality.measure import Reply, labelled
 from ravestate.modules import emotion
 from ravestate.modules import genqa as genqa_module
-from ravestate.modules.meta.nlp import QuestionWord, Settings
+from ravestate.modules.meta.nlp import QuestionWord, Settings, YesNo
 from ravestate.modules.meta.nlp.analysis import Analysis, analyse
 from ravestate.modules.meta.nlp.pipeline import pipeline
 from ravestate.modules.skill.agentqa.life import Life
@@ -41,7 +41,11 @@ def questions(text: str) -> str:
 
 def yesno(text: str) -> str:
     """By nlp."""
-    answer = _seen(text).yesno
+    return yesno_label(_seen(text).yesno)
+
+
+def yesno_label(answer: YesNo) -> str:
+    """Return the label of an answer."""
     if answer.unsure:
         return "unsure"
     if answer.yes:
@@ -60,7 +64,7 @@ NOT_ABOUT_ITSELF = ("time", "date", "privacy")
 
 
 def agentqa(text: str) -> str:
-    """By agentqa, which is told by nlp whether it is a question."""
+    """Classify with agentqa, which needs nlp's verdict whether the text is a question."""
     found = _router().route(text, question=_seen(text).question is not None)
     topic = found.topic if isinstance(found, Match) else "-"
     return {"abilities": "can_do", **dict.fromkeys(NOT_ABOUT_ITSELF, "-")}.get(topic, topic)

@@ -1,4 +1,4 @@
-"""What is promised of the understanding of text, on sets that nobody tuned on."""
+"""The floors of language understanding, on sets that are never used for tuning."""
 
 from __future__ import annotations
 

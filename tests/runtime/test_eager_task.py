@@ -1,4 +1,4 @@
-"""A coroutine's first step by hand: cheap if it does not wait, and no different from a task if it does."""
+"""Eager tasks: cheap for a coroutine that does not wait, and like any task for one that does."""
 
 import asyncio
 import contextvars
@@ -55,7 +55,7 @@ async def closed(eager: EagerTask) -> None:
 
 
 @on_loop
-async def test_a_coroutine_that_does_not_wait_leaves_the_nest_free() -> None:
+async def test_a_coroutine_that_does_not_wait_leaves_the_task_free() -> None:
     eager = make()
     ran: list[int] = []
 
@@ -69,7 +69,7 @@ async def test_a_coroutine_that_does_not_wait_leaves_the_nest_free() -> None:
 
 
 @on_loop
-async def test_what_it_raises_comes_at_once() -> None:
+async def test_an_exception_in_the_first_step_comes_at_once() -> None:
     eager = make()
 
     async def fail() -> None:
@@ -82,7 +82,7 @@ async def test_what_it_raises_comes_at_once() -> None:
 
 
 def counted_tasks() -> list[str]:
-    """The names of the tasks that are made from now on."""
+    """Return the list to which each new task adds its name."""
     made: list[str] = []
     loop = asyncio.get_running_loop()
 
@@ -152,7 +152,7 @@ async def test_an_exception_after_waiting_is_the_task_s() -> None:
 
 
 @on_loop
-async def test_what_it_waits_for_may_fail() -> None:
+async def test_an_awaited_future_may_fail() -> None:
     eager = make()
     future: asyncio.Future[None] = asyncio.get_running_loop().create_future()
 
@@ -289,7 +289,7 @@ async def test_cancelling_lets_it_clean_up(when: str) -> None:
             await asyncio.sleep(0)
             told.append("clean")
 
-    if when == "before adoption":  # of which the task hears when it takes its first step
+    if when == "before adoption":  # the task learns of it in its first step
         asyncio.get_running_loop().call_soon(lambda: (eager.first_step(work(), rule), eager.task.cancel()))
         await asyncio.sleep(0)
     else:
@@ -303,7 +303,7 @@ async def test_cancelling_lets_it_clean_up(when: str) -> None:
 
 @pytest.mark.parametrize("fresh", [True, False])
 @on_loop
-async def test_cancelling_reaches_what_it_waits_for(fresh: bool) -> None:
+async def test_cancelling_reaches_the_awaited_tasks(fresh: bool) -> None:
     eager = make()
     if not fresh:
         await turns()
@@ -344,7 +344,7 @@ async def test_cancelling_may_be_declined() -> None:
 
 
 @on_loop
-async def test_cancelling_itself_in_the_first_step_strikes_where_it_waits() -> None:
+async def test_a_coroutine_that_cancels_itself_is_cancelled_at_its_next_wait() -> None:
     eager = make()
     told: list[str] = []
 
@@ -366,7 +366,7 @@ async def test_cancelling_itself_in_the_first_step_strikes_where_it_waits() -> N
 
 
 @on_loop
-async def test_a_nest_whose_task_was_cancelled_is_spoilt() -> None:
+async def test_a_spare_task_that_was_cancelled_is_spoilt() -> None:
     eager = make()
 
     async def work() -> None:
@@ -405,7 +405,7 @@ async def test_a_rule_that_cancels_itself_spoils_no_other_rule() -> None:
 
 
 @on_loop
-async def test_what_refuses_to_end_can_be_abandoned() -> None:
+async def test_a_coroutine_that_refuses_to_end_can_be_abandoned() -> None:
     eager = make()
     told: list[str] = []
 

@@ -1,4 +1,4 @@
-"""Worker threads: as many as are busy at once, kept, never waited for at the end."""
+"""Worker threads: started on demand, kept for a while, and no obstacle to the end of the process."""
 
 import functools
 import subprocess
@@ -16,7 +16,7 @@ LIMIT = 20.0
 
 
 def finished(jobs: JobQueue, job: Callable[[], None] = lambda: None) -> threading.Thread:
-    """Have a job done and return the thread that did it."""
+    """Do a job, and return the thread that did it."""
     done: SimpleQueue[threading.Thread] = SimpleQueue()
 
     def work() -> None:
@@ -32,7 +32,7 @@ def ended(thread: threading.Thread) -> bool:
     return not thread.is_alive()
 
 
-def test_jobs_run_in_daemon_threads_that_say_whose_they_are() -> None:
+def test_jobs_run_in_daemon_threads_with_a_name() -> None:
     jobs = JobQueue(ThreadPool())
     thread = finished(jobs)
     assert thread is not threading.current_thread()
@@ -41,9 +41,9 @@ def test_jobs_run_in_daemon_threads_that_say_whose_they_are() -> None:
     assert ended(thread)
 
 
-def test_busy_threads_are_joined_by_new_ones() -> None:
+def test_the_pool_starts_a_thread_when_all_are_busy() -> None:
     jobs = JobQueue(ThreadPool())
-    together = threading.Barrier(4)  # which nobody passes alone
+    together = threading.Barrier(4)  # no thread passes it alone
     done: SimpleQueue[str] = SimpleQueue()
 
     def meet() -> None:
@@ -57,7 +57,7 @@ def test_busy_threads_are_joined_by_new_ones() -> None:
     jobs.close()
 
 
-def test_a_thread_that_hangs_holds_up_nobody() -> None:
+def test_a_hanging_thread_delays_no_other_job() -> None:
     jobs = JobQueue(ThreadPool())
     release = threading.Event()
     begun = threading.Event()
@@ -79,7 +79,7 @@ def test_an_idle_thread_is_used_again_also_by_another_context() -> None:
     pool = ThreadPool()
     several = [JobQueue(pool), JobQueue(pool)]
     seen = {finished(several[number % 2]) for number in range(200)}
-    assert len(seen) <= 2  # a thread may be met in the instant between its work and its rest
+    assert len(seen) <= 2  # one thread may not be idle yet when the next job comes
     several[0].close()
     seen.add(finished(several[1]))
     several[1].close()
@@ -108,7 +108,7 @@ def test_no_context_takes_more_than_its_share() -> None:
     modest.close()
 
 
-def test_what_hangs_and_is_waited_for_no_more_leaves_its_place_to_others() -> None:
+def test_an_abandoned_job_leaves_its_place_to_the_next() -> None:
     jobs = JobQueue(ThreadPool())
     release = threading.Event()
     done: SimpleQueue[str] = SimpleQueue()
@@ -154,7 +154,7 @@ print(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]))
     assert process.stdout == "7\n"
 
 
-def test_what_has_not_begun_when_a_context_ends_is_not_done() -> None:
+def test_jobs_that_have_not_begun_are_dropped_when_their_context_ends() -> None:
     jobs = JobQueue(ThreadPool())
     release = threading.Event()
     done: SimpleQueue[int] = SimpleQueue()
@@ -171,7 +171,7 @@ def test_what_has_not_begun_when_a_context_ends_is_not_done() -> None:
     assert done.empty()
 
 
-def test_a_system_without_threads_is_told_of_and_what_can_wait_waits(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_a_new_thread_a_job_waits_for_an_old_one_or_fails(monkeypatch: pytest.MonkeyPatch) -> None:
     jobs = JobQueue(ThreadPool())
     with monkeypatch.context() as patch:
         patch.setattr(threading.Thread, "start", Mock(side_effect=RuntimeError("can't start new thread")))
@@ -192,7 +192,7 @@ def test_a_system_without_threads_is_told_of_and_what_can_wait_waits(monkeypatch
     jobs.close()
 
 
-def test_the_end_of_the_process_waits_for_a_function_at_work_but_not_for_one_that_hangs() -> None:
+def test_the_end_of_the_process_waits_a_while_for_functions_at_work() -> None:
     program = """
 import threading
 from ravestate.runtime import workers

@@ -1,5 +1,5 @@
-/** An action: the first field of a form has the focus as long as the form is there; then whoever had it before. */
-export function borrow(form: HTMLElement): { destroy: () => void } {
+/** A Svelte action: focus the first field of a form. The previous element gets the focus back when the form goes. */
+export function takeFocus(form: HTMLElement): { destroy: () => void } {
   const before = document.activeElement as HTMLElement | null;
   form.querySelector<HTMLElement>("input, textarea")?.focus();
   return {

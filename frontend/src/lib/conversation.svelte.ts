@@ -1,6 +1,6 @@
 import { Connection, type Options, type Status } from "./connection";
 import { type Message, type Say, type ServerFrame, VERSION } from "./protocol";
-import { type Kept, keep, recall, tokenOfLink } from "./store";
+import { announce, type Kept, keep, recall, tokenOfLink } from "./store";
 
 export interface Line {
   key: string;
@@ -134,6 +134,7 @@ export class Conversation {
       this.#recalled = frame.resumed && this.#last === 0 ? (frame.last ?? 0) : 0;
       this.recalling = this.#recalled > 0;
       this.#keep({ session: frame.session });
+      if (frame.inside !== undefined && !frame.resumed) announce(frame.session);
       this.inside = frame.inside === undefined ? "" : this.#linkInside(frame.inside);
       this.partial = "";
       for (const say of this.#outbox) this.#connection.send(say); // the server ignores those that it has

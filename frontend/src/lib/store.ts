@@ -27,6 +27,15 @@ export function keep(kept: Kept): void {
   }
 }
 
+/** Tell the boards of this browser that a conversation has begun. They follow the newest one. */
+export function announce(session: string): void {
+  try {
+    localStorage.setItem("ravestate.newest", session);
+  } catch {
+    // then a board shows the newest conversation of the server
+  }
+}
+
 /** Return the token of the page's link (`#token=...`), and remove it from the address so that nobody shares it. */
 export function tokenOfLink(): string | undefined {
   const token = new URLSearchParams(location.hash.slice(1)).get("token");

@@ -1,6 +1,6 @@
-"""A policy as plain values: what the board shows of it, and what a recorded trace carries along.
+"""A policy as plain values, for the board and for recorded traces.
 
-Everything here can be written to JSON and read back, so that a trace is understood without the agent that made it.
+JSON can express all of it, so a trace is readable without its agent.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ _Users = dict[str, list[str]]
 
 @dataclass(frozen=True, slots=True)
 class ConstraintView:
-    """A signal that a clause wants; ages in seconds (``max_age=None``: any), predicates by their names."""
+    """A signal in a clause; ages in seconds (``max_age=None``: any), predicates by their names."""
 
     signal: str
     min_age: float
@@ -45,7 +45,7 @@ class ConstraintView:
 
 @dataclass(frozen=True, slots=True)
 class GateView:
-    """A predicate on a slot that gates a clause, and how it is written."""
+    """A slot predicate of a clause, and its source text."""
 
     slot: str
     text: str
@@ -53,7 +53,7 @@ class GateView:
 
 @dataclass(frozen=True, slots=True)
 class Term:
-    """One addend of a utility: a signal that lies on the pathways of so many rules says −ln(rules / |Λ|) nats (L9)."""
+    """One addend of a utility: −ln(rules / |Λ|) nats, where `rules` have the signal on their pathways (L9)."""
 
     signal: str
     rules: int
@@ -62,15 +62,15 @@ class Term:
 
 @dataclass(frozen=True, slots=True)
 class ClauseView:
-    """A clause, and how its utility is made up (nats).
+    """A clause, and the parts of its utility (nats).
 
     Attributes:
-        condition: As it is written.
-        terms: Of the pathway that decides, which is the one that says least.
-        pathways: How many pathways there are.
-        predicates: How many predicates add ln 2 each.
-        utility: The sum of both (L9).
-        base: Utility × weight: the effective utility of a rule that has recovered.
+        condition: Its source text.
+        terms: The addends of the pathway with the least utility, which decides.
+        pathways: The number of pathways.
+        predicates: The number of predicates, which add ln 2 each.
+        utility: The sum of all addends (L9).
+        base: Utility × weight: the effective utility without a cooldown.
     """
 
     condition: str
@@ -85,7 +85,7 @@ class ClauseView:
 
 @dataclass(frozen=True, slots=True)
 class RuleView:
-    """A rule: as declared, with all that it ``raises``, the signals of slots that it writes included."""
+    """A rule as declared. ``raises`` has all signals that it may raise, with those of its slots."""
 
     name: str
     module: str
@@ -108,7 +108,7 @@ class RuleView:
 
 @dataclass(frozen=True, slots=True)
 class SignalView:
-    """A signal: whose it is, whether it may come from outside, who hears it and who raises it."""
+    """A signal: its module, slot and payload, whether it is an input, and the rules that hear and raise it."""
 
     name: str
     module: str
@@ -121,7 +121,7 @@ class SignalView:
 
 @dataclass(frozen=True, slots=True)
 class SlotView:
-    """A slot: ``value``, ``flag`` or ``collection``, the type that it takes, and its signals."""
+    """A slot: its kind (``value``, ``flag`` or ``collection``), type and signals, and the rules that use it."""
 
     name: str
     module: str
@@ -152,7 +152,7 @@ class Description:
 
 
 def describe(policy: Policy) -> Description:
-    """Describe a policy. It takes a moment (milliseconds for a hundred rules): describe each one once.
+    """Describe a policy. A hundred rules take milliseconds, so describe each policy once.
 
     Example:
         >>> import ravestate as rs
@@ -255,7 +255,7 @@ def _slot(plan: SlotPlan, readers: _Users, writers: _Users) -> SlotView:
 
 
 def _users(policy: Policy) -> tuple[_Users, _Users]:
-    """For each slot the rules that read it, and those that write it."""
+    """Return the rules that read each slot, and those that write it."""
     readers: _Users = {}
     writers: _Users = {}
     for name, rule in policy.rules.items():

@@ -1,4 +1,4 @@
-"""How much of its time a process has to spare: whoever looks on may take of that, and little besides."""
+"""The idle share of a process: an inspector uses part of it, so that the agent comes first."""
 
 from __future__ import annotations
 
@@ -7,15 +7,14 @@ from time import perf_counter, process_time
 __all__ = ["IdleShare"]
 
 SCHEDULE = "/proc/thread-self/schedstat"
-"""Where Linux tells of a thread: nanoseconds that it ran, and that it was ready but had no processor."""
+"""The file in which Linux counts a thread's nanoseconds on a processor and in the queue for one."""
 
 
 class IdleShare:
-    """The share of time in which the process had nothing to do, since it was last asked; ask in one thread only.
+    """The share of time in which the process was idle since the last call. Use it in one thread only.
 
-    All of its threads count, so that several of them at work may hide that one rests: then there is nothing to spare.
-    Time in which this thread would have computed, had other programs left it a processor, is not to spare either; on
-    systems that do not tell (all but Linux) it counts as if it were.
+    The processor time of all threads counts as busy. Time in which this thread waited for a processor counts as busy,
+    too, where the system measures it (Linux).
 
     Example:
         >>> 0.0 <= IdleShare().share() <= 1.0
@@ -30,7 +29,7 @@ class IdleShare:
         self._kept = _kept_waiting()
 
     def share(self) -> float:
-        """From 0 (it computed all the time, or would have) to 1 (it did nothing)."""
+        """Return the share, from 0 (always busy) to 1 (always idle)."""
         since, busy, kept = perf_counter(), process_time(), _kept_waiting()
         passed = since - self._since
         used = busy - self._busy + kept - self._kept
@@ -39,7 +38,7 @@ class IdleShare:
 
 
 def _kept_waiting() -> float:
-    """Seconds for which this thread was ready and had no processor."""
+    """Return the seconds for which this thread waited for a processor."""
     try:
         with open(SCHEDULE, encoding="ascii") as file:
             return int(file.read().split()[1]) / 1e9

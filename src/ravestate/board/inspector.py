@@ -92,7 +92,7 @@ class Inspector:
 
     Args:
         socket: The connection, not accepted yet.
-        gate: Checks the token.
+        access: Checks the token.
         sessions: The conversations.
         recorders: The recorders of their contexts.
         recordings: The recordings.
@@ -102,14 +102,14 @@ class Inspector:
     def __init__(
         self,
         socket: WebSocket,
-        gate: Access,
+        access: Access,
         sessions: Sessions,
         recorders: Recorders,
         recordings: Recordings,
         title: str | None,
     ) -> None:
         self._channel = Channel(socket, REPLIES)
-        self._gate = gate
+        self._access = access
         self._sessions = sessions
         self._recorders = recorders
         self._recordings = recordings
@@ -165,7 +165,7 @@ class Inspector:
             raise ProtocolError("malformed", f"begin with {HELLO}")
         if command.v != VERSION:
             raise ProtocolError("version", f'"v": {command.v}: this side speaks version {VERSION} only')
-        await self._gate.check_token(command.token)
+        await self._access.check_token(command.token)
         return command
 
     def _recording(self, hello: Hello) -> RecordedSource | None:

@@ -1,4 +1,4 @@
-"""What may be written and raised by hand: what a type checker would let a rule write, as far as JSON has words for it."""
+"""Checks of values and payloads that a user of the board types. JSON has to be able to express them."""
 
 from __future__ import annotations
 
@@ -13,59 +13,61 @@ from ravestate.errors import RavestateError
 
 __all__ = ["check_payload", "check_value"]
 
-WORDS: tuple[Any, ...] = (True, 0, 0.5, "", [], {})
-"""One of each kind of thing that JSON has a word for, but null."""
+SAMPLES: tuple[Any, ...] = (True, 0, 0.5, "", [], {})
+"""One value of each JSON type but null."""
 
 
 def check_value(slot: Slot[Any], value: object, holds: object) -> None:
-    """Refuse what cannot be written to a slot by hand; what `Slot.check` refuses as it is written is left to it.
+    """Refuse a value that a user may not write to a slot. `Slot.check` makes further checks during the write.
 
     Args:
         slot: The slot.
-        value: As it was read from JSON.
-        holds: What the slot holds now: if it has no type, that tells what it is for.
+        value: The value from JSON.
+        holds: The slot's current value, which stands in for a missing type.
 
     Raises:
-        RavestateError: JSON has no words for what the slot takes, or the value is of another type.
+        RavestateError: JSON cannot express the slot's type, or the value has another type.
     """
     if isinstance(slot, Flag) and not isinstance(value, bool):
         raise RavestateError(f"{slot.name} is a flag: write true or false, not {value!r}")
-    takes = _asked(slot.declared)
+    takes = _checkable(slot.declared)
     if takes is None:
         _check_holds(slot, holds)
     elif value is None and slot.default is None:
         return
-    elif not _is_sayable(takes):
-        raise RavestateError(f"{slot.name} takes {_named(slot.declared)}, for which JSON has no words")
+    elif not _is_expressible(takes):
+        raise RavestateError(f"{slot.name} takes {_named(slot.declared)}, which JSON cannot express")
     elif slot.type is None and not isinstance(value, takes):
         raise RavestateError(f"{slot.name} takes {_named(slot.declared)}, not {type(value).__name__}")
 
 
 def check_payload(signal: Signal[Any], command: Emit, slot: Slot[Any] | None, holds: object = None) -> None:
-    """Refuse a payload that is missing, that the signal does not carry, or that is not of its type.
+    """Refuse a payload that is missing, superfluous, or of the wrong type.
 
     Args:
         signal: The signal.
-        command: What is asked for.
-        slot: The slot whose signal it is, if it is one's.
-        holds: What that slot holds now.
+        command: The user's command.
+        slot: The slot that the signal belongs to, if any.
+        holds: The current value of that slot.
 
     Raises:
-        RavestateError: It is refused; the message says what to do instead.
+        RavestateError: The payload is refused; the message says what to do instead.
     """
     if isinstance(slot, Collection):
-        raise RavestateError(f"{signal.name} tells of a change in the collection {slot.name}: write the slot")
+        raise RavestateError(
+            f"{signal.name} announces a change of the collection {slot.name}: write the slot instead"
+        )
     if slot is None:
         kind = signal.payload
         if kind is None or kind is NoneType:
             if command.payload is not None:
                 raise RavestateError(
-                    f"{signal.name} carries no payload: leave it away, or declare its type (payload=...)"
+                    f"{signal.name} carries no payload: leave it out, or declare its type (payload=...)"
                 )
             return
     else:
         kind = bool if isinstance(slot, Flag) else slot.declared
-        if _asked(kind) is None:
+        if _checkable(kind) is None:
             _check_holds(slot, holds)
             return
         if command.payload is None and slot.default is None:
@@ -75,9 +77,9 @@ def check_payload(signal: Signal[Any], command: Emit, slot: Slot[Any] | None, ho
 
 def _check_kind(signal: Signal[Any], kind: Any, command: Emit) -> None:
     what = f"{signal.name} carries a payload of type {_named(kind)}"
-    takes = _asked(kind)
-    if not _is_sayable(takes):
-        raise RavestateError(f"{what}, for which JSON has no words: only a rule or a program can raise it")
+    takes = _checkable(kind)
+    if not _is_expressible(takes):
+        raise RavestateError(f"{what}, which JSON cannot express: only a rule or a program can raise it")
     if "payload" not in command.model_fields_set:
         raise RavestateError(f"{what}: give one")
     if takes is not None and not isinstance(command.payload, takes):
@@ -87,29 +89,28 @@ def _check_kind(signal: Signal[Any], kind: Any, command: Emit) -> None:
 def _check_holds(slot: Slot[Any], holds: object) -> None:
     if not isinstance(slot, Flag) and not isinstance(slot, Collection) and not_json(holds):
         raise RavestateError(
-            f"{slot.name} holds a {type(holds).__name__}, for which JSON has no words: only a rule or a program can "
-            "write it"
+            f"{slot.name} holds a {type(holds).__name__}, which JSON cannot express: only a rule or a program can write it"
         )
 
 
-def _is_sayable(takes: Any) -> bool:
-    """Whether anything that JSON has a word for is of a type, as far as one can tell."""
-    return takes is None or any(isinstance(word, takes) for word in WORDS)
+def _is_expressible(takes: Any) -> bool:
+    """Return whether JSON can express a value of a type."""
+    return takes is None or any(isinstance(sample, takes) for sample in SAMPLES)
 
 
-def _asked(kind: Any) -> Any:
-    """What `isinstance` is asked of a type; None: nothing.
+def _checkable(kind: Any) -> Any:
+    """Return the types for an `isinstance` check; None: there is none.
 
-    Of ``list[int]`` it is whether something is a list: what that holds is not looked at.
+    ``list[int]`` checks for a list, and not for its items.
     """
     takes = checkable(kind)
     if takes is not None:
         return takes
     origin = get_origin(kind)
     if origin is Annotated:
-        return _asked(get_args(kind)[0])
+        return _checkable(get_args(kind)[0])
     if origin is Union or origin is UnionType:
-        each = tuple(_asked(one) for one in get_args(kind))
+        each = tuple(_checkable(one) for one in get_args(kind))
         return None if None in each else each
     return checkable(origin)
 

@@ -192,10 +192,10 @@ class State:
 
 @dataclass(frozen=True)
 class Records:
-    """What happened, in order.
+    """The next records, in order.
 
     Attributes:
-        records: The next records.
+        records: The records.
         missed: How many records before these are left out.
         behind: How many records are still to come.
     """
@@ -260,7 +260,7 @@ class ExplainedClause:
 
 @dataclass(frozen=True)
 class Explained:
-    """What a rule holds, lacks and waits for now."""
+    """The current state of a rule: what it holds, lacks and waits for."""
 
     rule: str
     now: float

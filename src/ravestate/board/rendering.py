@@ -1,6 +1,6 @@
-"""Values as they are shown: JSON where that can carry them, else their ``repr``; cut where they are long.
+"""Values as text: JSON if it can express them, or else their ``repr``; long texts are cut.
 
-Values are foreign: they may be huge, endless in depth, or fail when they are looked at. None of that may harm who looks.
+Values come from users' code. They may be huge, endlessly deep, or raise errors when they are read. Rendering survives that.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from ravestate.declare.slot import Entry
 __all__ = ["Rendered", "not_json", "render", "well_formed"]
 
 DEEPEST = 6
-"""Containers within containers that are looked into."""
+"""The most nested containers."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,8 +26,8 @@ class Rendered:
 
     Attributes:
         text: JSON, or a ``repr``.
-        json: Whether it is JSON that stands for the whole value, so that it may be edited and written back.
-        cut: Whether there is more of it.
+        json: Whether the text is JSON for the whole value, which a user may edit and write back.
+        cut: Whether the text is only a part.
     """
 
     text: str
@@ -36,11 +36,11 @@ class Rendered:
 
 
 class _Foreign(Exception):
-    """JSON has no word for a value."""
+    """JSON cannot express a value."""
 
 
 def render(value: object, most: int = 2000) -> Rendered:
-    """A value as text of at most `most` characters.
+    """Return a value as text of at most `most` characters.
 
     Example:
         >>> render({"name": "Ada", "seen": [1, 2]})
@@ -60,27 +60,27 @@ def render(value: object, most: int = 2000) -> Rendered:
             if len(whole) <= most:
                 return Rendered(whole)
         return Rendered(json.dumps(well_formed(text[:most]), ensure_ascii=False)[:most], False, True)
-    if kind is Entry:  # of a collection: its key says most
+    if kind is Entry:  # an item of a collection: its key matters most
         key, item = cast("Entry", value)
         name = render(str(key), most).text
         return Rendered((name if item is None else f"{name}: {render(item, most).text}")[:most], False)
-    pieces: list[str] = []
+    chunks: list[str] = []
     size = 0
     try:
-        for piece in _json(value, 0):
-            pieces.append(piece)
-            size += len(piece)
+        for chunk in _json(value, 0):
+            chunks.append(chunk)
+            size += len(chunk)
             if size > most:
-                return Rendered("".join(pieces)[:most], False, True)
-        return Rendered("".join(pieces))
+                return Rendered("".join(chunks)[:most], False, True)
+        return Rendered("".join(chunks))
     except _Foreign:
         return _repr(value, most)
-    except Exception as error:  # a container of foreign make, that fails when it is looked through
-        return Rendered(f"<{kind.__name__} that cannot be shown: {type(error).__name__}>", False)
+    except Exception as error:  # a user's container that fails during iteration
+        return Rendered(f"<{kind.__name__} that cannot be read: {type(error).__name__}>", False)
 
 
 def not_json(value: object, most: int = 2000) -> bool:
-    """Whether JSON has no word for a value, as far as the first `most` characters of it tell.
+    """Return whether JSON cannot express a value, judging by its first `most` characters.
 
     Example:
         >>> not_json({"name": "Ada"}), not_json([1, object()])
@@ -90,19 +90,17 @@ def not_json(value: object, most: int = 2000) -> bool:
         return False
     size = 0
     try:
-        for piece in _json(value, 0):
-            size += len(piece)
+        for chunk in _json(value, 0):
+            size += len(chunk)
             if size > most:
                 break
-    except (
-        Exception
-    ):  # JSON has no word for it, or its own code failed while it was looked through: foreign either way
+    except Exception:  # JSON cannot express it, or its own code fails
         return True
     return False
 
 
 def _json(value: object, depth: int) -> Iterator[str]:
-    """The pieces of a value's JSON, made one by one, so that a huge one need not be made whole."""
+    """Yield a value's JSON in chunks, so that nobody has to make all of a huge one."""
     if value is None or isinstance(value, (bool, int)):
         yield json.dumps(value)
     elif isinstance(value, float):
@@ -121,7 +119,7 @@ def _json(value: object, depth: int) -> Iterator[str]:
             yield (", " if number else "") + json.dumps(well_formed(key[:1000]), ensure_ascii=False) + ": "
             yield from _json(item, depth + 1)
         yield "}"
-    elif type(value) is list:  # a tuple would come back as another thing
+    elif type(value) is list:  # a tuple would come back as a list
         yield "["
         for number, item in enumerate(cast("list[object]", value)):
             if number:
@@ -136,19 +134,19 @@ def _repr(value: object, most: int) -> Rendered:
     found: list[str] = []
     size = 0
     try:
-        for piece in repr_chunks(value):
-            found.append(piece)
-            size += len(piece)
+        for chunk in repr_chunks(value):
+            found.append(chunk)
+            size += len(chunk)
             if size > most:
                 break
-    except Exception as error:  # a container that changes, or a field that fails, while it is looked through
+    except Exception as error:  # a container that changes, or a field that fails, meanwhile
         return Rendered(f"<{type(value).__name__} whose repr fails: {type(error).__name__}>", False)
     text = well_formed("".join(found)[: most + 1])
     return Rendered(text[:most], False, len(text) > most)
 
 
 def well_formed(text: str) -> str:
-    """A text without lone surrogates, which no encoding carries.
+    """Return a text without lone surrogates, which UTF-8 cannot encode.
 
     Example:
         >>> well_formed("\\ud800x")

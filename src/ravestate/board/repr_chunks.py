@@ -1,4 +1,4 @@
-"""The ``repr`` of a value, piece by piece: of a huge one no more is made than somebody looks at."""
+"""The ``repr`` of a value in chunks: for a huge value, only the chunks that are read are made."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from typing import Any, NamedTuple, cast
 __all__ = ["repr_chunks"]
 
 DEEPEST = 30
-"""Containers within containers that are looked into."""
+"""The most nested containers."""
 
 LONGEST = 100_000
-"""Characters, or bytes, of one text that are looked at."""
+"""The most characters, or bytes, of one text."""
 
 TEXTS: dict[Any, Any] = {kind.__repr__: kind for kind in (str, bytes, bytearray)}
 
@@ -26,15 +26,17 @@ _WALKS: dict[Any, Any] = {
     **{kind: kind.__iter__ for kind in _ROWS},
     **{kind: kind.items for kind in _TABLES},
 }
-"""Python's own containers, and how each goes through its items, whatever what is made from it does instead."""
+"""For each built-in container its own iterator, which a subclass cannot override here."""
 
 BUILT_IN: dict[Any, Any] = {kind.__repr__: kind for kind in _WALKS}
-"""The same by what makes their ``repr``."""
+"""The built-in containers, by their ``__repr__``."""
 
 
 class _Box(NamedTuple):
-    """A container: what stands before and behind its items, the items, each with what leads to it; and what stands for it
-    within itself, if that is something else than the three dots between the two."""
+    """A container: the text around its items, the items, each with its prefix, and the text for it within itself.
+
+    Without a text of its own, a container within itself is three dots in its brackets.
+    """
 
     opening: str
     items: Iterable[tuple[Iterable[str], object]]
@@ -43,16 +45,15 @@ class _Box(NamedTuple):
 
 
 def repr_chunks(value: object, around: tuple[int, ...] = ()) -> Iterator[str]:
-    """The pieces of a ``repr``: containers of Python's own, records and texts bit by bit, all else at once.
+    """Yield a ``repr`` in chunks: built-in containers, records and texts bit by bit, other values at once.
 
-    Together they are the ``repr``, but for this: what is too long or too deep is cut; a `Counter` is in the order in which
-    things were first counted, not sorted, and a mapping behind a proxy is shown as if it were a dictionary; what is within
-    itself is left out where it first comes again. A container of a kind that is made from one of Python's own is shown by
-    what it holds, without asking its own methods.
+    Joined, the chunks are the ``repr``, with these differences. Long and deep values are cut. A `Counter` keeps its order
+    instead of sorting. A mapping proxy reads like its dictionary. A subclass of a built-in container shows its items,
+    without calls of its own methods. A value within itself is left out.
 
     Args:
-        value: Any.
-        around: The `id` of each container that it is within.
+        value: The value.
+        around: The `id` of each container around it.
 
     Example:
         >>> "".join(repr_chunks(({1: {"Ada"}}, b"x")))
@@ -86,7 +87,7 @@ def repr_chunks(value: object, around: tuple[int, ...] = ()) -> Iterator[str]:
 
 
 def _box(value: Any, made_by: Any, around: tuple[int, ...]) -> _Box | None:
-    """How a value's ``repr`` is made up, which its type's `__repr__` tells; None: it has no parts that are known."""
+    """Return the parts of a value's ``repr``, by its type's `__repr__`; None: they are unknown."""
     own = cast("type[Any]", type(value))
     kind = BUILT_IN.get(made_by)
     if kind is not None:
@@ -94,14 +95,14 @@ def _box(value: Any, made_by: Any, around: tuple[int, ...]) -> _Box | None:
     if hasattr(own, "_fields") and getattr(made_by, "__module__", None) == "collections":  # a named tuple
         items = zip(value._fields, _WALKS[tuple](value), strict=True)
         return _Box(f"{own.__name__}(", _named(items), ")")
-    if dataclasses.is_dataclass(own) and hasattr(made_by, "__wrapped__"):  # by @dataclass
+    if dataclasses.is_dataclass(own) and hasattr(made_by, "__wrapped__"):  # made by @dataclass
         items = ((field, getattr(value, field)) for field in _fields(own, made_by))
         return _Box(f"{own.__qualname__}(", _named(items), ")", "...")
     return None
 
 
 def _built_in(value: Any, kind: Any, around: tuple[int, ...]) -> _Box | None:
-    """One of Python's own, or made from it; None: its ``repr`` is that of something empty, which is not worth a box."""
+    """Return the parts of a built-in container or of a subclass; None: it is empty and has a ``repr`` of its own."""
     name = type(value).__name__
     size: int = kind.__len__(value)
     items = _WALKS[kind](value)
@@ -142,7 +143,7 @@ def _named(items: Iterable[tuple[str, object]]) -> Iterator[tuple[Iterable[str],
 
 
 def _fields(own: type[Any], made_by: Any) -> list[str]:
-    """The fields that the `__repr__` of a record tells: those of the class for which it was made."""
+    """Return the fields in a dataclass's `__repr__`, which a base class may have made."""
     maker: Any = next(base for base in own.__mro__ if vars(base).get("__repr__") is made_by)
     return [field.name for field in dataclasses.fields(maker) if field.repr]
 
@@ -150,5 +151,5 @@ def _fields(own: type[Any], made_by: Any) -> list[str]:
 def _whole(value: object) -> str:
     try:
         return repr(value)
-    except Exception as error:  # its repr is foreign code
+    except Exception as error:  # the user's code
         return f"<{type(value).__name__} whose repr fails: {type(error).__name__}>"

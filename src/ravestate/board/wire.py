@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import dataclasses
 import json
+import traceback
 from collections.abc import Callable
 from operator import attrgetter
 from typing import TYPE_CHECKING, Annotated, Any, Literal, NotRequired, Union, cast, get_args, get_type_hints
@@ -15,7 +16,7 @@ import pydantic
 import typing_extensions
 
 from ravestate.board.recorder import Gap
-from ravestate.board.rendering import Rendered, render
+from ravestate.board.rendering import Rendered, render, well_formed
 from ravestate.engine.trace import Record
 
 __all__ = ["VERSION", "TraceRecord", "checked_record", "data_of", "record_of", "rendered_data"]
@@ -32,6 +33,9 @@ VALUE = 2000
 KINDS: dict[str, type[Any]] = {kind.__name__.lower(): kind for kind in (*get_args(Record), Gap)}
 """Each kind of record."""
 
+TRACEBACK = 8000
+"""The most characters of a traceback; its end is kept."""
+
 RENDERED = {"payload": PAYLOAD, "value": VALUE}
 
 
@@ -40,7 +44,7 @@ def _shape(name: str, kind: type[Any]) -> Any:
     hints = get_type_hints(kind)
     fields: dict[str, Any] = {"kind": Literal[name]}
     for field in dataclasses.fields(kind):
-        sort = Rendered if field.name in RENDERED else hints[field.name]
+        sort = Rendered if field.name in RENDERED else str if field.name == "error" else hints[field.name]
         required = field.default is dataclasses.MISSING
         fields[field.name.rstrip("_")] = sort if required else NotRequired[sort]
     make: Any = typing_extensions.TypedDict
@@ -115,18 +119,24 @@ def _quickly(value: Any) -> dict[str, Any] | None:
     return None
 
 
+def _traceback(error: BaseException) -> str:
+    return well_formed("".join(traceback.format_exception(error)))[-TRACEBACK:]
+
+
 def _writer(name: str, kind: type[Any]) -> Callable[[Any], dict[str, Any]]:
     fields = [field.name for field in dataclasses.fields(kind)]
     keys = ("kind", *(field.rstrip("_") for field in fields))
     get = attrgetter(*fields)
     rendered = next((field for field in fields if field in RENDERED), None)
-    bounded = "until" in fields
+    bounded, fails = "until" in fields, "error" in fields
 
     def write(record: Any) -> dict[str, Any]:
         data = dict(zip(keys, (name, *get(record)), strict=True))
         data["time"] = round(cast("float", data["time"]), 6)
         if bounded and data["until"] is not None:
             data["until"] = round(cast("float", data["until"]), 6)
+        if fails and (error := data.pop("error")) is not None:
+            data["error"] = error if isinstance(error, str) else _traceback(error)
         if rendered is not None:
             value = data[rendered]
             data[rendered] = _quickly(value) or rendered_data(

@@ -42,7 +42,7 @@ class Signal(Condition, Generic[T]):
         input: Whether it may come from outside although a rule raises it too (L8).
         keep: ``"all"`` or ``"latest"``.
         limit: The greatest number of live spikes.
-        origin: Where it was declared, ``file:line``.
+        origin: The place of the declaration, ``file:line``.
     """
 
     __slots__ = ("input", "keep", "limit", "name", "origin", "payload")

@@ -46,7 +46,7 @@ class Slot(Generic[T]):
         declared: The type as the designer wrote it, such as ``list[int]``; None if there is none.
         always: Whether a write of an equal value signals too.
         signals: All signals of the slot, `changed` first.
-        origin: Where it was declared, ``file:line``.
+        origin: The place of the declaration, ``file:line``.
     """
 
     __slots__ = ("always", "changed", "declared", "default", "name", "origin", "signals", "type")

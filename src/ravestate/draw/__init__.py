@@ -1,7 +1,7 @@
-"""Signal-Rule-Slot diagrams in the paper's notation, as SVG, DOT or Mermaid; no third party is needed.
+"""Signal-Rule-Slot diagrams in the paper's notation, as SVG, DOT or Mermaid, without any third party.
 
-`graph` is the diagram as a value, `build` makes it from rules, `layout` places it, and `svg`, `dot` and
-`mermaid` write it down.
+`build` makes a diagram (`graph`) from rules, `fold` folds modules, `layout` places the nodes and lines, and `svg`, `dot`
+and `mermaid` write text.
 """
 
 from __future__ import annotations
@@ -21,14 +21,14 @@ if TYPE_CHECKING:
 __all__ = ["FORMATS", "draw"]
 
 FORMATS: dict[str, Callable[[Diagram], str]] = {"svg": svg, "dot": dot, "mermaid": mermaid}
-"""The formats by name."""
+"""The writer of each format."""
 
 
 def draw(policy: Policy, format: str = "svg") -> str:
     """Draw the rules of a policy.
 
     Args:
-        policy: What ``rs.compile`` gave.
+        policy: The compiled policy.
         format: ``"svg"``, ``"dot"`` or ``"mermaid"``.
 
     Raises:

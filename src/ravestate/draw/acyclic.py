@@ -1,9 +1,8 @@
-"""Which edges to turn round so that no cycle is left.
+"""Cycle removal: a small feedback arc set, whose edges the layout reverses.
 
-The heuristic of Eades, Lin and Smyth (1993) within each strongly connected component: vertices are
-peeled off from both ends of an order, and the edges that point backwards in it are the answer. Two
-refinements: weak edges are turned before strong ones, and ties go by number, so that the answer
-depends on nothing but its input.
+The heuristic of Eades, Lin and Smyth (1993) runs within each strongly connected component. It orders the vertices from
+both ends at once; the edges that point backwards in this order are the set. Two refinements: weak edges go before strong
+ones, and ties go by number, so that the result depends on the input alone.
 """
 
 from __future__ import annotations
@@ -11,25 +10,30 @@ from __future__ import annotations
 import heapq
 from collections.abc import Sequence
 
-__all__ = ["STRONG", "backward"]
+from ravestate.policy.components import components
+
+__all__ = ["STRONG", "feedback_arcs"]
 
 STRONG = 1 << 20
-"""A weight from which an edge is strong: turned only where weak edges alone do not break the cycle."""
+"""The weight of a strong edge. It is reversed only if the weak edges alone do not break the cycle."""
 
 
-def backward(count: int, edges: Sequence[tuple[int, int, int]]) -> list[bool]:
-    """For each edge (tail, head, weight) of a graph with `count` vertices: whether to turn it round."""
-    component = _components(count, edges)
+def feedback_arcs(count: int, edges: Sequence[tuple[int, int, int]]) -> list[bool]:
+    """Return for each edge (tail, head, weight) of a graph with `count` vertices whether to reverse it."""
+    after: list[list[int]] = [[] for _ in range(count)]
+    for u, v, _ in edges:
+        after[u].append(v)
+    component = components(after).of
     inner = [i for i, (u, v, _) in enumerate(edges) if component[u] == component[v]]
     place = _peel(count, [edges[i] for i in inner])
-    turned = [False] * len(edges)
+    found = [False] * len(edges)
     for i in inner:
-        turned[i] = place[edges[i][0]] > place[edges[i][1]]
-    return turned
+        found[i] = place[edges[i][0]] > place[edges[i][1]]
+    return found
 
 
 def _peel(count: int, edges: Sequence[tuple[int, int, int]]) -> list[int]:
-    """Number the vertices so that few and weak edges point backwards."""
+    """Number the vertices so that few edges point backwards, and weak ones rather than strong ones."""
     after: list[list[tuple[int, int]]] = [[] for _ in range(count)]
     before: list[list[tuple[int, int]]] = [[] for _ in range(count)]
     out = [0] * count
@@ -46,7 +50,7 @@ def _peel(count: int, edges: Sequence[tuple[int, int, int]]) -> list[int]:
     while heap:
         rank, gain, v = heapq.heappop(heap)
         if place[v] >= 0 or (rank, gain) != _urgency(out[v], into[v]):
-            continue  # outdated: a fresher entry is in the heap
+            continue  # outdated: the heap has a newer entry
         if rank in _LAST:
             place[v], last = last, last - 1
         else:
@@ -63,7 +67,7 @@ _LAST = (0, 2)
 
 
 def _urgency(out: int, into: int) -> tuple[int, int]:
-    """Sinks go last; then sources first; then sinks and sources of the strong edges; then the best bargain."""
+    """Return the sort key of a vertex: sinks, sources, sinks and sources of the strong edges, then the best ratio."""
     if out == 0:
         return (0, 0)
     if into == 0:
@@ -73,44 +77,3 @@ def _urgency(out: int, into: int) -> tuple[int, int]:
     if out < STRONG:
         return (2, out - into)
     return (4, into - out)
-
-
-def _components(count: int, edges: Sequence[tuple[int, int, int]]) -> list[int]:
-    """The strongly connected component of each vertex (Tarjan, without recursion)."""
-    after: list[list[int]] = [[] for _ in range(count)]
-    for u, v, _ in edges:
-        after[u].append(v)
-    number = [-1] * count
-    low = [0] * count
-    component = [-1] * count
-    open_: list[int] = []
-    counter = 0
-    for root in range(count):
-        if number[root] >= 0:
-            continue
-        number[root] = low[root] = counter
-        counter += 1
-        open_.append(root)
-        path = [(root, iter(after[root]))]
-        while path:
-            v, rest = path[-1]
-            for w in rest:
-                if number[w] < 0:
-                    number[w] = low[w] = counter
-                    counter += 1
-                    open_.append(w)
-                    path.append((w, iter(after[w])))
-                    break
-                if component[w] < 0:
-                    low[v] = min(low[v], number[w])
-            else:
-                path.pop()
-                if path:
-                    low[path[-1][0]] = min(low[path[-1][0]], low[v])
-                if low[v] == number[v]:
-                    while True:
-                        w = open_.pop()
-                        component[w] = v
-                        if w == v:
-                            break
-    return component

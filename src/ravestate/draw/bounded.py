@@ -1,9 +1,8 @@
-"""Layers that hold no more than fits: what is too tall for a screen is folded into more layers.
+"""Layers of bounded size, for pictures that would be too tall for a screen.
 
-The layers with the shortest edges may be few and crowded: whatever hangs on one hub stands in one layer.
-Where that gives a tall and narrow picture, layers get a bound, and vertices above it wait for a later one, as in
-the scheduling of Coffman and Graham (1972). Whoever has waited least comes first, so that chains which
-have begun run on straight before others begin.
+The shortest edges may give few and crowded layers: all neighbours of a hub share one layer. If the picture is then tall and
+narrow, the layers get a bound. Surplus vertices move to a later layer, as in the scheduling of Coffman and Graham (1972).
+A vertex that has just become ready goes first, so that a chain continues before another chain begins.
 """
 
 from __future__ import annotations
@@ -12,32 +11,34 @@ from collections.abc import Callable, Sequence
 
 from ravestate.draw.simplex import Arc
 
-__all__ = ["Extent", "bounded", "shaped"]
+__all__ = ["Extent", "bounded_layers", "fit_to_screen"]
 
 Extent = tuple[float, float]
 """Width and height in pixels."""
 
-_SCREEN = 720.0  # pixels: what is no higher is seen whole, however narrow it is
+_SCREEN = 720.0  # pixels: a picture of this height fits a screen, however narrow it is
 _TALLEST = 1.2  # least width : height
 _ASPECT = 1.6  # wished width : height
-_FOLDS = 16
+_SPLITS = 16
 
 
-def shaped(ranks: Sequence[int], arcs: Sequence[Arc], extent: Callable[[Sequence[int]], Extent]) -> list[int]:
-    """Layers for a landscape screen: those given, or if their picture were too tall, folded ones.
+def fit_to_screen(
+    ranks: Sequence[int], arcs: Sequence[Arc], extent: Callable[[Sequence[int]], Extent]
+) -> list[int]:
+    """Return layers that suit a landscape screen: the given ones, or bounded ones if the picture would be too tall.
 
     Args:
         ranks: The layer of each vertex, from 0.
-        arcs: What the layers keep to: every arc spans at least its length.
-        extent: How large the picture of some layers will be.
+        arcs: The constraints of the layers: each arc spans at least its length.
+        extent: Estimates the size of the picture for some layers.
     """
     best, (width, height) = list(ranks), extent(ranks)
     if height <= _SCREEN or width >= _TALLEST * height:
         return best
     nearest = _misfit(width, height)
-    crowd = _crowd(ranks)
-    for folds in range(2, _FOLDS + 1):
-        found = bounded(ranks, arcs, -(-crowd // folds))
+    largest = _largest(ranks)
+    for splits in range(2, _SPLITS + 1):
+        found = bounded_layers(ranks, arcs, -(-largest // splits))
         width, height = extent(found)
         misfit = _misfit(width, height)
         if misfit < nearest:
@@ -47,11 +48,11 @@ def shaped(ranks: Sequence[int], arcs: Sequence[Arc], extent: Callable[[Sequence
     return best
 
 
-def bounded(ranks: Sequence[int], arcs: Sequence[Arc], most: int) -> list[int]:
-    """Layers of at most so many vertices each, none before the layer that it has in `ranks`.
+def bounded_layers(ranks: Sequence[int], arcs: Sequence[Arc], most: int) -> list[int]:
+    """Return layers of at most `most` vertices; no vertex moves to an earlier layer than in `ranks`.
 
     Example:
-        >>> bounded([0, 1, 1, 1, 2], [(0, 1, 1, 1), (0, 2, 1, 1), (0, 3, 1, 1), (3, 4, 1, 1)], most=2)
+        >>> bounded_layers([0, 1, 1, 1, 2], [(0, 1, 1, 1), (0, 2, 1, 1), (0, 3, 1, 1), (3, 4, 1, 1)], most=2)
         [0, 1, 2, 1, 2]
     """
     count = len(ranks)
@@ -60,7 +61,7 @@ def bounded(ranks: Sequence[int], arcs: Sequence[Arc], most: int) -> list[int]:
     for u, v, _, length in arcs:
         after[u].append((v, length))
         waiting[v] += 1
-    tail = [0] * count  # how many layers follow at least
+    tail = [0] * count  # the longest path from the vertex, in layers
     for u in reversed(_sorted(after, waiting)):
         tail[u] = max((tail[v] + length for v, length in after[u]), default=0)
     found = list(ranks)
@@ -83,7 +84,7 @@ def bounded(ranks: Sequence[int], arcs: Sequence[Arc], most: int) -> list[int]:
 
 
 def _sorted(after: Sequence[Sequence[tuple[int, int]]], waiting: Sequence[int]) -> list[int]:
-    """The vertices, each after all that lead to it."""
+    """Return the vertices in topological order."""
     left = list(waiting)
     order = [v for v in range(len(left)) if not left[v]]
     for u in order:
@@ -94,7 +95,7 @@ def _sorted(after: Sequence[Sequence[tuple[int, int]]], waiting: Sequence[int]) 
     return order
 
 
-def _crowd(ranks: Sequence[int]) -> int:
+def _largest(ranks: Sequence[int]) -> int:
     sizes: dict[int, int] = {}
     for rank in ranks:
         sizes[rank] = sizes.get(rank, 0) + 1

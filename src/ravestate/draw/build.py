@@ -1,9 +1,8 @@
 """From declared rules to a diagram.
 
-What is drawn is what the rules name: a slot or signal that no rule touches does not appear. A slot
-emits those of its signals that some rule hears. Conditions are drawn in disjunctive normal form, as a
-rule fires by one clause at a time (L5): a clause of several constraints meets in a conjunction, several
-clauses meet in a disjunction.
+The diagram has the slots and signals that some rule names, and no others. A slot emits those of its signals that have a
+listener. Conditions are in disjunctive normal form, since a rule fires by one clause at a time (L5). Several constraints
+of a clause meet in a conjunction, several clauses in a disjunction.
 """
 
 from __future__ import annotations
@@ -21,7 +20,7 @@ __all__ = ["build"]
 
 
 def build(rules: Iterable[Rule[Any, Any]]) -> Diagram:
-    """The diagram of some rules, in their order.
+    """Return the diagram of some rules, in their order.
 
     Raises:
         DeclarationError: A condition has too many alternatives.
@@ -122,7 +121,7 @@ def _label(term: Constraint | Holds) -> str:
 
 
 def _ages(least: Number, most: Number | None) -> str:
-    """The ages at which a spike counts, where they are not the usual ones (L4)."""
+    """Return the ages at which a spike counts; empty for the defaults (L4)."""
     if least == 0.0:
         if most is None:
             return "any age"
@@ -135,6 +134,6 @@ def _number(number: Number) -> str:
 
 
 def _predicate(what: str, predicate: Callable[[Any], object]) -> str:
-    """A predicate by its name, if it has one."""
+    """Return a predicate with its name, if it has one."""
     name = getattr(predicate, "__name__", type(predicate).__name__)
     return what if name == "<lambda>" else f"{what} {name}"

@@ -1,126 +1,44 @@
-"""How far down each vertex stands: no overlaps, and long lines straight.
+"""Coordinate assignment: the best of several methods.
 
-Brandes and Köpf (2002): vertices are aligned with their median neighbours in four ways (from the left or
-from the right, upwards or downwards), each alignment is packed tightly, and each vertex takes the middle
-of its four places. Alignment is of ports, not of middles, so that a line between two ports is straight.
+Brandes and Köpf's alignment suits small pictures, relaxation (`relax`) crowded ones. Each candidate is straightened. The
+candidate with the shortest lines and the fewest steps wins; among equals, the first.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from itertools import pairwise
+from ravestate.draw.brandes_koepf import brandes_koepf
+from ravestate.draw.layered import LayeredGraph
+from ravestate.draw.relax import relax
+from ravestate.draw.straighten import straighten
 
-from ravestate.draw.layered import Layered
+__all__ = ["assign_coordinates"]
 
-__all__ = ["middles", "separation"]
-
-_GAPS = {(True, True): 16.0, (True, False): 12.0, (False, True): 12.0, (False, False): 9.0}
-"""Least pixels between two neighbours of a layer; `False` stands for a bend."""
-
-
-def separation(graph: Layered, upper: int, lower: int) -> float:
-    """The least distance in pixels between the middles of two neighbours of a layer."""
-    solid = (graph.kind[upper] != "bend", graph.kind[lower] != "bend")
-    return (graph.height[upper] + graph.height[lower]) / 2 + _GAPS[solid]
+_STEP = 70.0  # pixels of length that count as much as a step
+_SPREADS = (1.0, 1.15)
+_LEVEL = 0.01
 
 
-def middles(graph: Layered) -> list[float]:
-    """The vertical middle of each vertex in pixels; the least upper border is 0."""
-    crossed = _forbidden(graph)
-    ways = ((True, True), (True, False), (False, True), (False, False))
-    found = [_aligned(graph, crossed, from_left, downwards) for from_left, downwards in ways]
-    spans = [max(ys) - min(ys) for ys in found]
-    narrow = found[spans.index(min(spans))]
-    for i, ys in enumerate(found):
-        shift = max(narrow) - max(ys) if i % 2 else min(narrow) - min(ys)
-        found[i] = [y + shift for y in ys]
-    result = [sum(sorted(ys[v] for ys in found)[1:3]) / 2 for v in range(len(graph.layer))]
-    top = min((y - graph.height[v] / 2 for v, y in enumerate(result)), default=0.0)
-    return [y - top for y in result]
+def assign_coordinates(graph: LayeredGraph, room: float | None = None) -> list[float]:
+    """Return the vertical middle of each vertex in pixels.
+
+    Args:
+        graph: A graph with ordered layers and placed ports.
+        room: The greatest height of the picture in pixels, unless its largest layer needs more; ``None`` for any height.
+    """
+    candidates = [relax(graph, spread, room) for spread in _SPREADS]
+    if room is None:
+        candidates.insert(0, brandes_koepf(graph))
+    for candidate in candidates:
+        straighten(graph, candidate)
+    costs = [round(_cost(graph, candidate), 3) for candidate in candidates]
+    return candidates[costs.index(min(costs))]
 
 
-def _forbidden(graph: Layered) -> set[int]:
-    """Segments that cross one between two bends: these are not aligned (type 1 conflicts)."""
-    place = [0] * len(graph.layer)
-    for layer in graph.order:
-        for i, v in enumerate(layer):
-            place[v] = i
-    by_layer: list[list[tuple[int, int, int, bool]]] = [[] for _ in graph.order]
-    for segment in range(len(graph.segments)):
-        u, v = graph.ends(segment)
-        inner = graph.kind[u] == "bend" and graph.kind[v] == "bend"
-        by_layer[graph.layer[u]].append((place[u], place[v], segment, inner))
-    crossed: set[int] = set()
-    for found in by_layer:
-        inner = sorted((a, b) for a, b, _, is_inner in found if is_inner)
-        if not inner:
-            continue
-        for a, b, segment, is_inner in found:
-            if not is_inner and any((a < c and b > d) or (a > c and b < d) for c, d in inner):
-                crossed.add(segment)
-    return crossed
-
-
-def _aligned(graph: Layered, crossed: set[int], from_left: bool, downwards: bool) -> list[float]:
-    """One of the four assignments."""
-    count = len(graph.layer)
-    sign = 1.0 if downwards else -1.0
-    order = graph.order if from_left else graph.order[::-1]
-    if not downwards:
-        order = [layer[::-1] for layer in order]
-    place = [0] * count
-    for layer in order:
-        for i, v in enumerate(layer):
-            place[v] = i
-    # Towards each vertex: (place of the neighbour, neighbour, how much lower it then stands than the vertex).
-    towards: list[list[tuple[int, int, float, int]]] = [[] for _ in range(count)]
-    for segment, (low, high) in enumerate(graph.segments):
+def _cost(graph: LayeredGraph, middle: list[float]) -> float:
+    total = 0.0
+    for low, high in graph.segments:
         p, q = graph.ports[low], graph.ports[high]
-        if not from_left:
-            p, q = q, p
-        towards[q.vertex].append((place[p.vertex], p.vertex, sign * (p.offset - q.offset), segment))
-    root = list(range(count))
-    shift = [0.0] * count  # of a vertex against its root
-    taken = [False] * count
-    for layer in order:
-        limit = -1
-        for v in layer:
-            near = sorted(towards[v])
-            if not near:
-                continue
-            half = (len(near) - 1) // 2
-            for at, u, offset, segment in near[half : len(near) - half]:
-                if root[v] == v and not taken[u] and limit < at and segment not in crossed:
-                    taken[u] = True
-                    root[v] = root[u]
-                    shift[v] = shift[u] + offset
-                    limit = at
-                    break
-    return [sign * y for y in _packed(graph, order, root, shift)]
-
-
-def _packed(
-    graph: Layered, order: Sequence[Sequence[int]], root: Sequence[int], shift: Sequence[float]
-) -> list[float]:
-    """Put every block as high as it can stand, and then as low as its lower neighbours let it."""
-    count = len(root)
-    lower: list[list[tuple[int, float]]] = [[] for _ in range(count)]
-    upper: list[list[tuple[int, float]]] = [[] for _ in range(count)]
-    for layer in order:
-        for u, v in pairwise(layer):
-            gap = separation(graph, u, v) + shift[u] - shift[v]
-            lower[root[u]].append((root[v], gap))
-            upper[root[v]].append((root[u], gap))
-    waiting = [len(pairs) for pairs in upper]
-    sequence = [v for v in range(count) if root[v] == v and not waiting[v]]
-    place = [0.0] * count
-    for block in sequence:
-        place[block] = max((place[u] + gap for u, gap in upper[block]), default=0.0)
-        for v, _ in lower[block]:
-            waiting[v] -= 1
-            if not waiting[v]:
-                sequence.append(v)
-    for block in reversed(sequence):
-        if lower[block]:
-            place[block] = max(place[block], min(place[v] - gap for v, gap in lower[block]))
-    return [place[root[v]] + shift[v] for v in range(count)]
+        step = abs(middle[p.vertex] + p.offset - middle[q.vertex] - q.offset)
+        if step > _LEVEL:
+            total += step + _STEP
+    return total

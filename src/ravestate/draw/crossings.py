@@ -1,8 +1,8 @@
-"""The order of the vertices within their layers: few crossings.
+"""Crossing minimisation: the order of the vertices within their layers.
 
-Barycentre sweeps to and fro, each followed by transpositions of neighbours (Sugiyama, Tagawa and Toda
-1981; Gansner et al. 1993), from two starting orders; the best order seen wins. Starting orders are
-depth first in the order of declaration, which keeps what is declared together together.
+Barycentre sweeps run forwards and backwards, each followed by transpositions of neighbours (Sugiyama, Tagawa and Toda 1981;
+Gansner et al. 1993). There are two initial orders; the best order of all wins. The initial orders come from a depth-first
+search in declaration order, which keeps related declarations together.
 """
 
 from __future__ import annotations
@@ -10,29 +10,29 @@ from __future__ import annotations
 from collections.abc import Sequence
 from itertools import pairwise
 
-from ravestate.draw.layered import Layered
+from ravestate.draw.layered import LayeredGraph
 
-__all__ = ["arrange", "crossings"]
+__all__ = ["count_crossings", "minimise_crossings"]
 
 _WORK = 400_000  # segments x sweeps
 _PATIENCE = 4  # sweeps without improvement
 
 
-def arrange(graph: Layered, *, centred: bool = False) -> None:
+def minimise_crossings(graph: LayeredGraph, *, centred: bool = False) -> None:
     """Reorder the layers of `graph` in place.
 
     Args:
         graph: Any layered graph.
-        centred: Begin with bends amid the neighbours that they share a port with, instead of in the order of making.
-            A trunk that serves layer after layer then runs straight through them, with its branches to both sides.
+        centred: Begin with each dummy between the neighbours that share its port, instead of in the order of creation.
+            A hyperedge through many layers then runs straight, with branches to both sides.
     """
     before, after = graph.neighbours()
     if centred:
-        before = [_bends_amid(graph, vertices) for vertices in before]
-        after = [_bends_amid(graph, vertices) for vertices in after]
+        before = [_dummies_centred(graph, vertices) for vertices in before]
+        after = [_dummies_centred(graph, vertices) for vertices in after]
     sweeps = max(4, min(24, _WORK // (1 + len(graph.segments))))
     best = graph.order
-    least = crossings(best, after) + 1  # so that a start is preferred to the order of making
+    least = count_crossings(best, after) + 1  # an initial order wins against the order of creation
     for downwards in (True, False):
         order, crossed = _sweep(_start(graph, before, after, downwards), before, after, sweeps)
         if crossed < least:
@@ -42,13 +42,18 @@ def arrange(graph: Layered, *, centred: bool = False) -> None:
     graph.order = best
 
 
-def crossings(order: Sequence[Sequence[int]], after: Sequence[Sequence[int]]) -> int:
-    """Count the pairs of segments that cross, given for each vertex its neighbours in the next layer."""
+def count_crossings(order: Sequence[Sequence[int]], after: Sequence[Sequence[int]]) -> int:
+    """Return the number of crossing pairs of segments.
+
+    Args:
+        order: The vertices of each layer.
+        after: For each vertex its neighbours in the next layer.
+    """
     total = 0
     for layer, following in pairwise(order):
         place = {v: i for i, v in enumerate(following)}
         size = len(following) + 1
-        tree = [0] * size  # Fenwick: how many segments seen so far end at or before a place
+        tree = [0] * size  # a Fenwick tree: how many segments so far end at or before a place
         seen = 0
         for v in layer:
             ends = [place[w] for w in after[v]]
@@ -68,7 +73,7 @@ def crossings(order: Sequence[Sequence[int]], after: Sequence[Sequence[int]]) ->
 
 
 def _start(
-    graph: Layered, before: Sequence[Sequence[int]], after: Sequence[Sequence[int]], downwards: bool
+    graph: LayeredGraph, before: Sequence[Sequence[int]], after: Sequence[Sequence[int]], downwards: bool
 ) -> list[list[int]]:
     order: list[list[int]] = [[] for _ in graph.order]
     seen = [False] * len(graph.layer)
@@ -89,11 +94,11 @@ def _start(
     return order
 
 
-def _bends_amid(graph: Layered, vertices: Sequence[int]) -> list[int]:
-    """The same vertices, with those that are bends in the middle."""
-    others = [v for v in vertices if graph.kind[v] != "bend"]
+def _dummies_centred(graph: LayeredGraph, vertices: Sequence[int]) -> list[int]:
+    """Return the same vertices, with the dummies in the middle."""
+    others = [v for v in vertices if graph.kind[v] != "dummy"]
     half = len(others) // 2
-    return [*others[:half], *(v for v in vertices if graph.kind[v] == "bend"), *others[half:]]
+    return [*others[:half], *(v for v in vertices if graph.kind[v] == "dummy"), *others[half:]]
 
 
 def _sweep(
@@ -104,7 +109,7 @@ def _sweep(
         for i, v in enumerate(layer):
             place[v] = i
     best = [list(layer) for layer in order]
-    least = crossings(order, after)
+    least = count_crossings(order, after)
     idle = 0
     for sweep in range(sweeps):
         if not least:
@@ -113,7 +118,7 @@ def _sweep(
         for at in range(1, len(order)) if forward else range(len(order) - 2, -1, -1):
             _by_barycentre(order[at], before if forward else after, place, sweep % 4 >= 2)
         _transpose(order, before, after, place)
-        crossed = crossings(order, after)
+        crossed = count_crossings(order, after)
         if crossed < least:
             best, least, idle = [list(layer) for layer in order], crossed, 0
         else:
@@ -126,7 +131,7 @@ def _sweep(
 def _by_barycentre(
     layer: list[int], neighbours: Sequence[Sequence[int]], place: list[int], flip: bool
 ) -> None:
-    """Sort by the mean place of the neighbours; who has none stays. Equals swap when `flip`."""
+    """Sort a layer by the mean place of the neighbours. Vertices without neighbours stay; equals swap if `flip`."""
     moving = [(sum(place[w] for w in neighbours[v]) / len(neighbours[v]), v) for v in layer if neighbours[v]]
     if flip:
         moving.reverse()
@@ -140,7 +145,7 @@ def _by_barycentre(
 def _transpose(
     order: list[list[int]], before: Sequence[Sequence[int]], after: Sequence[Sequence[int]], place: list[int]
 ) -> None:
-    """Swap neighbours as long as that saves crossings."""
+    """Swap neighbours while a swap saves crossings."""
     for _ in range(4):
         saved = False
         for layer in order:
@@ -161,9 +166,9 @@ def _transpose(
 
 
 def _gain(upper: Sequence[int], lower: Sequence[int]) -> int:
-    """By how many crossings swapping two neighbours, with their ends sorted, would be better."""
+    """Return how many crossings a swap of two neighbours saves, given their sorted ends."""
     gain = before = upto = 0
-    for end in upper:  # lower ends before it cross now; those after it would cross then
+    for end in upper:  # lower ends before it cross now, those after it cross when swapped
         while before < len(lower) and lower[before] < end:
             before += 1
         while upto < len(lower) and lower[upto] <= end:

@@ -28,7 +28,7 @@ _LINES: dict[EdgeKind, str] = {
 
 
 def dot(diagram: Diagram) -> str:
-    """Write a diagram in the DOT language. Names may hold any characters."""
+    """Return a diagram in the DOT language. Names may have any characters."""
     ids = {node.id: f"n{i}" for i, node in enumerate(diagram.nodes)}
     lines = ['digraph "Signal-Rule-Slot diagram" {', *_legend(diagram)]
     lines.append('  graph [rankdir=LR, charset="UTF-8", fontname="Helvetica", nodesep=0.25, ranksep=0.45];')
@@ -70,5 +70,5 @@ def _quoted(text: str) -> str:
 
 
 def _escaped(text: str) -> str:
-    """Escape quotes, the backslashes of Graphviz' own escapes, and what it would take for an entity."""
+    """Escape quotes, backslashes and the ampersands of entities."""
     return clean(text).replace("&", "&amp;").replace("\\", "\\\\").replace('"', '\\"')

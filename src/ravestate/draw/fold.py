@@ -5,15 +5,24 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Collection
 
-from ravestate.draw.graph import Diagram, Edge, Node
+from ravestate.draw.graph import Diagram, Edge, EdgeKind, Node
 
 __all__ = ["fold"]
+
+_STRONGEST_FIRST: tuple[EdgeKind, ...] = (
+    "writes",
+    "emits",
+    "condition",
+    "emits_detached",
+    "condition_detached",
+    "reads",
+)
 
 
 def fold(diagram: Diagram, unfolded: Collection[str] = ()) -> Diagram:
     """Return the diagram with one node for each module.
 
-    Edges inside a folded module disappear. Parallel edges of one kind become one edge.
+    Edges inside a folded module disappear. Several edges from or to it become one arrow of the strongest kind.
 
     Args:
         diagram: The whole diagram.
@@ -37,13 +46,16 @@ def fold(diagram: Diagram, unfolded: Collection[str] = ()) -> Diagram:
         else:
             note = f"{rules[module] or 'no'} rule{'' if rules[module] == 1 else 's'}"
             nodes.setdefault(place, Node(place, "module", module, "", note))
-    edges: dict[Edge, None] = {}  # an ordered set
+    edges: dict[object, Edge] = {}
     for edge in diagram.edges:
         source, target = places[edge.source], places[edge.target]
-        if source != target:
-            whole = source == edge.source and target == edge.target
-            edges.setdefault(Edge(source, target, edge.kind, edge.label if whole else ""))
-    return Diagram(tuple(nodes.values()), tuple(edges))
+        if source == edge.source and target == edge.target:
+            edges[edge] = edge
+        elif source != target:
+            found = edges.setdefault((source, target), Edge(source, target, edge.kind))
+            if _STRONGEST_FIRST.index(edge.kind) < _STRONGEST_FIRST.index(found.kind):
+                edges[source, target] = Edge(source, target, edge.kind)
+    return Diagram(tuple(nodes.values()), tuple(edges.values()))
 
 
 def _modules(diagram: Diagram) -> dict[str, str]:

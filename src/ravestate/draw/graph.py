@@ -1,4 +1,4 @@
-"""The diagram as a value: nodes and edges, before anything is known of places or colours."""
+"""The diagram as a value: nodes and edges, without places or colours."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ class Node:
     """A slot, a signal, a rule, a folded module, or the junction of a conjunction or disjunction.
 
     Attributes:
-        id: Its name within the diagram.
-        kind: What it stands for.
-        label: What is written in it; empty for a junction.
-        module: The module it is declared in; empty for a junction and for a module.
-        note: Options worth seeing, such as a weight; empty for none.
+        id: Its unique name within the diagram.
+        kind: Its kind.
+        label: The text in it; empty for a junction.
+        module: The module that declares it; empty for a junction and for a module.
+        note: Options such as a weight, or the number of rules of a module; may be empty.
     """
 
     id: str
@@ -47,10 +47,10 @@ class Edge:
 
 @dataclass(frozen=True, slots=True)
 class Diagram:
-    """Nodes and edges in the order in which they are declared.
+    """Nodes and edges in declaration order.
 
     Raises:
-        ValueError: Two nodes share an id, or an edge ends at an unknown node or where it began.
+        ValueError: Two nodes share an id, an edge has an unknown end, or an edge joins a node to itself.
 
     Example:
         >>> Diagram((Node("a", "slot", "a"), Node("b", "signal", "b")), (Edge("a", "b", "emits"),)).edges[0].kind

@@ -1,9 +1,8 @@
-"""A proper layered graph: every piece of line joins two neighbouring layers.
+"""A proper layered graph: each segment joins two neighbouring layers.
 
-Vertices are the nodes of the diagram, the labels of its edges, and bends where a long edge passes a
-layer. A line begins and ends at a port: edges of one kind share one port on each side of a node. Long
-edges that begin (or end) at one port share their bends as well, so that a hub shows one trunk with
-branches, and never a bundle of parallel lines.
+Vertices are the nodes of the diagram, the labels of its edges, and dummies where a long edge passes a layer. A line begins
+and ends at a port. Edges of one kind share one port on each side of a node. Long edges that begin (or end) at one port
+share their dummies too: a hub shows one hyperedge with branches instead of a bundle of parallel lines.
 """
 
 from __future__ import annotations
@@ -14,28 +13,28 @@ from typing import Literal
 
 from ravestate.draw.graph import EdgeKind
 
-__all__ = ["Chain", "Layered", "Link", "Port", "VertexKind", "layered"]
+__all__ = ["Chain", "LayeredGraph", "Link", "Port", "VertexKind", "proper_layering"]
 
-VertexKind = Literal["node", "label", "bend"]
+VertexKind = Literal["node", "label", "dummy"]
 
-_SOLID: tuple[EdgeKind, ...] = ("writes", "emits")  # kinds whose lines may lie upon each other out of step
+_SOLID: tuple[EdgeKind, ...] = ("writes", "emits")  # solid lines may overlap; dashes would fall out of step
 
 
 @dataclass(frozen=True, slots=True)
 class Link:
-    """An edge after cycles are cut: from the lower to the higher layer, `turned` if it points the other way."""
+    """An edge of the acyclic graph, from the lower to the higher layer; `is_reversed` if its arrow points the other way."""
 
     low: int
     high: int
     kind: EdgeKind
-    turned: bool
+    is_reversed: bool
     label: tuple[float, float] | None
     """Width and height of its label, pixels."""
 
 
 @dataclass(slots=True)
 class Port:
-    """Where lines touch a vertex: `right` or left side, entering or leaving, `offset` pixels below its middle."""
+    """A point where lines touch a vertex: on the `right` or left side, `offset` pixels below the middle."""
 
     vertex: int
     right: bool
@@ -48,8 +47,8 @@ Chain = list[int]
 
 
 @dataclass(slots=True)
-class Layered:
-    """The graph: vertices by number, layers of vertices from top to bottom, ports, segments between ports."""
+class LayeredGraph:
+    """The graph: vertices by number, layers from top to bottom, ports, and segments between ports."""
 
     layer: list[int] = field(default_factory=list[int])
     kind: list[VertexKind] = field(default_factory=list[VertexKind])
@@ -60,17 +59,17 @@ class Layered:
     """Pairs of ports: one on the right of a vertex, one on the left of a vertex one layer on."""
     chains: list[Chain] = field(default_factory=list[Chain])
     labels: list[int | None] = field(default_factory=list[int | None])
-    """For each link the vertex of its label."""
+    """For each link the vertex of its label, or ``None``."""
     order: list[list[int]] = field(default_factory=list[list[int]])
     """The vertices of each layer."""
 
     def ends(self, segment: int) -> tuple[int, int]:
-        """The two vertices that a segment joins."""
+        """Return the two vertices that a segment joins."""
         low, high = self.segments[segment]
         return self.ports[low].vertex, self.ports[high].vertex
 
     def neighbours(self) -> tuple[list[list[int]], list[list[int]]]:
-        """For each vertex its neighbours in the layer before and in the layer after, once per segment."""
+        """Return for each vertex its neighbours in the layer before and in the layer after, once for each segment."""
         before: list[list[int]] = [[] for _ in self.layer]
         after: list[list[int]] = [[] for _ in self.layer]
         for segment in range(len(self.segments)):
@@ -80,9 +79,11 @@ class Layered:
         return before, after
 
 
-def layered(ranks: Sequence[int], sizes: Sequence[tuple[float, float]], links: Sequence[Link]) -> Layered:
-    """Cut the links at every layer that they pass. The order within layers is still the order of making."""
-    graph = Layered()
+def proper_layering(
+    ranks: Sequence[int], sizes: Sequence[tuple[float, float]], links: Sequence[Link]
+) -> LayeredGraph:
+    """Return the graph with a dummy wherever a link passes a layer. Within layers, vertices are in order of creation."""
+    graph = LayeredGraph()
     builder = _Builder(graph)
     for rank, (width, height) in zip(ranks, sizes, strict=True):
         builder.vertex(rank, "node", width, height)
@@ -95,9 +96,9 @@ def layered(ranks: Sequence[int], sizes: Sequence[tuple[float, float]], links: S
     for link in links:
         share_low = from_low.get(_low(link), 0) >= from_high.get(_high(link), 0)
         if link.label is not None:
-            share_low = not link.turned  # the label stands near the arrow's head, on a line of its own
+            share_low = not link.is_reversed  # the label is near the arrow's head, on its own line
         elif link.kind not in _SOLID:
-            share_low = not link.turned  # dashes keep step only from where the line begins
+            share_low = not link.is_reversed  # dashes keep step only from the start of the line
         builder.link(link, ranks[link.low], ranks[link.high], share_low)
     graph.order = [[] for _ in range(max(graph.layer, default=-1) + 1)]
     for vertex, layer in enumerate(graph.layer):
@@ -106,18 +107,18 @@ def layered(ranks: Sequence[int], sizes: Sequence[tuple[float, float]], links: S
 
 
 def _low(link: Link) -> tuple[object, ...]:
-    return (link.low, link.kind, link.turned)
+    return (link.low, link.kind, link.is_reversed)
 
 
 def _high(link: Link) -> tuple[object, ...]:
-    return (link.high, link.kind, link.turned)
+    return (link.high, link.kind, link.is_reversed)
 
 
 class _Builder:
-    def __init__(self, graph: Layered) -> None:
+    def __init__(self, graph: LayeredGraph) -> None:
         self.graph = graph
         self.ports: dict[tuple[object, ...], int] = {}
-        self.bends: dict[tuple[object, ...], int] = {}
+        self.dummies: dict[tuple[object, ...], int] = {}
         self.known: dict[tuple[int, int], int] = {}
 
     def vertex(self, layer: int, kind: VertexKind, width: float, height: float) -> int:
@@ -138,8 +139,8 @@ class _Builder:
 
     def link(self, link: Link, first: int, last: int, share_low: bool) -> None:
         share = ("low", *_low(link)) if share_low else ("high", *_high(link))
-        style = (link.kind, link.turned)
-        labelled = None if link.label is None else (first + 1 if link.turned else last - 1)
+        style = (link.kind, link.is_reversed)
+        labelled = None if link.label is None else (first + 1 if link.is_reversed else last - 1)
         label: int | None = None
         chain: Chain = []
         port = self.port(link.low, True, style)
@@ -148,9 +149,9 @@ class _Builder:
                 vertex = label = self.vertex(layer, "label", *link.label)
             else:
                 key = (*share, layer)
-                vertex = self.bends.get(key, -1)
+                vertex = self.dummies.get(key, -1)
                 if vertex < 0:
-                    vertex = self.bends[key] = self.vertex(layer, "bend", 0.0, 0.0)
+                    vertex = self.dummies[key] = self.vertex(layer, "dummy", 0.0, 0.0)
             chain.append(self.segment(port, self.port(vertex, False)))
             port = self.port(vertex, True)
         chain.append(self.segment(port, self.port(link.high, False, style)))

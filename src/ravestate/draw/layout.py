@@ -1,14 +1,12 @@
-"""Where everything goes: the layered method of Sugiyama, Tagawa and Toda, from left to right.
+"""Layered layout after Sugiyama, Tagawa and Toda (1981), from left to right.
 
-1. Cycles are cut by turning some edges round (`acyclic`); detached ones and reads before others.
-2. Nodes get layers, so that edges are short (`simplex`), and more of them where the picture were too tall for a
-   screen (`bounded`).
-3. Long edges are cut at every layer (`layered`), and the layers are ordered for few crossings (`crossings`).
-4. Vertices get their places in them (`ports`, `heights`), layers their distances, and lines their turns
-   (`tracks`, `routing`).
+1. Cycle removal reverses some edges (`acyclic`): detached ones and reads before others.
+2. Layer assignment keeps edges short (`simplex`). Layers are bounded if the picture would be too tall (`bounded`).
+3. Dummies make the graph proper (`layered`). Crossing minimisation orders the layers (`crossings`).
+4. Coordinate assignment places ports and vertices (`ports`, `coordinates`).
+5. Edge routing sets the distances of the layers and the turns of the lines (`tracks`, `routing`).
 
-Parts that do not hang together are laid out one by one and packed in rows. Nothing here depends on
-anything but the diagram and the order in which it is given.
+Connected components are laid out one by one and packed in rows. The result depends on the diagram and its order alone.
 """
 
 from __future__ import annotations
@@ -17,16 +15,16 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
-from ravestate.draw.acyclic import STRONG, backward
-from ravestate.draw.bounded import shaped
-from ravestate.draw.coordinates import separation
-from ravestate.draw.crossings import arrange
+from ravestate.draw.acyclic import STRONG, feedback_arcs
+from ravestate.draw.bounded import fit_to_screen
+from ravestate.draw.brandes_koepf import separation
+from ravestate.draw.coordinates import assign_coordinates
+from ravestate.draw.crossings import minimise_crossings
 from ravestate.draw.graph import Diagram, Edge, EdgeKind, NodeKind
-from ravestate.draw.heights import heights
-from ravestate.draw.layered import Layered, Link, layered
+from ravestate.draw.layered import LayeredGraph, Link, proper_layering
 from ravestate.draw.ports import place_ports
 from ravestate.draw.routing import Point, route
-from ravestate.draw.simplex import layers
+from ravestate.draw.simplex import network_simplex
 
 __all__ = ["Box", "Layout", "Size", "lay_out"]
 
@@ -34,9 +32,9 @@ Size = tuple[float, float]
 """Width and height in pixels."""
 
 _GAP = 32.0  # pixels between layers with straight lines
-_TURN = 2.0  # pixels more for each port whose lines may turn there, on the average
-_BETWEEN = 36.0  # pixels between parts
-_ASPECT = 1.6  # wished width : height of packed parts
+_TURN = 2.0  # pixels for each port whose lines may turn there, on average
+_BETWEEN = 36.0  # pixels between components
+_ASPECT = 1.6  # wished width : height of packed components
 
 _STRENGTH: dict[EdgeKind, int] = {
     "writes": 3 * STRONG,
@@ -59,7 +57,7 @@ _JUNCTIONS: tuple[NodeKind, ...] = ("and", "or")
 
 @dataclass(frozen=True, slots=True)
 class Box:
-    """A rectangle: its left and upper border, width and height, in pixels."""
+    """A rectangle: left and upper border, width and height, in pixels."""
 
     x: float
     y: float
@@ -67,20 +65,20 @@ class Box:
     height: float
 
     def moved(self, x: float, y: float) -> Box:
-        """The same, further right and further down."""
+        """Return the same box further right and further down."""
         return Box(round(self.x + x, 2), round(self.y + y, 2), self.width, self.height)
 
 
 @dataclass(frozen=True, slots=True)
 class Layout:
-    """A picture without its paint, in pixels from its upper left corner.
+    """Places of nodes, lines and labels, in pixels from the upper left corner.
 
     Attributes:
-        boxes: Where each node is, by id.
+        boxes: The box of each node, by id.
         lines: For each edge, in the order of the diagram, the points of its line from source to target.
-        labels: For each edge where its label is, ``None`` where it has none.
-        width: How wide it all is.
-        height: How high it all is.
+        labels: For each edge the box of its label, or ``None``.
+        width: The width of the picture.
+        height: The height of the picture.
     """
 
     boxes: Mapping[str, Box]
@@ -91,11 +89,17 @@ class Layout:
 
 
 def lay_out(diagram: Diagram, nodes: Mapping[str, Size], labels: Sequence[Size | None]) -> Layout:
-    """Lay out a diagram, given the size of each node by id, and of each edge's label or ``None``."""
+    """Lay out a diagram.
+
+    Args:
+        diagram: The diagram.
+        nodes: The size of each node, by id.
+        labels: The size of each edge's label, or ``None``.
+    """
     boxes: dict[str, Box] = {}
     lines: list[tuple[Point, ...]] = [()] * len(diagram.edges)
     places: list[Box | None] = [None] * len(diagram.edges)
-    parts = [_lay_out_part(diagram, ids, edges, nodes, labels) for ids, edges in _parts(diagram)]
+    parts = [_lay_out_component(diagram, ids, edges, nodes, labels) for ids, edges in _components(diagram)]
     width = height = 0.0
     for part, (x, y) in zip(parts, _pack([(part.width, part.height) for part in parts]), strict=True):
         boxes.update({name: box.moved(x, y) for name, box in part.boxes.items()})
@@ -108,7 +112,7 @@ def lay_out(diagram: Diagram, nodes: Mapping[str, Size], labels: Sequence[Size |
 
 
 @dataclass(frozen=True, slots=True)
-class _Part:
+class _Component:
     boxes: dict[str, Box]
     edges: Sequence[int]
     lines: list[list[Point]]
@@ -117,8 +121,8 @@ class _Part:
     height: float
 
 
-def _parts(diagram: Diagram) -> list[tuple[list[str], list[int]]]:
-    """The nodes and edges that hang together, in the order of their first nodes."""
+def _components(diagram: Diagram) -> list[tuple[list[str], list[int]]]:
+    """Return the nodes and edges of each connected component, in the order of first nodes."""
     touching: dict[str, list[int]] = {node.id: [] for node in diagram.nodes}
     for number, edge in enumerate(diagram.edges):
         touching[edge.source].append(number)
@@ -145,34 +149,36 @@ def _parts(diagram: Diagram) -> list[tuple[list[str], list[int]]]:
     return found
 
 
-def _lay_out_part(
+def _lay_out_component(
     diagram: Diagram,
     ids: Sequence[str],
     numbers: Sequence[int],
     nodes: Mapping[str, Size],
     labels: Sequence[Size | None],
-) -> _Part:
+) -> _Component:
     index = {name: i for i, name in enumerate(ids)}
     edges = [diagram.edges[number] for number in numbers]
     ends = [(index[edge.source], index[edge.target]) for edge in edges]
     kinds: dict[str, NodeKind] = {node.id: node.kind for node in diagram.nodes}
-    turned = backward(len(ids), [(u, v, _STRENGTH[e.kind]) for (u, v), e in zip(ends, edges, strict=True)])
+    reversals = feedback_arcs(
+        len(ids), [(u, v, _STRENGTH[e.kind]) for (u, v), e in zip(ends, edges, strict=True)]
+    )
     links = [
-        Link(v if turn else u, u if turn else v, edge.kind, turn, labels[number])
-        for (u, v), edge, turn, number in zip(ends, edges, turned, numbers, strict=True)
+        Link(v if back else u, u if back else v, edge.kind, back, labels[number])
+        for (u, v), edge, back, number in zip(ends, edges, reversals, numbers, strict=True)
     ]
     arcs = [
         (link.low, link.high, _tightness(edge, kinds), 1 if link.label is None else 2)
         for link, edge in zip(links, edges, strict=True)
     ]
     sizes = [nodes[name] for name in ids]
-    shortest = layers(len(ids), arcs)
-    ranks = shaped(shortest, arcs, lambda ranks: _extent(layered(ranks, sizes, links)))
-    graph = layered(ranks, sizes, links)
-    folded = ranks != shortest
-    arrange(graph, centred=folded)
+    shortest = network_simplex(len(ids), arcs)
+    ranks = fit_to_screen(shortest, arcs, lambda ranks: _extent(proper_layering(ranks, sizes, links)))
+    graph = proper_layering(ranks, sizes, links)
+    is_bounded = ranks != shortest
+    minimise_crossings(graph, centred=is_bounded)
     place_ports(graph)
-    routed = route(graph, heights(graph, _extent(graph)[0] / _ASPECT if folded else None))
+    routed = route(graph, assign_coordinates(graph, _extent(graph)[0] / _ASPECT if is_bounded else None))
     boxes = [
         Box(x - width / 2, y - height / 2, width, height)
         for (x, y), width, height in zip(routed.middles, graph.width, graph.height, strict=True)
@@ -180,18 +186,18 @@ def _lay_out_part(
     top = min(box.y for box in boxes)
     boxes = [box.moved(0.0, -top) for box in boxes]
     lines = [[(x, y - top) for x, y in line] for line in routed.lines]
-    return _Part(
+    return _Component(
         {name: boxes[i] for i, name in enumerate(ids)},
         numbers,
-        [line[::-1] if link.turned else line for line, link in zip(lines, links, strict=True)],
+        [line[::-1] if link.is_reversed else line for line, link in zip(lines, links, strict=True)],
         [None if vertex is None else boxes[vertex] for vertex in graph.labels],
         max(box.x + box.width for box in boxes),
         max(box.y + box.height for box in boxes),
     )
 
 
-def _extent(graph: Layered) -> Size:
-    """About how large a graph will be, before anything is known of its places."""
+def _extent(graph: LayeredGraph) -> Size:
+    """Estimate the size of a graph before its coordinates are known."""
     width = sum(max(graph.width[v] for v in layer) + _GAP for layer in graph.order)
     width += _TURN * len({low for low, _ in graph.segments})
     height = max(sum(separation(graph, u, v) for u, v in pairwise(layer)) for layer in graph.order)
@@ -199,7 +205,7 @@ def _extent(graph: Layered) -> Size:
 
 
 def _tightness(edge: Edge, kinds: Mapping[str, NodeKind]) -> int:
-    """How much a layer more costs: junctions stay with what they lead to, signals with their slot."""
+    """Return the cost of a longer edge: junctions stay next to their rule, signals next to their slot."""
     if kinds[edge.source] in _JUNCTIONS:
         return 8
     if edge.kind == "emits" and kinds[edge.source] == "slot":
@@ -208,7 +214,7 @@ def _tightness(edge: Edge, kinds: Mapping[str, NodeKind]) -> int:
 
 
 def _pack(sizes: Sequence[Size]) -> list[Point]:
-    """Put rectangles into rows, the highest first."""
+    """Pack rectangles into rows, the highest first."""
     order = sorted(range(len(sizes)), key=lambda i: (-sizes[i][1], i))
     area = sum((width + _BETWEEN) * (height + _BETWEEN) for width, height in sizes)
     wide = max([(area * _ASPECT) ** 0.5, *(width for width, _ in sizes)], default=0.0)

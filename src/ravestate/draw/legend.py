@@ -1,4 +1,4 @@
-"""The legend below the picture: what of the notation is in it, in the order of the paper's table."""
+"""The legend below the picture: the notation that the picture uses, in the order of the paper's table."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from ravestate.draw.text import width
 __all__ = ["NARROWEST", "Legend", "legend"]
 
 NARROWEST = 560.0
-"""Pixels that a legend may use even below a narrower picture."""
+"""Pixels of width that a legend may always use."""
 
 _ROW = 26.0
 _GAP = 20.0
@@ -43,7 +43,7 @@ class Legend:
 
 
 def legend(diagram: Diagram, x: float, y: float, room: float, prefix: str) -> Legend:
-    """Draw the legend of a diagram from (x, y) on, in rows of at most `room` pixels."""
+    """Return the legend of a diagram at (x, y), in rows of at most `room` pixels."""
     nodes, edges = used(diagram)
     plain: list[NodeKind] = [kind for kind in nodes if kind not in JUNCTIONS]
     junctions: list[NodeKind] = [kind for kind in nodes if kind in JUNCTIONS]
@@ -68,7 +68,7 @@ def legend(diagram: Diagram, x: float, y: float, room: float, prefix: str) -> Le
 
 
 def _rows(wide: Sequence[float], room: float) -> list[tuple[float, int]]:
-    """Where each entry begins, and in which row: as few rows as fit, as even as can be."""
+    """Return the left edge and the row of each entry: few rows of about equal length."""
     found = _filled(wide, room)
     while room > max(wide) and (narrower := _filled(wide, room - 10.0))[-1][1] == found[-1][1]:
         found, room = narrower, room - 10.0

@@ -30,14 +30,14 @@ _WORDS: dict[EdgeKind, str] = {
     "emits_detached": "detached",
     "condition_detached": "detached",
 }
-"""Written on the line, as Mermaid has too few arrows to tell these apart without colour."""
+"""Words on the line: Mermaid has too few arrows to tell these kinds apart without colour."""
 
 _MOST_EDGES = 500
 _PLAIN = " _:,×≥≤–…"  # beside letters and digits
 
 
 def mermaid(diagram: Diagram) -> str:
-    """Write a diagram as a Mermaid flowchart. Names may hold any characters."""
+    """Return a diagram as a Mermaid flowchart. Names may have any characters."""
     ids = {node.id: f"n{i}" for i, node in enumerate(diagram.nodes)}
     lines = ["flowchart LR", *_legend(diagram)]
     if len(diagram.edges) > _MOST_EDGES:
@@ -83,12 +83,12 @@ def _label(node: Node) -> str:
 def _words(edge: Edge) -> str:
     words = _WORDS.get(edge.kind, "")
     if edge.kind == "condition_detached" and edge.label.startswith("until"):
-        words = ""  # an interruption holds no spikes anyway
+        words = ""  # an interruption never holds spikes
     return ", ".join(word for word in (words, edge.label) if word)
 
 
 def _escaped(text: str) -> str:
-    """Write all that might mean something to Mermaid, Markdown or HTML as Mermaid's numeric entities."""
+    """Replace every character that Mermaid, Markdown or HTML might interpret by a numeric entity."""
     return "".join(
         character if character.isalnum() or character in _PLAIN else f"#{ord(character)};"
         for character in clean(text)

@@ -14,7 +14,7 @@ NODES: dict[NodeKind, str] = {
     "and": "conjunction",
     "or": "disjunction",
 }
-"""What each kind of node is called."""
+"""The word for each kind of node."""
 
 EDGES: dict[EdgeKind, str] = {
     "reads": "reads",
@@ -24,14 +24,14 @@ EDGES: dict[EdgeKind, str] = {
     "condition": "condition",
     "condition_detached": "detached condition",
 }
-"""What each kind of edge is called."""
+"""The words for each kind of edge."""
 
 JUNCTIONS: dict[NodeKind, str] = {"and": "∧", "or": "∨"}
 """The sign inside a junction."""
 
 
 def describe(node: Node) -> str:
-    """Name a node in full: ``rule hello:greet (×1.2)``, or ``conjunction``."""
+    """Return the full name of a node: ``rule hello:greet (×1.2)``, or ``conjunction``."""
     words = NODES[node.kind]
     if node.name:
         words += f" {node.name}"
@@ -39,7 +39,7 @@ def describe(node: Node) -> str:
 
 
 def used(diagram: Diagram) -> tuple[list[NodeKind], list[EdgeKind]]:
-    """The kinds of nodes and of edges that a diagram has, in the order of the table: what its legend explains."""
+    """Return the kinds of nodes and of edges of a diagram, in the order of the table, for its legend."""
     nodes = {node.kind for node in diagram.nodes}
     edges = {edge.kind for edge in diagram.edges}
     return [kind for kind in NODES if kind in nodes], [kind for kind in EDGES if kind in edges]

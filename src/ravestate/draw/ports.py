@@ -1,18 +1,20 @@
-"""Where on the side of a vertex its ports stand: in the order of what they lead to."""
+"""Port placement: on each side of a vertex, ports are in the order of their targets."""
 
 from __future__ import annotations
 
-from ravestate.draw.layered import Layered
+from ravestate.draw.layered import LayeredGraph
 
 __all__ = ["place_ports"]
 
 _PITCH = 10.0  # pixels between ports of one side, where there is room
-_MARGIN = 10.0  # pixels from the first and last port to the corner, which may be round
-_LEAST = 3.0  # pixels between ports: where there is less room, all meet, but for lines that run the other way
+_MARGIN = 10.0  # pixels from the first and last port to the corner, which is sometimes round
+_LEAST = (
+    3.0  # least pixels between ports; with less room they coincide, except for lines of the other direction
+)
 
 
-def place_ports(graph: Layered) -> None:
-    """Set the offset of every port of `graph`, whose layers are in order."""
+def place_ports(graph: LayeredGraph) -> None:
+    """Set the offset of each port. The layers of `graph` are in order."""
     place = [0] * len(graph.layer)
     for layer in graph.order:
         for i, v in enumerate(layer):

@@ -1,8 +1,8 @@
-"""Places that keep lines short: each layer in turn as near as can be to what it is joined with.
+"""Coordinates that keep lines short: each layer in turn moves as near as possible to its neighbours.
 
-Within one layer the best places under least distances are a weighted isotonic regression, found by
-pooling adjacent violators. Sweeps to and fro carry it through all layers. Where a picture is crowded
-this is far more compact than alignment, which pays for straight lines with empty room.
+Within one layer, the best coordinates under least distances are a weighted isotonic regression, solved by pooling adjacent
+violators. Forward and backward sweeps repeat it for all layers. Crowded pictures become far more compact than with
+alignment, whose straight lines need empty space.
 """
 
 from __future__ import annotations
@@ -11,24 +11,27 @@ from collections.abc import Sequence
 from itertools import pairwise
 from math import inf
 
-from ravestate.draw.coordinates import separation
-from ravestate.draw.layered import Layered
+from ravestate.draw.brandes_koepf import separation
+from ravestate.draw.layered import LayeredGraph
 
-__all__ = ["relaxed"]
+__all__ = ["relax"]
 
 _SWEEPS = 24
-_BEHIND = 0.15  # weight of what lies ahead of a sweep, against what lies behind it
+_BEHIND = 0.15  # weight of neighbours ahead of a sweep, relative to those behind it
 
 
-def relaxed(graph: Layered, airy: float, room: float | None = None) -> list[float]:
-    """The vertical middle of each vertex in pixels, `airy` times as far apart as they must be.
+def relax(graph: LayeredGraph, spread: float, room: float | None = None) -> list[float]:
+    """Return the vertical middle of each vertex in pixels.
 
-    With `room`, all middles are within so many pixels, or within what the most crowded layer takes up.
+    Args:
+        graph: A graph with ordered layers and placed ports.
+        spread: The least distances are multiplied by it.
+        room: The greatest height in pixels, unless the largest layer needs more; ``None`` for any height.
     """
     gaps: list[list[float]] = []
     middle = [0.0] * len(graph.layer)
     for layer in graph.order:
-        gaps.append([airy * separation(graph, u, v) for u, v in pairwise(layer)])
+        gaps.append([spread * separation(graph, u, v) for u, v in pairwise(layer)])
         y = -sum(gaps[-1]) / 2
         for v, gap in zip(layer, [*gaps[-1], 0.0], strict=True):
             middle[v] = y
@@ -39,7 +42,7 @@ def relaxed(graph: Layered, airy: float, room: float | None = None) -> list[floa
     after: list[list[tuple[int, float, float]]] = [[] for _ in middle]
     for low, high in graph.segments:
         p, q = graph.ports[low], graph.ports[high]
-        weight = (1.0, 2.0, 8.0)[(graph.kind[p.vertex] == "bend") + (graph.kind[q.vertex] == "bend")]
+        weight = (1.0, 2.0, 8.0)[(graph.kind[p.vertex] == "dummy") + (graph.kind[q.vertex] == "dummy")]
         after[p.vertex].append((q.vertex, q.offset - p.offset, weight))
         before[q.vertex].append((p.vertex, p.offset - q.offset, weight))
     half = inf if room is None else max(room, *(sum(apart) for apart in gaps)) / 2
@@ -68,7 +71,7 @@ def relaxed(graph: Layered, airy: float, room: float | None = None) -> list[floa
 def _isotonic(
     wishes: Sequence[float], weights: Sequence[float], gaps: Sequence[float], half: float
 ) -> list[float]:
-    """The places nearest to the wishes (weighted squares) from -half to half that keep at least the gaps."""
+    """Return the places from -half to half that keep the gaps and are nearest to the wishes (weighted squares)."""
     pools: list[tuple[float, float, int]] = []  # mean, weight, how many
     offsets: list[float] = []
     offset = 0.0

@@ -1,11 +1,11 @@
-"""From a layered graph with places to lines of points."""
+"""Edge routing: from vertices with coordinates to lines of points."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from ravestate.draw.layered import Chain, Layered
+from ravestate.draw.layered import Chain, LayeredGraph
 from ravestate.draw.tracks import Segment, tracks
 
 __all__ = ["Point", "Routed", "route"]
@@ -20,22 +20,22 @@ _LEVEL = 0.01
 
 @dataclass(frozen=True, slots=True)
 class Routed:
-    """Where each vertex has its middle, the line of each link from low to high, and the width of it all."""
+    """The middle of each vertex, the line of each link from low to high, and the width of the picture."""
 
     middles: list[Point]
     lines: list[list[Point]]
     width: float
 
 
-def route(graph: Layered, middle: Sequence[float]) -> Routed:
-    """Place the layers side by side, as far apart as the lines between them need, and draw the lines."""
+def route(graph: LayeredGraph, middle: Sequence[float]) -> Routed:
+    """Place the layers side by side with room for the lines between them, and route the lines."""
     gaps: list[list[int]] = [[] for _ in graph.order]
     for number in range(len(graph.segments)):
         gaps[graph.layer[graph.ends(number)[0]]].append(number)
     across = [0.0] * len(graph.layer)
     turns = [(0.0, 0.0)] * len(
         graph.segments
-    )  # where a segment leaves its first height, and reaches its second
+    )  # x at which a segment leaves its first height, and reaches its second
     x = 0.0
     for layer, numbers in zip(graph.order, gaps, strict=True):
         column = max(graph.width[v] for v in layer)
@@ -56,14 +56,14 @@ def route(graph: Layered, middle: Sequence[float]) -> Routed:
     )
 
 
-def _segment(graph: Layered, middle: Sequence[float], number: int) -> Segment:
+def _segment(graph: LayeredGraph, middle: Sequence[float], number: int) -> Segment:
     low, high = graph.segments[number]
     p, q = graph.ports[low], graph.ports[high]
     return (low, high, middle[p.vertex] + p.offset, middle[q.vertex] + q.offset)
 
 
 def _line(
-    graph: Layered,
+    graph: LayeredGraph,
     chain: Chain,
     across: Sequence[float],
     middle: Sequence[float],
@@ -84,7 +84,7 @@ def _line(
 
 
 def _simple(points: Sequence[Point]) -> list[Point]:
-    """Leave out what lies within a straight horizontal piece, and doubles."""
+    """Remove duplicate points, and points within a straight horizontal piece."""
     found: list[Point] = []
     for point in points:
         if found and abs(found[-1][0] - point[0]) < _LEVEL and abs(found[-1][1] - point[1]) < _LEVEL:

@@ -1,4 +1,4 @@
-"""The shapes of the notation as SVG elements, at given places: used by the picture and by its legend."""
+"""The shapes of the notation as SVG elements, for the picture and its legend."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ __all__ = ["heads", "line", "number", "outline"]
 _ROUND = 7.0  # pixels: radius of a turn
 _CORNER = 10.0  # pixels: radius of a signal's corners
 _HEAD = 9.0  # pixels: length of an arrow's head
-_BACK = {"full": 6.0, "hollow": 8.5, "open": 1.5}  # pixels by which a line ends before its head's tip
+_BACK = {"full": 6.0, "hollow": 8.5, "open": 1.5}  # pixels between the end of a line and the tip of its head
 
 
 def number(value: float) -> str:
-    """A coordinate as short as can be, to a hundredth of a pixel."""
+    """Return a coordinate as short text, to a hundredth of a pixel."""
     text = f"{value:.2f}".rstrip("0").rstrip(".")
     return "0" if text == "-0" else text
 
 
 def outline(kind: NodeKind, box: Box) -> str:
-    """The outline of a node, and the sign inside a junction."""
+    """Return the outline of a node, with the sign of a junction."""
     x, y, w, h = (number(value) for value in (box.x, box.y, box.width, box.height))
     middle_x, middle_y = box.x + box.width / 2, box.y + box.height / 2
     if kind == "slot":
@@ -51,7 +51,7 @@ def outline(kind: NodeKind, box: Box) -> str:
 
 
 def heads(prefix: str) -> str:
-    """The definitions of the arrows' heads, one for each kind of edge; ids begin with `prefix`."""
+    """Return the definitions of the arrows' heads, one for each kind of edge; ids begin with `prefix`."""
     found: list[str] = []
     for kind, style in EDGE_STYLES.items():
         shape = "M1 1L9 5L1 9" + ("" if style.head == "open" else "Z")
@@ -64,7 +64,7 @@ def heads(prefix: str) -> str:
 
 
 def line(kind: EdgeKind, points: Sequence[Point], prefix: str) -> str:
-    """The line of an edge with round turns and its head; the head's tip lies on the last point."""
+    """Return the line of an edge with round turns and a head; the tip of the head is the last point."""
     back = _BACK[EDGE_STYLES[kind].head]
     (ax, ay), (bx, by) = points[-2], points[-1]
     length = ((bx - ax) ** 2 + (by - ay) ** 2) ** 0.5
@@ -80,7 +80,7 @@ def line(kind: EdgeKind, points: Sequence[Point], prefix: str) -> str:
 
 
 def _towards(turn: Point, other: Point) -> Point:
-    """The point at which a round turn begins or ends."""
+    """Return the point where a round turn begins or ends."""
     dx, dy = other[0] - turn[0], other[1] - turn[1]
     length = (dx * dx + dy * dy) ** 0.5
     share = min(_ROUND / length, 0.5) if length else 0.0

@@ -1,9 +1,8 @@
-"""Layers that make the edges short: the network simplex of Gansner, Koutsofios, North and Vo (1993).
+"""Layer assignment with short edges: the network simplex of Gansner, Koutsofios, North and Vo (1993).
 
-A spanning tree of tight edges fixes all layers. An edge of the tree whose cut value is negative is worth
-lengthening: it leaves the tree, and the tightest edge that points across the cut the other way enters.
-The cut value of a tree edge is the sum of (weight out - weight in) over the vertices on its tail's side,
-as whatever runs within that side cancels out.
+A spanning tree of tight arcs fixes all ranks. A tree arc with a negative cut value should be longer: it leaves the tree,
+and the tightest arc that crosses the cut in the other direction enters. The cut value of a tree arc is the sum of
+(weight out - weight in) over the vertices on the side of its tail. Arcs within that side cancel out.
 """
 
 from __future__ import annotations
@@ -11,29 +10,29 @@ from __future__ import annotations
 import heapq
 from collections.abc import Sequence
 
-__all__ = ["Arc", "layers"]
+__all__ = ["Arc", "network_simplex"]
 
 Arc = tuple[int, int, int, int]
-"""Tail, head, weight, and the least number of layers between the two."""
+"""Tail, head, weight, and least length in layers."""
 
-_SAMPLE = 30  # leaving arcs that are compared before one is chosen
+_SAMPLE = 30  # leaving arcs to compare before one is chosen
 _WORK = 2_000_000  # exchanges x vertices
 
 
-def layers(count: int, arcs: Sequence[Arc]) -> list[int]:
-    """The layer of each vertex of an acyclic, connected graph with `count` vertices, from 0.
+def network_simplex(count: int, arcs: Sequence[Arc]) -> list[int]:
+    """Return the rank of each vertex of an acyclic, connected graph with `count` vertices, from 0.
 
-    Every arc spans at least its length, and the sum of weight x span is least (or nearly so: the number
-    of exchanges is bounded, and every state on the way is valid).
+    Each arc spans at least its length, and the sum of weight x span is minimal. The number of exchanges is bounded: in
+    large graphs the sum may be slightly above the minimum.
 
     Raises:
-        ValueError: The graph has a cycle, or falls apart.
+        ValueError: The graph has a cycle, or is not connected.
     """
     if count == 0:
         return []
     simplex = _Simplex(count, arcs)
     simplex.exchange_all(limit=min(50 + 4 * count, _WORK // count))
-    return simplex.balanced()
+    return simplex.balance()
 
 
 class _Simplex:
@@ -48,23 +47,23 @@ class _Simplex:
             self.surplus[u] += weight
             self.surplus[v] -= weight
         self.rank = _longest_paths(count, arcs)
-        self.branches: list[list[int]] = [[] for _ in range(count)]  # arcs of the tree, by vertex
+        self.tree_arcs: list[list[int]] = [[] for _ in range(count)]  # by vertex
         self.parent = [-1] * count  # the arc towards the root
         self.low = [0] * count  # the least number in the subtree, in postorder
         self.number = [0] * count
         self.vertex = [0] * count  # by number
         self.total = [0] * count  # surplus of the subtree
         self.tree: list[int] = []
-        self.grow()
-        self.survey(0, 0)
+        self.tight_tree()
+        self.number_subtree(0, 0)
 
     def slack(self, arc: int) -> int:
         u, v, _, length = self.arcs[arc]
         return self.rank[v] - self.rank[u] - length
 
-    def grow(self) -> None:
-        """Find a spanning tree of tight arcs, moving what is already in it along with each arc that joins."""
-        moved = 0  # by how much the tree has moved since; ranks inside are stored without it
+    def tight_tree(self) -> None:
+        """Find a spanning tree of tight arcs: for each new arc, shift the whole tree until the arc is tight."""
+        moved = 0  # the shift of the tree so far; the ranks inside are stored without it
         inside = [False] * self.count
         ahead: list[tuple[int, int]] = []  # arcs out of the tree, by slack + moved
         behind: list[tuple[int, int]] = []  # arcs into the tree, by slack - moved
@@ -85,7 +84,7 @@ class _Simplex:
             while behind and inside[self.arcs[behind[0][1]][0]]:
                 heapq.heappop(behind)
             if not ahead and not behind:
-                raise ValueError("the graph falls apart: lay out its components one by one")
+                raise ValueError("the graph is not connected: lay out its components one by one")
             forward = ahead[0][0] - moved if ahead else None
             backward = behind[0][0] + moved if behind else None
             if backward is None or (forward is not None and forward <= backward):
@@ -97,16 +96,16 @@ class _Simplex:
                 moved -= key + moved
                 new = self.arcs[arc][0]
             self.tree.append(arc)
-            self.branches[self.arcs[arc][0]].append(arc)
-            self.branches[self.arcs[arc][1]].append(arc)
+            self.tree_arcs[self.arcs[arc][0]].append(arc)
+            self.tree_arcs[self.arcs[arc][1]].append(arc)
             self.rank[new] -= moved
             join(new)
 
-    def survey(self, root: int, start: int) -> None:
-        """Number the subtree of `root` in postorder from `start`, and add up what it holds."""
+    def number_subtree(self, root: int, start: int) -> None:
+        """Number the subtree of `root` in postorder from `start`, and sum up its surplus."""
         self.low[root] = start
         counter = start
-        path = [(root, iter(self.branches[root]))]
+        path = [(root, iter(self.tree_arcs[root]))]
         self.total[root] = self.surplus[root]
         while path:
             v, rest = path[-1]
@@ -118,7 +117,7 @@ class _Simplex:
                 self.parent[child] = arc
                 self.low[child] = counter
                 self.total[child] = self.surplus[child]
-                path.append((child, iter(self.branches[child])))
+                path.append((child, iter(self.tree_arcs[child])))
                 break
             else:
                 path.pop()
@@ -132,7 +131,7 @@ class _Simplex:
         u, v, _, _ = self.arcs[arc]
         return u if self.parent[u] == arc else v
 
-    def cut(self, arc: int) -> int:
+    def cut_value(self, arc: int) -> int:
         child = self.child(arc)
         return self.total[child] if child == self.arcs[arc][0] else -self.total[child]
 
@@ -142,7 +141,7 @@ class _Simplex:
             best, found, worst = -1, 0, 0
             for step in range(len(self.tree)):
                 place = (at + step) % len(self.tree)
-                value = self.cut(self.tree[place])
+                value = self.cut_value(self.tree[place])
                 if value < 0:
                     found += 1
                     if value < worst:
@@ -176,11 +175,11 @@ class _Simplex:
         for arc, keep in ((leaving, False), (entering, True)):
             for end in self.arcs[arc][:2]:
                 if keep:
-                    self.branches[end].append(arc)
+                    self.tree_arcs[end].append(arc)
                 else:
-                    self.branches[end].remove(arc)
+                    self.tree_arcs[end].remove(arc)
         self.tree[place] = entering
-        top = child  # the lowest vertex above both ends of both arcs
+        top = child  # the lowest common ancestor of both arcs
         u, v, _, _ = self.arcs[entering]
         while not (
             self.low[top] <= self.number[u] <= self.number[top]
@@ -188,29 +187,29 @@ class _Simplex:
         ):
             a, b, _, _ = self.arcs[self.parent[top]]
             top = b if a == top else a
-        self.survey(top, self.low[top])
+        self.number_subtree(top, self.low[top])
         return True
 
-    def balanced(self) -> list[int]:
-        """Move vertices that may stand in several layers at the same cost to where there is most room."""
+    def balance(self) -> list[int]:
+        """Move each vertex with several equally good ranks to the smallest of these layers."""
         least = min(self.rank)
         rank = [r - least for r in self.rank]
-        crowd = [0] * (max(rank) + 1)
+        size = [0] * (max(rank) + 1)
         for r in rank:
-            crowd[r] += 1
+            size[r] += 1
         for v in range(self.count):
             if self.surplus[v] or not self.incident[v]:
                 continue
-            first, last = 0, len(crowd) - 1
+            first, last = 0, len(size) - 1
             for arc in self.incident[v]:
                 u, w, _, length = self.arcs[arc]
                 if w == v:
                     first = max(first, rank[u] + length)
                 else:
                     last = min(last, rank[w] - length)
-            best = min(range(first, last + 1), key=lambda r: (crowd[r] - (r == rank[v]), abs(r - rank[v]), r))
-            crowd[rank[v]] -= 1
-            crowd[best] += 1
+            best = min(range(first, last + 1), key=lambda r: (size[r] - (r == rank[v]), abs(r - rank[v]), r))
+            size[rank[v]] -= 1
+            size[best] += 1
             rank[v] = best
         return rank
 

@@ -1,4 +1,4 @@
-"""How large nodes and labels are when drawn: two lines in a node (module and name), three with a note."""
+"""Sizes of nodes and labels. A node has two lines (module and name), or three with a note."""
 
 from __future__ import annotations
 
@@ -18,18 +18,18 @@ LABEL = 10.5
 """Font size of an edge's label, pixels."""
 
 LONGEST = 250.0
-"""Pixels from which a text is shortened; the whole stands in its title."""
+"""Pixels of the longest text; longer ones are shortened, and their title has the whole text."""
 
 _JUNCTION = 22.0
 
 
 def shown(text: str, size: float) -> str:
-    """What is drawn of a text: no control characters, and not too long."""
+    """Return a text for drawing: without control characters, shortened if too long."""
     return shorten(clean(text), size, LONGEST)
 
 
 def node_size(node: Node) -> tuple[float, float]:
-    """Width and height of a node in pixels."""
+    """Return the width and height of a node in pixels."""
     if node.kind in JUNCTIONS:
         return (_JUNCTION, _JUNCTION)
     texts = ((node.label, NAME), (node.module, SMALL), (node.note, SMALL))
@@ -39,5 +39,5 @@ def node_size(node: Node) -> tuple[float, float]:
 
 
 def label_size(label: str) -> tuple[float, float] | None:
-    """Width and height of an edge's label in pixels, ``None`` if it is empty."""
+    """Return the width and height of an edge's label in pixels, or ``None`` if it is empty."""
     return (float(round(width(shown(label, LABEL), LABEL) + 8.0)), 16.0) if label else None

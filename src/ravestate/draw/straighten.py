@@ -1,30 +1,30 @@
-"""Take the small steps out of lines that are almost straight.
+"""Remove small steps from lines that are almost straight.
 
-The middle of four alignments is seldom one of them. Here vertices that already stand in line move
-together, into free space only, where that straightens a line and makes no other notably longer.
+The average of four alignments is rarely one of them. Here, aligned vertices move together, and only into free space. They
+move if this straightens a line and makes no other line much longer.
 """
 
 from __future__ import annotations
 
 from itertools import pairwise
 
-from ravestate.draw.coordinates import separation
-from ravestate.draw.layered import Layered
+from ravestate.draw.brandes_koepf import separation
+from ravestate.draw.layered import LayeredGraph
 
 __all__ = ["straighten"]
 
-_BEND = 60.0  # pixels of length that one step less is worth
+_BEND = 60.0  # pixels of length that count as much as a step
 _ROUNDS = 4
 _LEVEL = 0.01
 
 
-def straighten(graph: Layered, middle: list[float]) -> None:
-    """Move the vertices' middles, in place."""
+def straighten(graph: LayeredGraph, middle: list[float]) -> None:
+    """Move the middles of the vertices, in place."""
     _Straightener(graph, middle).run()
 
 
 class _Straightener:
-    def __init__(self, graph: Layered, middle: list[float]) -> None:
+    def __init__(self, graph: LayeredGraph, middle: list[float]) -> None:
         self.graph = graph
         self.middle = middle
         self.above = [-1] * len(middle)
@@ -69,13 +69,13 @@ class _Straightener:
                 return
 
     def step(self, segment: int) -> float:
-        """By how much the high end of a segment stands lower than its low end."""
+        """Return how far the right end of a segment is below its left end."""
         low, high = self.graph.segments[segment]
         p, q = self.graph.ports[low], self.graph.ports[high]
         return self.middle[q.vertex] + q.offset - self.middle[p.vertex] - p.offset
 
     def gain(self, vertex: int, by: float) -> float:
-        """What moving the block of a vertex saves; negative if it has no room."""
+        """Return the cost that moving the block of a vertex saves; negative if there is no room."""
         block = self.block[vertex]
         saved = 0.0
         for v in self.members[block]:

@@ -1,7 +1,7 @@
 """Colours, dashes and heads of the notation. Slots are cyan, rules red, signals green, as in the paper.
 
-No kind is told by its colour alone: slots have double sides, signals round corners, and each kind of
-edge has a line and a head of its own. The dark colours apply where a viewer asks for them.
+Shapes differ too, for readers who cannot tell the colours apart. Slots have double sides, signals round corners, and each
+kind of edge has its own line and head. The dark colours apply if the viewer asks for them.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ Head = Literal["full", "hollow", "open"]
 
 @dataclass(frozen=True, slots=True)
 class Paint:
-    """One colour on light and on dark ground."""
+    """One colour on a light and on a dark background."""
 
     light: str
     dark: str
@@ -26,7 +26,7 @@ class Paint:
 
 @dataclass(frozen=True, slots=True)
 class EdgeStyle:
-    """How a kind of edge looks: colour, width in pixels, dashes (SVG's notation; empty: none) and head."""
+    """The style of a kind of edge: colour, width in pixels, dashes (in SVG's notation, or empty) and head."""
 
     paint: Paint
     width: float
@@ -60,11 +60,11 @@ EDGE_STYLES: dict[EdgeKind, EdgeStyle] = {
     "condition": EdgeStyle(_INK, 1.6, "", "open"),
     "condition_detached": EdgeStyle(_INK, 2.0, "0.1 5", "hollow"),
 }
-"""How each kind of edge looks. Dashes of no length are dots, as line ends are round."""
+"""The style of each kind of edge. Dashes of length 0.1 look like dots, since line ends are round."""
 
 
 def stylesheet() -> str:
-    """The CSS of a standalone SVG; every rule is kept to elements below class ``srs``."""
+    """Return the CSS of a standalone SVG. Its rules apply to elements below class ``srs`` alone."""
     rules: list[tuple[str, str, Paint, str]] = [
         (".srs-paper", "fill", PAPER, ""),
         (".srs text", "fill", TEXT, f"font-family:{_FONTS};font-size:13px"),

@@ -1,4 +1,4 @@
-"""The diagram as a standalone SVG: nothing to install, nothing to load, light or dark as the viewer wishes."""
+"""The diagram as a standalone SVG: it loads nothing, and follows the viewer's light or dark mode."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from ravestate.draw.text import clean
 __all__ = ["svg"]
 
 _MARGIN = 24.0
-_SENTENCES = 60  # edges that the description spells out
+_SENTENCES = 60  # edges in the description
 
 _PLURALS: tuple[tuple[NodeKind, str, str], ...] = (
     ("slot", "slot", "slots"),
@@ -28,11 +28,11 @@ _PLURALS: tuple[tuple[NodeKind, str, str], ...] = (
 
 
 def svg(diagram: Diagram) -> str:
-    """Draw a diagram. The same diagram gives the same bytes.
+    """Return a diagram as SVG. The same diagram gives the same bytes.
 
     Returns:
-        An XML document (UTF-8 when encoded), with a title and a description for screen readers, and a
-        title for every node and edge.
+        An XML document, to be encoded as UTF-8. It has a title and a description for screen readers, and a title for each
+        node and edge.
     """
     layout = lay_out(
         diagram, {n.id: node_size(n) for n in diagram.nodes}, [label_size(e.label) for e in diagram.edges]
@@ -104,7 +104,7 @@ def _label(edge: Edge, box: Box, nodes: dict[str, Node]) -> str:
 
 
 def _sentence(edge: Edge, nodes: dict[str, Node]) -> str:
-    """An edge in words, as the paper's table has them: subject, verb, object."""
+    """Return an edge in words, after the paper's table: subject, verb, object."""
     source, target = nodes[edge.source], nodes[edge.target]
     if edge.kind == "reads":
         words = f"{_name(target)} reads {_name(source)}"

@@ -1,7 +1,6 @@
-"""How wide a text will be, without any font at hand.
+"""The width of a text, estimated without a font.
 
-A viewer picks whichever sans serif it has, so the widths here are those of a broad one: a text may
-leave some room in its box, but does not leave the box.
+The viewer picks the sans serif font. The widths here are those of a broad one, so that a text always fits into its box.
 """
 
 from __future__ import annotations
@@ -33,7 +32,7 @@ def width(text: str, size: float) -> float:
 
 
 def shorten(text: str, size: float, limit: float) -> str:
-    """Leave out the middle of a text that would be wider than `limit` pixels: both ends tell names apart."""
+    """Cut the middle out of a text that is wider than `limit` pixels. Names often differ at one end."""
     if width(text, size) <= limit:
         return text
     room = limit - width("…", size)
@@ -50,7 +49,7 @@ def shorten(text: str, size: float, limit: float) -> str:
 
 
 def clean(text: str) -> str:
-    """Replace by U+FFFD what no text format can carry, what breaks lines, and what turns the direction of reading."""
+    """Replace control characters, line breaks, noncharacters and direction marks by U+FFFD."""
     return "".join("\ufffd" if _unprintable(character) else character for character in text)
 
 

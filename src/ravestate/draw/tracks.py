@@ -1,8 +1,8 @@
-"""The space between two layers: which line turns where.
+"""Orthogonal routing between two layers: the track on which each line turns.
 
-Segments that leave one port, or that enter one port, form a net: one vertical line with stubs to both
-sides. Nets get tracks from left to right. Two wishes order them: the stubs of different nets must not
-lie upon each other (strong), and few stubs should cross foreign verticals (weak).
+Segments that leave or enter one port form a net: one vertical line with stubs to both sides. Nets get tracks from left to
+right. Two constraints order them: the stubs of different nets must not overlap (strong), and few stubs should cross the
+verticals of other nets (weak).
 """
 
 from __future__ import annotations
@@ -10,22 +10,22 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-from ravestate.draw.acyclic import STRONG, backward
+from ravestate.draw.acyclic import STRONG, feedback_arcs
 
 __all__ = ["Segment", "Tracks", "tracks"]
 
 Segment = tuple[int, int, float, float]
-"""Its port on the left, its port on the right, and how far down each stands."""
+"""The port on the left, the port on the right, and the y coordinates of both."""
 
-_NEAR = 5.0  # stubs nearer than this look like one line
-_APART = 7.0  # least distance of two verticals on one track
+_NEAR = 5.0  # pixels: closer stubs look like one line
+_APART = 7.0  # pixels: least distance of two verticals on one track
 _LEVEL = 0.01
-_TOUCHING = 4 * STRONG  # far above what crossings may add up to
+_TOUCHING = 4 * STRONG  # far above the sum of all crossings
 
 
 @dataclass(slots=True)
 class Tracks:
-    """For each segment its track, or ``None`` where it runs straight (or, rarely, slantwise)."""
+    """The track of each segment, or ``None`` for a straight line (rarely, for a slanted one)."""
 
     count: int
     of: list[int | None]
@@ -41,7 +41,7 @@ class _Net:
 
 
 def tracks(segments: Sequence[Segment]) -> Tracks:
-    """Give the segments of one gap their tracks."""
+    """Return the tracks of the segments between two layers."""
     nets = _nets(segments)
     found = Tracks(0, [None] * len(segments))
     if not nets:
@@ -67,10 +67,10 @@ def tracks(segments: Sequence[Segment]) -> Tracks:
     slanted: set[int] = set()
     after: list[list[int]] = [[] for _ in nets]
     waiting = [0] * len(nets)
-    for (a, b, weight), turned in zip(wishes, backward(len(nets), wishes), strict=True):
-        if turned and weight >= STRONG:
+    for (a, b, weight), is_reversed in zip(wishes, feedback_arcs(len(nets), wishes), strict=True):
+        if is_reversed and weight >= STRONG:
             slanted |= _offending(nets[a], nets[b], segments, joined)
-        u, v = (b, a) if turned else (a, b)
+        u, v = (b, a) if is_reversed else (a, b)
         after[u].append(v)
         waiting[v] += 1
     place = [-1] * len(nets)
@@ -118,7 +118,7 @@ def _nets(segments: Sequence[Segment]) -> list[_Net]:
 
 
 def _offending(a: _Net, b: _Net, segments: Sequence[Segment], joined: set[tuple[int, int]]) -> set[int]:
-    """The segments that lie upon each other's stubs with `a` not on the left of `b`: of each pair the fewer."""
+    """Return the segments whose stubs overlap unless `a` is on the left of `b`: the smaller group of each pair."""
     found: set[int] = set()
     for p, y in a.left.items():
         for q, z in b.right.items():
@@ -130,7 +130,7 @@ def _offending(a: _Net, b: _Net, segments: Sequence[Segment], joined: set[tuple[
 
 
 def _cost(a: _Net, b: _Net, joined: set[tuple[int, int]]) -> int:
-    """What it costs to have `a` on the left of `b`."""
+    """Return the cost of `a` on the left of `b`."""
     cost = 0
     for p, y in b.left.items():
         if a.top < y < a.bottom and p not in a.left:

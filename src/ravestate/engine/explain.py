@@ -133,7 +133,10 @@ def _clause(engine: Engine, clause: Clause) -> ClauseState:
     return ClauseState(
         clause.source,
         tuple(signal.name for signal in clause.signals),
-        tuple(tuple(sorted(signal.name for signal in pathway)) for pathway in engine.policy.pathways.of_clause(clause)),
+        tuple(
+            tuple(sorted(signal.name for signal in pathway))
+            for pathway in engine.policy.pathways.of_clause(clause)
+        ),
         clause.utility,
         engine.effective(clause),
         tuple((str(guard), engine.opens(slot, guard)) for slot, guard in clause.guards),

@@ -1,4 +1,4 @@
-"""Utility (L9): what a clause says about the situation, in nats, and what that makes of it in a contest."""
+"""Utility (L9): the information of a clause about the situation, in nats."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def assign_utilities(signals: Sequence[SignalPlan], rules: Sequence[RulePlan], c
     least = Least(completion)
     of = causes.components.of
     for rule in rules:
-        # What a rule raises leads to what its clauses want: to raise what leads there too makes a cycle.
+        # A clause is cyclic if a signal that its rule raises leads to one of its needs.
         raised = set[int]() if rule.detached else {of[signal] for signal in rule.raises}
         for clause in rule.clauses:
             firm = [need.signal.index for need in clause.needs if not need.detached]
@@ -39,7 +39,7 @@ def assign_utilities(signals: Sequence[SignalPlan], rules: Sequence[RulePlan], c
             places = [completion.place[s] for s in firm]
             looked_places = [completion.place[s] for s in looked_at]
             cost, clause.least = least.pathway(places, looked_places)
-            # Rounded, as predicates add what is no multiple of the unit.
+            # Rounded, because the information of a predicate is no multiple of the unit.
             clause.utility = round(cost / UNIT + predicates * PREDICATE, 12)
             clause.base = (clause.utility or NO_INFORMATION) * rule.weight
     return completion

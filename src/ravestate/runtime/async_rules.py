@@ -52,12 +52,12 @@ class AsyncRules:
         self._grace: dict[RuleContext, asyncio.TimerHandle] = {}
         self._spare: EagerTask | None = None
 
-    def start(self, ctx: RuleContext, rule: Rule[Any, Any]) -> None:
+    def start(self, ctx: RuleContext) -> None:
         """Take the first step of a rule's function, and leave the other steps to a task."""
         task = self._spare
         if task is None:
             task = self._spare = EagerTask(self._loop, self._timer)
-        began = self._timer.begin()
+        rule, began = ctx.rule, self._timer.begin()
         try:
             task.first_step(rule.function(ctx), rule)
         except StopIteration as stop:

@@ -22,8 +22,8 @@ FRESH = 0.01
 """Seconds for which one reading of the thread's CPU time serves as the start of further steps."""
 
 ASLEEP = 0.05
-"""Seconds per sleep from which on a thread chose to wait. Python makes a thread that waits for the interpreter's lock
-sleep again and again, for about 5 ms each time."""
+"""Mean seconds per sleep above which a step counts as sleeping. A thread that waits for the interpreter's lock sleeps
+again and again, for about 5 ms each time."""
 
 log = logging.getLogger("ravestate")
 
@@ -31,13 +31,13 @@ log = logging.getLogger("ravestate")
 class StepTimer:
     """Measures the steps of async rules, and warns of those that block the loop; used on the loop's thread alone.
 
-    A step blocks the loop if it computes, or sleeps, for longer than `BLOCKING`. Time in which the thread merely waits
-    for a processor or for the interpreter's lock does not count, so a busy machine raises no alarm. The system says how
-    often a thread slept by its own choice and how often it had to make room for another. If both happened, the step
-    gets the benefit of the doubt. Systems without these counts (Windows, macOS) report computing steps only.
+    A step blocks the loop if it computes, or sleeps, for longer than `BLOCKING`. Time in which the thread waits for a
+    processor or for the interpreter's lock does not count: a busy machine raises no alarm. The system counts how often
+    the thread slept by its own choice, and how often it had to make room for another. If it had to, the step gets the
+    benefit of the doubt. On systems without these counts (Windows, macOS), only computing counts.
 
-    Reading the CPU time costs as much as a short rule. One reading therefore serves all steps that begin within
-    `FRESH` seconds, which is how far a reported time may be too long.
+    Reading the CPU time costs as much as a short rule. One reading serves all steps that begin within `FRESH` seconds,
+    so a reported time may be that much too long.
     """
 
     __slots__ = ("_cpu", "_fresh_until", "_sleeps")
@@ -60,28 +60,21 @@ class StepTimer:
         """Warn if the step that began then has blocked the loop."""
         took = perf_counter() - began
         if took > BLOCKING:
-            self._judge(rule, took)
+            seconds, manner = self._judge(took)
+            if seconds > BLOCKING:
+                log.warning(
+                    "rule %s (%s) blocked the loop for %.0f ms by %s: make it a plain function (it then runs in a "
+                    "thread), or await what takes so long",
+                    *(rule.name, rule.origin, 1000 * seconds, manner),
+                )
 
-    def _judge(self, rule: Rule[Any, Any], took: float) -> None:
+    def _judge(self, took: float) -> tuple[float, str]:
         computed = min(took, thread_time() - self._cpu)
         if computed > BLOCKING:
-            advice = "make it a plain function (it then runs in a thread)"
-            _warn(rule, computed, f"computing: {advice}, or divide the work by await ctx.sleep(0)")
-            return
+            return computed, "computing"
         chosen, forced = (now - before for now, before in zip(_sleeps(), self._sleeps, strict=True))
         slept = took - computed
-        if chosen and not forced and slept / chosen > ASLEEP:
-            _warn(
-                rule,
-                slept,
-                "waiting: await what takes so long, or make it a plain function (it then runs in a thread)",
-            )
-
-
-def _warn(rule: Rule[Any, Any], seconds: float, what: str) -> None:
-    log.warning(
-        "rule %s (%s) blocked the loop for %.0f ms by %s", rule.name, rule.origin, 1000 * seconds, what
-    )
+        return slept if chosen and not forced and slept / chosen > ASLEEP else 0.0, "sleeping"
 
 
 def _sleeps() -> tuple[int, int]:

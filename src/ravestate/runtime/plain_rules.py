@@ -10,7 +10,6 @@ from collections.abc import Callable, Iterable
 from time import monotonic
 from typing import Any
 
-from ravestate.declare.rule import Rule
 from ravestate.runtime.rule_context import RuleContext
 from ravestate.runtime.workers import Job, JobQueue
 
@@ -18,9 +17,6 @@ __all__ = ["STARVED", "PlainRules"]
 
 STARVED = 5.0
 """Seconds that a plain function waits for a worker thread before a warning names the rules that hold the threads."""
-
-MANY = 8
-"""Rules that a warning names."""
 
 log = logging.getLogger("ravestate")
 
@@ -46,10 +42,10 @@ class PlainRules:
         self._alarm: asyncio.TimerHandle | None = None
         self._warned = False
 
-    def start(self, ctx: RuleContext, rule: Rule[Any, Any]) -> None:
+    def start(self, ctx: RuleContext) -> None:
         """Call a rule's function in a worker thread."""
         try:
-            self.runs[ctx] = self._queue.submit(functools.partial(self._call, ctx, rule), rule.name)
+            self.runs[ctx] = self._queue.submit(functools.partial(self._call, ctx), ctx.rule.name)
         except RuntimeError as error:
             self._finish(ctx, None, error)
             return
@@ -67,13 +63,13 @@ class PlainRules:
         if self._alarm is not None:
             self._alarm.cancel()
 
-    def _call(self, ctx: RuleContext, rule: Rule[Any, Any]) -> None:
+    def _call(self, ctx: RuleContext) -> None:
         """Call the function; this runs in a worker thread."""
         if ctx.ended:
             return  # it was cancelled before there was a thread for it
         result, exception = None, None
         try:
-            result = rule.function(ctx)
+            result = ctx.rule.function(ctx)
         except BaseException as raised:  # a rule may raise anything
             exception = raised
         with contextlib.suppress(RuntimeError):  # the context has ended, and its loop is closed
@@ -94,25 +90,20 @@ class PlainRules:
             self._warned = True
             holders = self._queue.holders()
             log.warning(
-                "plain functions have waited for a worker thread for up to %.0f s: %s. All %d threads are taken by %s. "
-                "Give a rule that may hang a timeout=, or write async def",
-                longest,
-                _listed(waiting),
-                len(holders),
-                _listed(holders, for_seconds=True),
+                "plain functions wait for a worker thread: %s. All %d threads are taken by %s. Give a rule that may hang a "
+                "timeout=, or write async def",
+                *(_listed(waiting), len(holders), _listed(holders)),
             )
         delay = STARVED if self._warned else STARVED - longest
         self._alarm = self._loop.call_later(delay, self._watch)
 
 
-def _listed(jobs: Iterable[Job], *, for_seconds: bool = False) -> str:
-    """List the rules of jobs, e.g. ``a:b (3 runs, up to 12 s)``."""
+def _listed(jobs: Iterable[Job]) -> str:
+    """List the rules of jobs, e.g. ``a:b (3 runs, up to 12 s), c:d (1 run, up to 5 s)``."""
     by_name: dict[str, list[float]] = {}
-    now = monotonic()
     for job in jobs:
-        by_name.setdefault(job.name, []).append(now - (job.made if job.began is None else job.began))
-    names = [
-        f"{name} ({len(times)} run{'s'[: len(times) > 1]}{f', up to {max(times):.0f} s' if for_seconds else ''})"
+        by_name.setdefault(job.name, []).append(monotonic() - (job.began or job.made))
+    return ", ".join(
+        f"{name} ({len(times)} run{'s'[: len(times) > 1]}, up to {max(times):.0f} s)"
         for name, times in by_name.items()
-    ]
-    return ", ".join(names[:MANY]) + (f" and {len(names) - MANY} more" if len(names) > MANY else "")
+    )

@@ -25,7 +25,7 @@ V = TypeVar("V")
 
 
 class Host(Protocol):
-    """What a rule context needs of the context that it belongs to.
+    """The part of a running context that its rule contexts use.
 
     Attributes:
         settings: The settings of each module, by its name.
@@ -60,10 +60,10 @@ class Host(Protocol):
 
 
 class RuleContext:
-    """Handed to every rule function.
+    """The argument of a rule function: the function reads, writes and emits through it.
 
-    ``ctx[slot]`` reads a slot as it stood when the rule started, own writes included; ``ctx[slot] = value``
-    writes it, which takes effect, and signals, at once.
+    ``ctx[slot]`` reads a slot: its value when the rule started, or the rule's own last write. ``ctx[slot] = value``
+    writes it; the write takes effect, and signals, at once.
     """
 
     __slots__ = ("_host", "_payloads", "_values", "cancelled", "ended", "rule", "run")
@@ -89,7 +89,7 @@ class RuleContext:
         """Read a slot.
 
         Raises:
-            UndeclaredError: The rule declares neither ``reads`` nor ``writes`` of it.
+            UndeclaredError: The rule declares neither ``reads`` nor ``writes`` of the slot.
         """
         try:
             value = self._values[slot.name]
@@ -129,7 +129,7 @@ class RuleContext:
     @overload
     def payload(self, signal: Signal[Any]) -> Any: ...
     def payload(self, signal: Signal[Any]) -> Any:
-        """The payload of the signal that the rule stands on; None if another clause of its condition fired.
+        """Return the payload of a signal that started the rule; None if another clause of its condition did.
 
         Raises:
             UndeclaredError: The signal is not part of the rule's condition.
@@ -164,12 +164,12 @@ class RuleContext:
         self._host.receive(Emit(signal.name, payload, self.run))
 
     def wipe(self, signal: Signal[Any]) -> None:
-        """Withdraw the live spikes of a signal and all that they have caused (L20)."""
+        """Withdraw the live spikes of a signal, and all spikes that they have caused (L20)."""
         self._alive()
         self._host.receive(Wipe(signal.name, self.run))
 
     def add_rule(self, rule: Rule[Any, Any]) -> None:
-        """Add a rule to this context alone, over the signals and slots that it has.
+        """Add a rule over this context's signals and slots, to this context alone.
 
         Raises:
             DeclarationErrors: The rule does not fit.
@@ -186,16 +186,16 @@ class RuleContext:
         await self._host.quiet()
 
     def stop(self, failure: RavestateError | None = None) -> None:
-        """Ask the context to end: ``rs.shutdown`` is raised, and what runs is cancelled after it.
+        """Ask the context to end: it raises ``rs.shutdown``, and then cancels the rules that run.
 
         Args:
-            failure: Why it cannot go on, where that is no end in order; ``rs.run`` raises it when all has ended.
+            failure: The reason if the agent cannot go on; ``rs.run`` raises it after the end.
         """
         self._host.stop(failure)
 
     @property
     def now(self) -> float:
-        """Seconds since the context began."""
+        """The seconds since the context started."""
         return self._host.clock.now()
 
     @property
@@ -210,7 +210,7 @@ class RuleContext:
 
     @property
     def random(self) -> random.Random:
-        """Random numbers from the context's seed: the only ones that a rule should use."""
+        """Random numbers from the context's seed; a rule should use no others, so that runs can be repeated."""
         return self._host.random
 
     def _alive(self) -> None:
@@ -245,9 +245,9 @@ class RuleContext:
 
 
 class Items(Mapping[str, V], Generic[V]):
-    """A collection as a rule sees it: a mapping of keys to items, with `add` and `remove`.
+    """A collection in a rule: a mapping of keys to items, with `add` and `remove`.
 
-    It shows what the rule itself has changed; who goes through it goes through what it was when that began.
+    It shows the rule's own changes. An iteration goes over the items as they were when it began.
     """
 
     __slots__ = ("_ctx", "_slot")
@@ -261,7 +261,7 @@ class Items(Mapping[str, V], Generic[V]):
         return self._ctx._values[self._slot.name]  # pyright: ignore[reportPrivateUsage]
 
     def add(self, key: str, item: V) -> None:
-        """Set an item; signals ``added`` if the key is new, and ``changed`` if anything is.
+        """Set an item. This signals ``added`` if the key is new, and ``changed`` if the item differs.
 
         Raises:
             UndeclaredError: The rule does not declare ``writes`` of the collection.
@@ -270,7 +270,7 @@ class Items(Mapping[str, V], Generic[V]):
         self._ctx._host.receive(Store(self._slot.name, key, item, self._ctx.run))  # pyright: ignore[reportPrivateUsage]
 
     def remove(self, key: str) -> None:
-        """Remove an item if it is there; signals ``removed`` and ``changed``.
+        """Remove an item if it is there. This signals ``removed`` and ``changed``.
 
         Raises:
             UndeclaredError: The rule does not declare ``writes`` of the collection.
@@ -279,7 +279,7 @@ class Items(Mapping[str, V], Generic[V]):
         self._ctx._host.receive(Discard(self._slot.name, key, self._ctx.run))  # pyright: ignore[reportPrivateUsage]
 
     def _own(self) -> dict[str, V]:
-        """What may be changed: until the first change, the rule has what others have as well."""
+        """Return the rule's own copy of the items; the first change makes it."""
         ctx = self._ctx
         if self._slot not in ctx.rule.writes:  # pyright: ignore[reportPrivateUsage]
             ctx._refuse("wrote", "writes", self._slot, ctx.rule.writes)  # pyright: ignore[reportPrivateUsage]
@@ -309,15 +309,15 @@ class Items(Mapping[str, V], Generic[V]):
         return iter(tuple(self._items))
 
     def keys(self) -> KeysView[str]:
-        """The keys, as they are now."""
+        """Return the keys as they are now."""
         return dict(self._items).keys()
 
     def values(self) -> ValuesView[V]:
-        """The items, as they are now."""
+        """Return the items as they are now."""
         return dict(self._items).values()
 
     def items(self) -> ItemsView[str, V]:
-        """Keys and items, as they are now."""
+        """Return the keys and items as they are now."""
         return dict(self._items).items()
 
     def __len__(self) -> int:

@@ -13,6 +13,7 @@ from time import perf_counter
 from typing import Any
 
 from ravestate.declare.rule import Rule
+from ravestate.declare.wording import short
 from ravestate.engine.effects import Cancel, Effect, Ended, Failed, Run, Spiked
 from ravestate.engine.engine import Engine
 from ravestate.engine.events import AddRule, Event, Finish
@@ -22,7 +23,7 @@ from ravestate.errors import EngineError, PlatformError, RavestateError, RunEnde
 from ravestate.policy.policy import Policy
 from ravestate.runtime.async_rules import AsyncRules
 from ravestate.runtime.clock import Clock
-from ravestate.runtime.ending import ending, short
+from ravestate.runtime.ending import ending
 from ravestate.runtime.hooks import Hooks
 from ravestate.runtime.journal import Taken
 from ravestate.runtime.listeners import Listeners
@@ -189,7 +190,9 @@ class Runner:
         if began != self._instant:
             self._rounds = 0
         self._instant = began
-        if self._hooks.on_endless is not None and self._rounds > ENDLESS:
+        if self._hooks.on_endless is not None and (
+            self._rounds > ENDLESS or engine.late_turns > ENDLESS // 20
+        ):
             self.closed = True
             self._hooks.on_endless(self._last_run)
             return False
@@ -219,9 +222,7 @@ class Runner:
                     break
             else:
                 self._schedule()
-        except (
-            BaseException
-        ):  # a rule has interrupted the process; the others go on for as long as the loop does
+        except BaseException:  # a rule has interrupted the process: the others go on as long as the loop does
             self._schedule()
             raise
         finally:
@@ -245,15 +246,9 @@ class Runner:
     def _failed(self, effect: Failed) -> None:
         if self._hooks.on_failed is not None:
             self._hooks.on_failed(effect.rule, effect.exception)
-        says_all = isinstance(
-            effect.exception, PlatformError
-        )  # what to mend in the world, not where in the code
-        log.error(
-            "rule %s failed: %s",
-            effect.rule,
-            said(effect.exception),
-            exc_info=None if says_all else effect.exception,
-        )
+        # The message of a platform error says what to mend in the world; a place in the code would not help.
+        trace = None if isinstance(effect.exception, PlatformError) else effect.exception
+        log.error("rule %s failed: %s", effect.rule, said(effect.exception), exc_info=trace)
 
     def _break(self, error: Exception) -> None:
         """End the context and say why: the engine itself has failed, and nothing would work any more."""
@@ -342,9 +337,9 @@ class Runner:
         self._last_run = rule.name
         ctx = self._contexts[effect.run] = RuleContext(self, effect)
         if rule.is_async:
-            self._async.start(ctx, rule)
+            self._async.start(ctx)
         else:
-            self._plain.start(ctx, rule)
+            self._plain.start(ctx)
 
     def _finish(self, ctx: RuleContext, result: Any, exception: BaseException | None) -> None:
         """Report how a run has ended (L18)."""

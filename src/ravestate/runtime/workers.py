@@ -68,7 +68,7 @@ class ThreadPool:
         self.contexts = 0
         self.at_work: set[Job] = set()
         self._jobs: deque[Job] = deque()
-        self._idle = 0
+        self._free = 0
         self._threads = 0
         self._number = 0
 
@@ -79,7 +79,7 @@ class ThreadPool:
             RuntimeError: The system refuses a thread, and the pool has none that could do the job later.
         """
         self._jobs.append(job)
-        if self._idle >= len(self._jobs):
+        if self._free >= len(self._jobs):
             self.change.notify()
         elif self._threads < THREADS:
             self._number += 1
@@ -92,10 +92,11 @@ class ThreadPool:
                     raise
             else:
                 self._threads += 1
+                self._free += 1
 
     def is_full(self) -> bool:
-        """Whether there are more jobs than idle threads; the caller holds `change`."""
-        return len(self._jobs) > self._idle
+        """Whether there are more jobs than free threads; the caller holds `change`."""
+        return len(self._jobs) > self._free
 
     def _live(self) -> None:
         while (job := self._next()) is not None:
@@ -103,6 +104,7 @@ class ThreadPool:
                 job.call()
             finally:
                 with self.change:
+                    self._free += 1
                     self.at_work.remove(job)
                     self._jobs.extend(job.queue.done(job))  # this thread is free for it
                     if not self.at_work:
@@ -113,12 +115,12 @@ class ThreadPool:
         """Wait for a job; return None if the thread is to end."""
         with self.change:
             while not self._jobs:
-                self._idle += 1
                 in_time = self.contexts > 0 and self.change.wait(IDLE)
-                self._idle -= 1
                 if not self._jobs and not (in_time and self.contexts):
                     self._threads -= 1
+                    self._free -= 1
                     return None
+            self._free -= 1
             job = self._jobs.popleft()
             job.began = monotonic()
             self.at_work.add(job)

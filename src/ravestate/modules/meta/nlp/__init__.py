@@ -1,4 +1,4 @@
-"""What the user's words are made of and what they are about: words, names, triples, questions, yes and no."""
+"""The analysis of the user's words: words, names, triples, questions, yes and no."""
 
 from __future__ import annotations
 

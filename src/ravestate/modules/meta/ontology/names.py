@@ -13,34 +13,32 @@ from ravestate.errors import RavestateError
 
 from .memory import Memory
 
-__all__ = ["Settings", "memory", "module"]
-
 
 class Settings(rs.Settings):
-    """Where memory is, and what there may be in it."""
+    """The place of memory, and the types of its nodes."""
 
     types: tuple[Path, ...] = ()
-    """Files of types of one's own, read after the built-in one; they add to it."""
+    """Your own files of types; they extend the built-in one."""
     path: Path | None = None
-    """The file of memory; by default ``ravestate/<agent>/memory.lbug`` in the user's data folder."""
+    """The file of memory. Default: ``ravestate/<agent>/memory.lbug`` in the user's data folder."""
     agent: Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9._ -]*$")] = "default"
-    """Whose memory it is: each agent has a file of its own, where `path` is not given."""
+    """The agent's name: each agent has its own file, unless `path` is given."""
     url: str | None = None
-    """A server that speaks Bolt and Cypher, instead of a file: ``bolt://localhost:7687``."""
+    """A server that speaks Bolt and Cypher, in place of a file: ``bolt://localhost:7687``."""
     user: str = "neo4j"
-    """Who signs in at the server."""
+    """The user name at the server."""
     password: SecretStr | None = None
-    """The password there; best from the environment, ``RAVESTATE_ONTOLOGY_PASSWORD``."""
+    """The password at the server. Set it in the environment: ``RAVESTATE_ONTOLOGY_PASSWORD``."""
     database: str | None = None
-    """The database on the server, which should be memory's own; by default the server's."""
+    """The database on the server, for memory alone. Default: the server's default database."""
     timeout: Annotated[float, Field(gt=0)] = 10.0
-    """Seconds until a server that does not answer counts as absent."""
+    """Seconds to wait for the server's answers."""
 
     @field_validator("types")
     @classmethod
     def _can_be_read(cls, types: tuple[Path, ...]) -> tuple[Path, ...]:
-        """A mistake in a file is told before anything runs."""
-        from .places import types_in
+        """Report mistakes in the files before anything runs."""
+        from .type_files import types_in
 
         try:
             types_in(types)
@@ -52,4 +50,4 @@ class Settings(rs.Settings):
 module = rs.Module("ontology", settings=Settings)
 
 memory: rs.Slot[Memory | None] = module.slot("memory", None, input=True)
-"""What is known. None before ``rs.startup``, and where memory cannot be opened."""
+"""The open memory. None before ``rs.startup``, and if memory cannot be opened."""

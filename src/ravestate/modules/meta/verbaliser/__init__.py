@@ -1,4 +1,4 @@
-"""Intents to phrases: what is meant is worded from files of phrases."""
+"""Intents to phrases: the agent says an intent in the words of a file of phrases."""
 
 from __future__ import annotations
 

@@ -9,22 +9,20 @@ from ravestate.modules import rawio
 
 from .intents import Intent
 
-__all__ = ["Settings", "intent", "last", "module"]
-
 
 class Settings(rs.Settings):
-    """In which language an agent speaks, and with whose words."""
+    """The language of the agent, and its phrases."""
 
     language: str = "en"
-    """As in ``de`` or ``de-AT``; an intent without phrases in it is worded in English."""
+    """The language: ``de`` or ``de-AT``. An intent without phrases in it is said in English."""
     phrases: tuple[Path, ...] = ()
-    """Files of phrases of one's own, read after those of the modules; they replace their phrases, or add to them."""
+    """Your own files of phrases. They replace the modules' phrases, or add to them."""
 
 
 module = rs.Module("verbaliser", requires=[rawio], settings=Settings)
 
 intent: rs.Slot[str | Intent | None] = module.slot("intent", None, type=str | Intent, always=True)
-"""What the agent means to say: the name of an intent, or an `Intent` with parameters. It is worded at once."""
+"""The agent's next intent: a name, or an `Intent` with parameters. The agent says it at once."""
 
 last: rs.Collection[str] = module.collection("last")
-"""For each intent the phrase that was chosen last, before its parameters were filled in."""
+"""The last template of each intent."""

@@ -1,4 +1,4 @@
-"""What the agent feels: shy, surprised, happy, affectionate or sad, by itself or because of what it is told."""
+"""The agent's feelings: shy, surprised, happy, affectionate, sad; spontaneous, or caused by the user's words."""
 
 from __future__ import annotations
 

@@ -11,44 +11,42 @@ from ravestate.modules import interloc, rawio
 
 from .feeling import Feeling
 
-__all__ = ["Settings", "affectionate", "felt", "happy", "module", "sad", "shy", "surprised"]
-
 Probability = Annotated[float, Field(ge=0, le=1)]
 
 
 class Settings(rs.Settings):
-    """How easily the agent is moved, and whether it shows that in text."""
+    """The agent's temperament, and its emoji."""
 
     shy: Probability = 0.1
-    """How likely it is shy when something is said about it."""
+    """The probability to be shy when the user talks about the agent."""
     surprised: Probability = 0.03
-    """How likely it is surprised when it is asked something."""
+    """The probability to be surprised by a question."""
     happy: Probability = 0.25
-    """How likely it is happy when it is greeted or thanked."""
+    """The probability to be happy about a greeting or thanks."""
     affectionate: Probability = 0.25
-    """How likely it is affectionate when somebody says goodbye to it."""
+    """The probability to be affectionate at a goodbye."""
     names: tuple[str, ...] = ()
-    """What the agent is called, by default ``interloc.agent``: "Rosie is clever" is then as good as "you are clever"."""
+    """The agent's names. Default: ``interloc.agent``. "Rosie is clever" means the same as "you are clever"."""
     emoji: bool = True
-    """Whether feelings show as emoji in ``rawio.output``; off where the agent has a face or speaks aloud."""
+    """Whether feelings show as emoji in ``rawio.output``. Switch it off for an agent with a face or a voice."""
 
 
 module = rs.Module("emotion", requires=[rawio, interloc], settings=Settings)
 
 shy = module.signal("shy")
-"""The agent is shy: it was paid a compliment, or is the subject of the talk."""
+"""The agent is shy: the user pays it a compliment, or talks about it."""
 
 surprised = module.signal("surprised")
 """The agent is surprised."""
 
 happy = module.signal("happy")
-"""The agent is happy, for itself or with its user."""
+"""The agent is happy, by itself or with its user."""
 
 affectionate = module.signal("affectionate")
 """The agent likes its user."""
 
 sad = module.signal("sad")
-"""The agent is sad: with its user, or because it was insulted."""
+"""The agent is sad: with its user, or because of an insult."""
 
 felt: rs.Slot[Feeling | None] = module.slot("felt", None, always=True, keep="latest")
-"""What the agent felt last; None before it felt anything."""
+"""The agent's last feeling; None before the first."""

@@ -15,6 +15,7 @@ from typing import Any, cast
 from uvicorn.protocols.http.h11_impl import H11Protocol, RequestResponseCycle
 from uvicorn.protocols.utils import ClientDisconnected
 from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
+from websockets.exceptions import InvalidState
 
 __all__ = ["LimitedHTTP", "LimitedWebSocket"]
 
@@ -131,6 +132,12 @@ class LimitedWebSocket(WebSocketsSansIOProtocol):
         """Run the application, and hang up later on a client that does not close."""
         await super().run_asgi()
         self.loop.call_later(TIMEOUT, self._end_late)
+
+    def shutdown(self) -> None:
+        """Close the connection when the server stops. uvicorn fails if the client is closing it at the same moment."""
+        with contextlib.suppress(InvalidState):
+            super().shutdown()
+        self.transport.close()
 
     def _end_late(self) -> None:
         if not self.disconnected:

@@ -7,10 +7,11 @@ import threading
 from collections import Counter
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cache, lru_cache
 from importlib import import_module
 from typing import TYPE_CHECKING
 
+from ravestate.modules._bundled import ModelMissing
 from ravestate.modules._loading import LOADING
 from ravestate.modules._sentences import Encoder
 
@@ -81,8 +82,8 @@ class Router:
     def __init__(self, life: Life, encoder: Encoder | None = None) -> None:
         """`life`: its topics, and what belongs to none; `encoder`: by default the bundled one."""
         self.life = life
-        self._encoder = encoder or Encoder()
-        self._known = frozenset(plain(q) for topic in life.topics.values() for q in topic.questions)
+        self._encoder = encoder or _bundled()
+        self._known = {plain(q): topic.name for topic in life.topics.values() for q in topic.questions}
         self._lock = threading.Lock()
         self._learnt: _Learnt | None = None
 
@@ -98,7 +99,11 @@ class Router:
             if self._learnt is None:
                 with LOADING:
                     import_module("numpy")  # for all that follows
-                self._learnt = _Learnt(self.life, self._encoder)
+                pairs = [
+                    (plain(q), topic.name) for topic in self.life.topics.values() for q in topic.questions
+                ]
+                pairs += [(plain(q), OTHERS) for q in self.life.others]
+                self._learnt = _learnt(tuple(pairs), self._encoder)
 
     def route(self, utterance: str, names: Collection[str] = (), *, question: bool = False) -> Match | Miss:
         """Return what is asked about the agent, the first of several sentences that fit.
@@ -114,9 +119,19 @@ class Router:
         candidates, why = about_agent(utterance, (self.life.name, *names), self._known, question=question)
         if not candidates:
             return Miss(why)
-        self.load()
+        try:
+            self.load()
+        except ModelMissing as error:
+            return self._verbatim(candidates) or Miss(str(error))
         assert self._learnt is not None  # it is loaded
         return self._learnt.best(candidates)
+
+    def _verbatim(self, candidates: Sequence[Asked]) -> Match | None:
+        """Return the first candidate that is an example word for word."""
+        for text in (asked.text for asked in candidates):
+            if text in self._known:
+                return Match(self._known[text], text, 1.0, text, 1.0)
+        return None
 
 
 @lru_cache(maxsize=8)
@@ -125,18 +140,28 @@ def router_of(life: Life) -> Router:
     return Router(life)
 
 
+@cache
+def _bundled() -> Encoder:
+    """Return the bundled encoder, one for all routers."""
+    return Encoder()
+
+
+@lru_cache(maxsize=8)
+def _learnt(pairs: tuple[tuple[str, str], ...], encoder: Encoder) -> _Learnt:
+    """Return what is learnt from examples; lives that differ only in their phrases and facts share it."""
+    return _Learnt(pairs, encoder)
+
+
 class _Learnt:
     """What is known of the examples."""
 
-    def __init__(self, life: Life, encoder: Encoder) -> None:
+    def __init__(self, pairs: Sequence[tuple[str, str]], encoder: Encoder) -> None:
         import numpy as np
 
         self._encoder = encoder
-        pairs = [(plain(q), topic.name) for topic in life.topics.values() for q in topic.questions]
-        pairs += [(plain(q), OTHERS) for q in life.others]
         self._examples = [text for text, _ in pairs]
         self._slips = Slips({word for text in self._examples for word in text.split()})
-        self._classes = [*(name for name, topic in life.topics.items() if topic.questions), OTHERS]
+        self._classes = [*dict.fromkeys(name for _, name in pairs if name != OTHERS), OTHERS]
         self._of = np.array([self._classes.index(name) for _, name in pairs])
         self._unaddressed = np.array([not _addresses(text) for text in self._examples])
         self._meanings = encoder.encode(self._examples)

@@ -10,6 +10,7 @@ from dataclasses import replace
 import ravestate as rs
 from ravestate.errors import PlatformError, RavestateError, RuleError
 from ravestate.modules import idle, interloc, nlp, ontology, rawio, verbaliser
+from ravestate.modules._bundled import ModelMissing, warn_once
 from ravestate.modules._room import give_back
 from ravestate.modules.meta.verbaliser.intents import Intent
 
@@ -37,9 +38,12 @@ def load(ctx: rs.RuleContext) -> None:
     """Learn the topics while the agent is up already, so that the first question need not wait for it."""
     told = ctx.payload(life.changed)
     if told is not None:
-        with contextlib.suppress(PlatformError):  # which is told when it is needed
-            router_of(told).load()
-            give_back()
+        with contextlib.suppress(PlatformError):  # the first question reports it
+            try:
+                router_of(told).load()
+                give_back()
+            except ModelMissing as error:
+                warn_once(ctx.log, error)
 
 
 @module.rule(when=life.changed.detached(), reads=ontology.memory, background=True)

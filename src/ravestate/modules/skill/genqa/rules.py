@@ -8,6 +8,7 @@ from dataclasses import replace
 import ravestate as rs
 from ravestate.errors import DeclarationError, DeclarationErrors, PlatformError
 from ravestate.modules import nlp, verbaliser
+from ravestate.modules._bundled import ModelMissing, warn_once
 from ravestate.modules._room import give_back
 
 from .answering import Answer, Answerer
@@ -21,9 +22,12 @@ from .wording import intent_of, wording_rule
 @module.rule(when=rs.startup, background=True)
 def load(ctx: rs.RuleContext) -> None:
     """Open the index and load the reader while the agent is up already, so that the first question need not wait."""
-    with contextlib.suppress(PlatformError):  # which is told when it is needed
-        answerer_of(ctx.settings).load()
-        give_back()
+    with contextlib.suppress(PlatformError):  # the first question reports it
+        try:
+            answerer_of(ctx.settings).load()
+            give_back()
+        except ModelMissing as error:
+            warn_once(ctx.log, error)
 
 
 @module.rule(when=rs.startup)
@@ -59,7 +63,11 @@ def find(ctx: rs.RuleContext) -> rs.Resign | None:
     heard = completed(ctx.payload(nlp.text.changed), last)
     if heard is None:
         return rs.Resign("it refers to something that nobody has asked about")
-    answer = best_answer(answerer_of(settings), heard, settings)
+    try:
+        answer = best_answer(answerer_of(settings), heard, settings)
+    except ModelMissing as error:
+        warn_once(ctx.log, error)
+        return rs.Resign(str(error))
     if not answer.text:
         return rs.Resign(answer.reason)
     if answer.confidence < (settings.sure if short else settings.unsure):

