@@ -18,7 +18,7 @@ SCRIPT = 60_000
 
 
 async def findings(page: Page) -> list[str]:
-    """What axe finds that is serious, or worse."""
+    """Return axe's serious and critical findings."""
     if not AXE.exists():
         raise AssertionError("the check of accessibility needs axe-core: npm ci --prefix frontend")
     # As the browser's own tools do, not as a script of the page, which the page forbids.

@@ -1,4 +1,4 @@
-"""Who may come in."""
+"""The access check: hosts, origins and the token."""
 
 import asyncio
 

@@ -1,4 +1,4 @@
-"""The files of the page, as they were built: held in memory, also compressed."""
+"""The files of the built page, in memory, plain and compressed."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ KINDS = {
     ".woff2": "font/woff2",
 }
 COMPRESSED = {".woff2"}
-"""What compressing would not make smaller."""
+"""Types that are compressed already."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,10 +35,10 @@ class _File:
 
 
 class Pages:
-    """An ASGI application that serves a folder; a folder within it by its ``index.html``.
+    """An ASGI application that serves the files of a folder, with ``index.html`` for folders.
 
     Args:
-        folder: What is in it now is served, also when it changes.
+        folder: The folder; later changes in it have no effect.
     """
 
     def __init__(self, folder: Path) -> None:

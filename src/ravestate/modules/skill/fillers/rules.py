@@ -24,7 +24,7 @@ ENOUGH = 5.0
     background=True,
 )
 async def notice_no_answer(ctx: rs.RuleContext) -> None:
-    """Raise `impatient` when an answer runs long without output. `idle` sees only rules that are kept waiting."""
+    """Raise `impatient` when a rule runs long without output. (`idle` notices rules that wait.)"""
     await ctx.sleep(ctx.settings.unanswered_after)
     ctx.emit(idle.impatient)
 
