@@ -268,7 +268,7 @@ class EmbeddedStore:
                 self._files.seal()
             finally:
                 self._open()
-        except (PlatformError, RuntimeError, OSError) as error:
+        except Exception as error:  # copying a damaged page raises whatever is at hand
             log.warning(
                 "memory %s: the forgotten nodes are gone, but the file still has their bytes: %s",
                 self._path,
