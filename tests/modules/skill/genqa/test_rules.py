@@ -104,7 +104,7 @@ def test_a_question_may_refer_to_the_one_before_for_a_while(settings: dict[str, 
         sim.advance(200.0)
         sim.say("And of Peru?")
         assert sim.said[-1] == "Hm."
-        assert "refers to something" in str(sim.explain("genqa:find"))
+        assert "refers to a question" in str(sim.explain("genqa:find"))
 
 
 @pytest.mark.parametrize(

@@ -153,7 +153,7 @@ def test_a_model_that_dies_is_told_of_and_comes_back() -> None:
                 assert backend._process is not None
                 assert backend._process.pid is not None
                 os.kill(backend._process.pid, signal.SIGKILL)
-        assert "started anew" in str(failure.value)
+        assert "starts again" in str(failure.value)
         assert await answer(backend)
         await backend.close()
 

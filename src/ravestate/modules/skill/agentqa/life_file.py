@@ -180,7 +180,7 @@ def _expressions(file: str, node: yaml.Node, part: str) -> tuple[str, ...]:
 def _fact(name: str, key: str, node: yaml.Node) -> Fact | None:
     if key in COUNTED:
         instead = "born: 2024-03-01" if key == "age" else "another name"
-        raise _fault(name, node, f"{key} is not told here, but follows from elsewhere: write {instead}")
+        raise _fault(name, node, f"{key} is computed, and cannot be written here: write {instead}")
     if _is_null(node):
         return None
     if key in ("name", "born") and _kind(node) != "scalar":
@@ -214,12 +214,12 @@ def _composed(name: str, text: str) -> yaml.Node | None:
         line = "" if mark is None else f":{mark.line + 1}"
         reason = ", ".join(filter(None, (error.context, error.problem)))
         raise DeclarationError(
-            f"{name}{line}: this is no YAML ({reason}). A text with : or # or braces in front wants quotes"
+            f"{name}{line}: this is no YAML ({reason}). Quote a text with : or #, or with braces in front"
         ) from None
     except yaml.YAMLError:  # a character that YAML does not allow
         raise DeclarationError(f"{name}: this is no YAML (a control character)") from None
     except RecursionError:
-        raise DeclarationError(f"{name}: this is no file of a life, but nested without end") from None
+        raise DeclarationError(f"{name}: this is not a life file: it is nested without end") from None
 
 
 def _fault(name: str, node: yaml.Node, problem: str) -> DeclarationError:
@@ -266,9 +266,9 @@ def _text(name: str, node: yaml.Node) -> str:
         raise _fault(
             name,
             node,
-            f"a text is wanted, and this is a {_kind(node)}; a text with : or braces in front wants quotes",
+            f"this must be a text, not a {_kind(node)}; quote a text with :, or with braces in front",
         )
     text = str(node.value).strip()
     if not text or _is_null(node):
-        raise _fault(name, node, "a text is wanted, and this is empty")
+        raise _fault(name, node, "this must be a text, and it is empty")
     return text
