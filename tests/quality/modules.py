@@ -1,4 +1,4 @@
-"""The modules as `measure.py` asks them: each function bears the name of a set."""
+"""The modules for `measure.py`: each function has the name of a set."""
 
 from __future__ import annotations
 
@@ -60,20 +60,20 @@ NOT_ABOUT_ITSELF = ("time", "date", "privacy")
 
 
 def agentqa(text: str) -> str:
-    """By agentqa, which is told by nlp whether it is a question."""
+    """By agentqa, with nlp's word on whether it is a question."""
     found = _router().route(text, question=_seen(text).question is not None)
     topic = found.topic if isinstance(found, Match) else "-"
     return {"abilities": "can_do", **dict.fromkeys(NOT_ABOUT_ITSELF, "-")}.get(topic, topic)
 
 
 def plain(text: str) -> str:
-    """The words of a text alone, for telling whether two are the same."""
+    """Return the words of a text alone, for comparison."""
     return " ".join(re.findall(r"[a-z0-9]+", text.lower().replace("'", "")))
 
 
 @cache
 def _router() -> Router:
-    """A router that has not learnt from any sentence of the set: everyday questions stand among its examples, too."""
+    """Return a router without the sentences of the set among its examples."""
     life, measured = read_life(), {plain(text) for text, _ in labelled("agentqa")}
 
     def others(examples: tuple[str, ...]) -> tuple[str, ...]:
@@ -84,7 +84,7 @@ def _router() -> Router:
 
 
 def genqa(text: str) -> Reply | None:
-    """By genqa, which is only asked what nlp takes for a question."""
+    """By genqa, for questions that nlp recognises."""
     settings = genqa_module.Settings()
     if _seen(text).question is None:
         return None

@@ -1,4 +1,4 @@
-"""The file of an agent's life: what it may say, how it changes the one that comes with the module, its mistakes."""
+"""The life file: its format, its changes to the module's own, its mistakes."""
 
 from __future__ import annotations
 
