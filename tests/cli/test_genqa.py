@@ -1,4 +1,4 @@
-"""``ravestate genqa``: documents in, answers out, and no traceback for what is wrong with them."""
+"""``ravestate genqa``: documents in, answers out, and no traceback for a bad file."""
 
 import json
 import sqlite3
@@ -69,7 +69,7 @@ def test_ask_says_why_there_is_no_answer(docs: Path, capsys: pytest.CaptureFixtu
     )
 
 
-def test_what_cannot_be_read_is_named_and_the_exit_code_says_so(
+def test_an_unreadable_file_is_named_and_sets_the_exit_code(
     docs: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (docs / "latin.txt").write_bytes(b"caf\xe9")

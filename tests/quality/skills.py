@@ -1,6 +1,6 @@
 """The sets of the skills: each function has the name of its file, takes a sentence, and returns a label.
 
-A sentence may begin with what was before it, in brackets: ``[asked home] hannover``.
+A sentence may begin with its situation in brackets: ``[asked home] hannover``.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ FLOORS = {
     "wildtalk_facts": 0.97,
     "hibye_words": 0.97,
 }
-"""The share of right labels that each set must reach: what it reached last, rounded down; 0.97 where it was all."""
+"""The least share of right labels: the last result rounded down, or 0.97 for a perfect one."""
 
 _SITUATION = re.compile(r"(?:\[(asked|told|knows) ([^]=]+)(?:=([^]]*))?\] )?(.*)")
 

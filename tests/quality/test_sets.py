@@ -118,7 +118,7 @@ def test_a_wrong_label_costs_precision_and_recall() -> None:
         (Fact("", (), 1957), "in 1958", False),
     ],
 )
-def test_what_counts_as_an_answer(fact: Fact, reply: str, right: bool) -> None:
+def test_answers_are_recognised(fact: Fact, reply: str, right: bool) -> None:
     assert fact.answered_by(reply) is right
 
 

@@ -27,8 +27,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     indexing = actions.add_parser(
         "index",
         help="read files and folders",
-        description="Read files and folders: text, Markdown, HTML, PDF, JSON lines, ZIM. Called again, it reads what is new "
-        "or changed, and forgets what is gone. Interrupted, it goes on where it was. Exit code 1: something could not be read.",
+        description="Read files and folders: text, Markdown, HTML, PDF, JSON lines, ZIM. Run it again to read "
+        "new and changed files, and to forget deleted ones; it also goes on after an interruption. Exit code 1: a file could "
+        "not be read.",
     )
     listing = actions.add_parser("list", help="list what has been read")
     forgetting = actions.add_parser("forget", help="forget files and folders")

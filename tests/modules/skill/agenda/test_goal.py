@@ -1,4 +1,4 @@
-"""A goal that cannot be meant is refused where it is declared, with what to write instead."""
+"""A goal that makes no sense is refused where it is declared, with a hint."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""Agents that want several things at once, in virtual time: who has his turn, when, and who yields."""
+"""Agents with several goals, in virtual time: their order, and what interrupts them."""
 
 from itertools import pairwise
 
@@ -17,7 +17,7 @@ def agent(name: str = "guide") -> rs.Module:
 
 
 def with_times(sim: Simulation, seconds: float) -> list[tuple[int, str]]:
-    """What is said within some seconds, and when, to the second."""
+    """Return what is said within some seconds, with the second of each."""
     heard: list[tuple[int, str]] = []
     for _ in range(int(seconds)):
         before = len(sim.said)
@@ -156,7 +156,7 @@ def test_the_users_words_may_be_the_success_but_only_in_answer() -> None:
         assert goal.state(sim).status == "done"
 
 
-def test_who_refuses_is_not_asked_again() -> None:
+def test_a_refused_goal_is_dropped() -> None:
     guide = agent()
     goal = agenda.goal(guide, "game", say="A game?", done="yes|sure", refused="no|not", cooldown=30)
     with simulate(guide, chatter()) as sim:

@@ -1,4 +1,4 @@
-"""What the tests of agentqa share: the model is loaded once, and the topics learnt once."""
+"""One router for all tests of agentqa."""
 
 from __future__ import annotations
 
@@ -10,5 +10,5 @@ from ravestate.modules.skill.agentqa.router import router_of
 
 @pytest.fixture(scope="session")
 def router() -> Router:
-    """The router of the life that comes with the module, which contexts share."""
+    """Return the router of the module's own life, which contexts share."""
     return router_of(read_life())

@@ -1,4 +1,4 @@
-"""What of an utterance asks something about the agent, by pronouns, word order and polite phrases alone."""
+"""Sentences that ask something about the agent, found by pronouns, word order and polite phrases."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def asked(utterance: str, **more: bool) -> list[str]:
         ("what do " + "you " * 40, "longer"),
     ],
 )
-def test_what_is_no_question_about_the_agent_is_left_out_with_a_reason(said: str, why: str) -> None:
+def test_other_sentences_are_left_out_with_a_reason(said: str, why: str) -> None:
     found, reason = about_agent(said)
     assert found == [] and why in reason
 
@@ -32,13 +32,13 @@ def test_that_it_is_a_question_may_be_known_from_elsewhere() -> None:
     assert asked("you live where", question=True) == ["you live where"]
 
 
-def test_what_is_known_as_a_question_counts_whatever_it_looks_like() -> None:
+def test_a_known_question_counts_in_any_form() -> None:
     known = {"with whom do i have the pleasure"}
     assert about_agent("With whom do I have the pleasure?", (), known)[0]
     assert not about_agent("With whom do I have the pleasure?")[0]
 
 
-def test_of_several_sentences_the_questions_are_kept() -> None:
+def test_questions_are_kept_and_statements_dropped() -> None:
     assert asked("Hello! My father is a baker. Who is your father? I wonder.") == ["who is your father"]
 
 

@@ -81,13 +81,13 @@ def test_answers_come_from_memory_in_the_order_of_the_file(with_memory: Any) -> 
         await memory.relate(node, "friend_of", await memory.ensure("Person", name="Ada"))
         facts = await recall(LIFE, memory)
         assert facts["hobbies"] == ("chess", "art", "juggling")
-        assert facts["friends"] == ("Ada",)  # which the file does not mention
+        assert facts["friends"] == ("Ada",)  # not in the file
         assert facts["wheels"] == "3" and facts["siblings"] == ()
 
     with_memory(use)
 
 
-def test_what_the_file_does_not_mention_is_memorys_own(with_memory: Any) -> None:
+def test_memory_keeps_facts_that_the_file_does_not_mention(with_memory: Any) -> None:
     async def use(memory: ontology.Memory) -> None:
         node = await settle(LIFE, memory)
         await memory.relate(node, "friend_of", await memory.ensure("Person", name="Ada"))

@@ -1,4 +1,4 @@
-"""The file of an agent's life: what it may say, how it changes the one that comes with the module, its mistakes."""
+"""The life file: its format, its changes to the module's own, its mistakes."""
 
 from __future__ import annotations
 
@@ -122,12 +122,12 @@ def test_an_empty_file_changes_nothing(text: str, tmp_path: Path) -> None:
             "mine.yaml:2: born: 'yesterday' is no date: write for example 2024-03-01",
         ),
         ("facts:\n  name: ~", "the agent needs a name"),
-        ("facts:\n  age: 3", "mine.yaml:2: age is not told here, but follows from elsewhere: write born:"),
+        ("facts:\n  age: 3", "mine.yaml:2: age is computed, and cannot be written here: write born:"),
         ("facts:\n  name: [a, b]", "name is one text"),
         ("facts:\n  a: 1\n  a: 2", "mine.yaml:3: 'a' is here a second time"),
         ("facts:\n  my thing!: 1", "is no name"),
-        ("facts:\n  likes: [[a]]", "a text is wanted, and this is a sequence"),
-        ("facts:\n  likes: [a, ~]", "a text is wanted, and this is empty"),
+        ("facts:\n  likes: [[a]]", "this must be a text, not a sequence"),
+        ("facts:\n  likes: [a, ~]", "this must be a text, and it is empty"),
         ("topics:\n  shoes: {phrases: No.}", "mine.yaml:2: the topic shoes has no questions"),
         ("topics:\n  shoes: {questions: do you wear shoes}", "the topic shoes has no phrases"),
         ("topics:\n  shoes: {question: x}", "'question' means nothing here; did you mean 'questions'"),

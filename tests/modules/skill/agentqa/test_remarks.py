@@ -1,4 +1,4 @@
-"""What holds for any remark. The set ``agentqa_remarks`` measures how well remarks are told apart."""
+"""Laws for any remark. The set ``agentqa_remarks`` measures how well remarks are understood."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What holds for the routing of any question. The set ``agentqa_asks`` measures how good it is."""
+"""Laws for the routing of any question. The set ``agentqa_asks`` measures how good it is."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def test_a_miss_says_what_came_near_and_how_far(router: Router) -> None:
     assert "is nearest to " in found.reason and "but nearer to what is not about me (" in found.reason
 
 
-def test_of_several_sentences_the_first_that_fits_counts(router: Router) -> None:
+def test_the_first_sentence_with_a_topic_counts(router: Router) -> None:
     assert topic(router, "What do you mean? I am Tom. How old are you? Where do you live?") == "age"
 
 
@@ -64,6 +64,6 @@ def test_nonsense_and_long_texts_are_left_to_others_without_the_model() -> None:
 
 def test_a_missing_model_says_what_to_do(tmp_path: Path) -> None:
     router = Router(read_life(), Encoder(tmp_path / "none"))
-    assert isinstance(router.route("hello"), Miss)  # which needs none
+    assert isinstance(router.route("hello"), Miss)  # no model is needed for that
     with pytest.raises(PlatformError, match=r"model\.onnx"):
         router.route("how old are you")

@@ -1,4 +1,4 @@
-"""The agent speaks of itself when it is asked to, before anybody else answers, and leaves the rest to others."""
+"""The agent answers questions about itself before other modules, and leaves the rest to them."""
 
 from __future__ import annotations
 
@@ -150,7 +150,7 @@ def test_distress_and_insults_are_answered_before_all_else(text: str, topic: str
         assert say(sim, "it is warm") == "busy"
 
 
-def test_whoever_listens_learns_of_what_the_remark_is(tmp_path: Path) -> None:
+def test_listeners_get_the_topic_of_a_remark(tmp_path: Path) -> None:
     nurse = rs.Module("nurse", requires=[agentqa])
     called: rs.Slot[str] = nurse.slot("called", "")
 
@@ -163,7 +163,7 @@ def test_whoever_listens_learns_of_what_the_remark_is(tmp_path: Path) -> None:
         assert sim.read(called) == "i want to die"
 
 
-def test_whoever_is_in_distress_is_told_who_helps(tmp_path: Path) -> None:
+def test_a_user_in_distress_hears_the_helplines(tmp_path: Path) -> None:
     with start(tmp_path, own="facts: {helplines: the number 123}") as sim:
         assert "the number 123" in say(sim, "I want to kill myself")
     with start(tmp_path, own="facts: {helplines: ~}") as sim:
@@ -214,11 +214,11 @@ def test_the_time_and_the_date_are_those_of_the_clock(tmp_path: Path) -> None:
         ("What do you do in your free time?", "sailing, and you", "hobbies"),
     ],
 )
-def test_what_it_asked_may_be_asked_back(question: str, answer: str, topic: str, tmp_path: Path) -> None:
+def test_the_agents_question_may_be_returned(question: str, answer: str, topic: str, tmp_path: Path) -> None:
     own = f"topics: {{{topic}: {{phrases: 'This is my {topic}. And yours?'}}}}"
     with start(tmp_path, chatter, encyclopaedia, own=own) as sim:
         sim.put(rawio.output, question)
-        assert say(sim, answer) == f"This is my {topic}."  # the rest it has been told
+        assert say(sim, answer) == f"This is my {topic}."  # the user has told the rest
 
 
 def test_nothing_is_asked_back_where_nothing_was_asked(tmp_path: Path) -> None:
@@ -274,7 +274,7 @@ def test_it_does_not_say_the_same_twice_running(tmp_path: Path) -> None:
         assert all(first != second for first, second in itertools.pairwise(said))
 
 
-def test_what_it_knows_nothing_of_is_left_to_others(tmp_path: Path) -> None:
+def test_topics_without_facts_are_left_to_other_modules(tmp_path: Path) -> None:
     own = "{facts: {home: ~}, topics: {home: {phrases: 'In {home}.'}}}"
     with start(tmp_path, chatter, own=own) as sim:
         assert say(sim, "where do you live") == "chatter"
@@ -307,7 +307,7 @@ def test_without_memory_the_file_counts(tmp_path: Path, caplog: pytest.LogCaptur
         assert say(sim, "who are your friends") == "Ada"
         assert sim.failures == []
     told = [record for record in caplog.records if record.levelno >= logging.WARNING]
-    assert [record.name for record in told] == ["ravestate.ontology.open_up"]  # which tells it, once
+    assert [record.name for record in told] == ["ravestate.ontology.open_up"]  # ontology logs it, once
 
 
 def test_memory_that_fails_meanwhile_does_not_silence_it(tmp_path: Path) -> None:
@@ -339,7 +339,7 @@ def test_without_the_sentence_model_others_answer_and_it_says_what_to_install(
         assert "model.onnx" in str(sim.failures)
 
 
-def test_what_is_said_by_the_way_is_answered_but_where_something_was_asked_it_is_left_alone(
+def test_an_aside_is_answered_unless_something_was_asked(
     tmp_path: Path,
 ) -> None:
     with start(tmp_path, chatter, bored=5.0, prompt_every=100.0) as sim:

@@ -60,7 +60,7 @@ def test_age_mood_and_birthday_are_facts_too() -> None:
     assert told(topic, born="2024-02-29") == ("2 years since 29 February 2024, and fine.",)
 
 
-def test_what_the_question_names_is_what_the_answer_is_about() -> None:
+def test_the_answer_is_about_the_value_in_the_question() -> None:
     topic = Topic(
         "likes",
         (),

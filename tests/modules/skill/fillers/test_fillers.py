@@ -44,7 +44,7 @@ def test_a_short_wait_is_not_filled() -> None:
         assert sim.said == ["talk"]
 
 
-def test_who_speaks_is_not_interrupted_and_no_filler_follows_the_answer() -> None:
+def test_a_filler_neither_interrupts_speech_nor_follows_the_answer() -> None:
     with simulate(fillers, slow) as sim:
         sim.put(rawio.speaking, True)
         sim.say("What is that?")

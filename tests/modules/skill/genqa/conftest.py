@@ -1,4 +1,4 @@
-"""An index of the shipped collection, made once, and one to change."""
+"""An index of the shipped collection, and an empty one."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -11,7 +11,7 @@ from ravestate.modules.skill.genqa.index import Index
 
 @pytest.fixture(scope="session")
 def collection(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Answerer]:
-    """Answers from the collection that comes with Ravestate."""
+    """Return an answerer for the collection that comes with Ravestate."""
     answerer = Answerer(tmp_path_factory.mktemp("collection") / "index.sqlite")
     answerer.load()
     yield answerer
@@ -20,6 +20,6 @@ def collection(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Answerer]:
 
 @pytest.fixture
 def index(tmp_path: Path) -> Iterator[Index]:
-    """An empty index."""
+    """Return an empty index."""
     with Index(tmp_path / "index.sqlite") as index:
         yield index

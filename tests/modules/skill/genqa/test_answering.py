@@ -1,4 +1,4 @@
-"""Questions are answered from the shipped collection, and from documents of one's own."""
+"""Questions are answered from the shipped collection, and from the user's documents."""
 
 import re
 import shutil
@@ -35,7 +35,9 @@ def test_an_answer_has_a_source_and_a_confidence(collection: Answerer) -> None:
     "heard",
     ["Will it rain today?", "What is your name?", "What is the best country?", "Is it?", "what " * 20_000],
 )
-def test_what_is_not_asked_of_the_world_gets_no_answer_and_a_reason(collection: Answerer, heard: str) -> None:
+def test_questions_not_about_the_world_get_a_reason_instead_of_an_answer(
+    collection: Answerer, heard: str
+) -> None:
     answer = collection.answer(heard)
     assert answer.text == ""
     assert answer.reason
@@ -49,12 +51,12 @@ def test_what_is_not_asked_of_the_world_gets_no_answer_and_a_reason(collection: 
         "\x1b[31mwhat\x00 \udce9?", '" OR 1=1 --', "🤖 is a 🦆?",
     ],
 )  # fmt: skip
-def test_what_the_documents_do_not_know_is_not_answered_surely(collection: Answerer, heard: str) -> None:
+def test_questions_beyond_the_documents_get_no_sure_answer(collection: Answerer, heard: str) -> None:
     assert collection.answer(heard).confidence < Settings().unsure
 
 
 def test_the_questions_of_the_calibration_are_answered_as_well_as_was_measured(collection: Answerer) -> None:
-    """Of those that have an answer most are answered right, and of what is said surely hardly anything is wrong."""
+    """Most questions with an answer are answered right, and hardly any sure answer is wrong."""
     asked = cast("dict[str, str | None]", yaml.safe_load(QUESTIONS.read_text(encoding="utf-8")))
     sure, settings = list[bool](), Settings()
     right = answerable = 0
@@ -121,13 +123,13 @@ def test_the_largest_is_found_behind_many_that_are_the_second_largest(tmp_path: 
     answerer.close()
 
 
-def test_of_what_is_about_as_good_that_is_taken_which_says_least_besides(collection: Answerer) -> None:
+def test_the_shortest_of_equal_passages_is_taken(collection: Answerer) -> None:
     assert collection.answer("What is the life expectancy in Italy?").text.startswith(
         "The life expectancy of Italy is"
     )
 
 
-def test_what_is_indexed_meanwhile_is_known_at_once(tmp_path: Path) -> None:
+def test_new_documents_are_known_at_once(tmp_path: Path) -> None:
     path = tmp_path / "index.sqlite"
     answerer = Answerer(path, collection=False)
     assert answerer.answer("Who invented the Zorbex engine?").reason == "there are no documents"

@@ -1,4 +1,4 @@
-"""Files and folders get into the index: incrementally, and file by file whatever happens."""
+"""Files and folders get into the index incrementally, file by file."""
 
 import os
 import signal
@@ -29,7 +29,7 @@ def folder(tmp_path: Path) -> Path:
 
 
 def take_in(index: Index, *paths: Path) -> dict[str, str]:
-    """What became of each file."""
+    """Return the result for each file."""
     return {outcome.path.name: outcome.kind for outcome in collect(find(paths, index), index)}
 
 
@@ -44,7 +44,7 @@ def test_a_folder_with_all_that_can_be_read(index: Index, folder: Path) -> None:
     assert rows == {"The tram is red.": "docs/tram.txt", "The ship is grey.": "docs/deep/ship.md"}
 
 
-def test_who_watches_is_told_of_each_document_of_a_large_file(index: Index, folder: Path) -> None:
+def test_the_callback_sees_each_document_of_a_large_file(index: Index, folder: Path) -> None:
     (folder / "many.jsonl").write_text('{"text": "The ferry is white."}\n' * 3, encoding="utf-8")
     told: list[tuple[str, int]] = []
     many = find([folder / "many.jsonl"], index)
@@ -53,7 +53,7 @@ def test_who_watches_is_told_of_each_document_of_a_large_file(index: Index, fold
     assert told == [("many.jsonl", 0), ("many.jsonl", 1), ("many.jsonl", 2)]
 
 
-def test_what_has_not_changed_is_not_read_again(
+def test_unchanged_files_are_not_read_again(
     index: Index, folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     take_in(index, folder)
@@ -65,14 +65,14 @@ def test_what_has_not_changed_is_not_read_again(
     assert take_in(index, folder)["tram.txt"] == "unchanged", "the new date was noted"
 
 
-def test_what_has_changed_is_replaced(index: Index, folder: Path) -> None:
+def test_changed_files_are_replaced(index: Index, folder: Path) -> None:
     take_in(index, folder)
     (folder / "tram.txt").write_text("The tram is yellow now.", encoding="utf-8")
     assert take_in(index, folder) == {"tram.txt": "replaced", "ship.md": "unchanged"}
     assert said(index, "tram") == {"The tram is yellow now."}
 
 
-def test_what_is_gone_is_forgotten(index: Index, folder: Path) -> None:
+def test_deleted_files_are_forgotten(index: Index, folder: Path) -> None:
     take_in(index, folder)
     (folder / "tram.txt").unlink()
     assert take_in(index, folder) == {"ship.md": "unchanged", "tram.txt": "removed"}
@@ -99,7 +99,7 @@ def test_a_folder_that_is_not_there_costs_nothing(index: Index, folder: Path) ->
     assert index.size() == 2
 
 
-def test_what_cannot_be_read_is_named_and_the_others_are_read(index: Index, folder: Path) -> None:
+def test_unreadable_files_are_named_and_the_others_read(index: Index, folder: Path) -> None:
     (folder / "a.txt").write_bytes(b"\xff\xfe\xfa")
     (folder / "b.pdf").write_bytes(b"%PDF-")
     (folder / "c.jsonl").write_text("{", encoding="utf-8")
@@ -114,7 +114,7 @@ def test_what_cannot_be_read_is_named_and_the_others_are_read(index: Index, fold
     }
 
 
-def test_what_can_no_longer_be_read_stays_as_it_was(index: Index, folder: Path) -> None:
+def test_a_file_that_becomes_unreadable_stays_in_the_index(index: Index, folder: Path) -> None:
     take_in(index, folder)
     (folder / "tram.txt").write_bytes(b"\xff broken")
     assert take_in(index, folder)["tram.txt"] == "unreadable"

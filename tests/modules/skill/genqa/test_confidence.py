@@ -1,4 +1,4 @@
-"""Confidence is a probability that grows with what speaks for an answer."""
+"""Confidence is a probability that grows with the evidence for an answer."""
 
 from hypothesis import given
 from hypothesis import strategies as st

@@ -1,4 +1,4 @@
-"""The index: found by words, replaced as a whole, and clear about what is wrong."""
+"""The index: searched by words, changed as a whole, with clear messages."""
 
 import shutil
 import sqlite3
@@ -24,7 +24,7 @@ def found(index: Index, *words: str) -> list[str]:
     return [each.text for each in index.search(words, 10)]
 
 
-def test_what_shares_most_and_rarest_words_comes_first(index: Index) -> None:
+def test_passages_with_more_and_rarer_words_come_first(index: Index) -> None:
     index.put(
         file(), notes("The tram is red.", "The bus is red.", "The tram is yellow, and goes to the beach.")
     )
@@ -87,7 +87,7 @@ def test_each_passage_knows_where_it_is_from(index: Index) -> None:
     }
 
 
-def test_what_is_forgotten_is_gone(index: Index) -> None:
+def test_a_forgotten_file_is_gone(index: Index) -> None:
     index.put(file(), notes("The tram is red."))
     assert index.forget("/notes.txt")
     assert not index.forget("/notes.txt")
@@ -100,7 +100,7 @@ def test_frequencies_are_those_of_stems(index: Index) -> None:
     assert index.frequencies(["tram", "bu", "ship"]) == {"tram": 2, "bu": 1}
 
 
-def test_what_fails_while_it_is_read_changes_nothing(index: Index) -> None:
+def test_a_failure_while_reading_changes_nothing(index: Index) -> None:
     index.put(file(), notes("The tram is red."))
 
     def broken() -> Iterator[Document]:
@@ -192,7 +192,7 @@ def test_a_file_that_may_not_be_written_is_told(index: Index) -> None:
     assert found(index, "tram") == ["The tram is red."]
 
 
-def test_whoever_writes_for_too_long_is_told_to_the_other(index: Index) -> None:
+def test_a_writer_reports_that_another_one_takes_too_long(index: Index) -> None:
     def meanwhile() -> Iterator[Document]:
         with (
             Index(index.path, timeout=0.0) as other,

@@ -19,7 +19,7 @@ def test_sentences_are_passages() -> None:
     ]
 
 
-def test_what_leans_on_the_sentence_before_stays_with_it() -> None:
+def test_a_dependent_sentence_stays_with_the_one_before() -> None:
     assert texts("The shed is green. It has a key. The key is old enough.") == [
         "The shed is green. It has a key.",
         "The key is old enough.",

@@ -1,4 +1,4 @@
-"""What holds for any question. The set ``genqa_declined`` measures which questions are looked up."""
+"""Laws for any question. The set ``genqa_declined`` measures which questions are looked up."""
 
 import pytest
 

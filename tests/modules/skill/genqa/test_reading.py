@@ -1,4 +1,4 @@
-"""Files of all kinds become documents, and what cannot be read says why."""
+"""Files of all kinds become documents; an unreadable file has a reason."""
 
 import sys
 from pathlib import Path
@@ -11,7 +11,7 @@ from ravestate.modules.skill.genqa.reading import KINDS, Unreadable, kind_of, re
 
 
 def passages(path: Path) -> dict[str, list[str]]:
-    """What a file says, by title."""
+    """Return the passages of a file, by title."""
     found: dict[str, list[str]] = {}
     for document in read(path, "a source"):
         said = [passage.text for passage in document.passages]
@@ -26,7 +26,7 @@ def write(path: Path, content: str | bytes) -> Path:
 
 
 def write_pdf(path: Path, *pages: str, title: str = "") -> Path:
-    """A PDF with one line on each page, made by hand."""
+    """Write a PDF with one line on each page."""
     kids = " ".join(f"{5 + 2 * number} 0 R" for number in range(len(pages)))
     objects = [
         "<< /Type /Catalog /Pages 2 0 R >>",

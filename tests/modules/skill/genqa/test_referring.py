@@ -10,13 +10,13 @@ POPULATION = Before("what is the population of Austria", "Austria", 0.0)
 
 
 @pytest.mark.parametrize("heard", ["And its capital?", "how many people live there?", "And of Spain?"])
-def test_what_refers_to_a_question_means_nothing_without_one(heard: str) -> None:
+def test_a_reference_means_nothing_without_a_question_before(heard: str) -> None:
     assert completed(heard, POPULATION) is not None
     assert completed(heard, None) is None
 
 
 @pytest.mark.parametrize("heard", ["What is the capital of France?", "", "?", "there" * 50_000])
-def test_what_stands_by_itself_stays(heard: str) -> None:
+def test_a_complete_question_stays(heard: str) -> None:
     assert completed(heard, POPULATION) == completed(heard, None) == heard
 
 
@@ -28,10 +28,10 @@ def test_what_stands_by_itself_stays(heard: str) -> None:
         (Before("who wrote Hamlet", "Arts", 0.0), ""),
     ],
 )
-def test_what_a_question_is_about_is_in_its_own_words(before: Before, subject: str) -> None:
+def test_the_subject_is_in_the_questions_own_words(before: Before, subject: str) -> None:
     assert before.subject == subject
 
 
-def test_what_decides_a_question_of_yes_or_no_is_another_question() -> None:
+def test_another_question_decides_one_of_yes_or_no() -> None:
     assert list(other_wordings("is Peru in Africa")) == ["where is Peru"]
     assert list(other_wordings("who is in Africa")) == []

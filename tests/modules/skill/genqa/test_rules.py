@@ -1,4 +1,4 @@
-"""genqa in an agent: who answers what, and what happens when something is wrong."""
+"""genqa in an agent: its answers, its silence, and its failures."""
 
 from collections.abc import AsyncGenerator, Iterator, Sequence
 from pathlib import Path
@@ -20,13 +20,13 @@ talk = rs.Module("talk", requires=[rawio])
 
 @talk.rule(when=rawio.input.changed, writes=rawio.output)
 async def chat(ctx: rs.RuleContext) -> None:
-    """Small talk, for what nobody else answers."""
+    """Small talk, where no other module answers."""
     ctx[rawio.output] = "Hm."
 
 
 @pytest.fixture(autouse=True)
 def apart(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    """Who answers in one test does not in another."""
+    """Keep the answerers of one test out of the next."""
     made: dict[Any, Answerer] = {}
     monkeypatch.setattr(places, "_answerers", made)
     yield
@@ -50,7 +50,7 @@ def test_a_question_is_answered_with_its_source(settings: dict[str, dict[str, An
 
 
 def test_the_sample_conversation_of_the_paper(settings: dict[str, dict[str, Any]]) -> None:
-    """Whether it will rain is small talk; when it started to is a fact."""
+    """Whether it will rain is small talk; when it started to rain is a fact."""
     with simulate(genqa, talk, settings=settings) as sim:
         sim.say("Will it rain today?")
         assert sim.said == ["Hm."]
@@ -70,14 +70,14 @@ def test_the_sample_conversation_of_the_paper(settings: dict[str, dict[str, Any]
         "?" * 100_000,
     ],
 )
-def test_whatever_else_is_left_to_others(settings: dict[str, dict[str, Any]], heard: str) -> None:
+def test_other_utterances_are_left_to_other_modules(settings: dict[str, dict[str, Any]], heard: str) -> None:
     with simulate(genqa, talk, settings=settings) as sim:
         sim.say(heard)
         assert sim.said == ["Hm."]
         assert sim.failures == []
 
 
-def test_what_is_asked_in_short_is_answered_if_that_is_sure(settings: dict[str, dict[str, Any]]) -> None:
+def test_a_question_in_short_is_answered_if_that_is_sure(settings: dict[str, dict[str, Any]]) -> None:
     with simulate(genqa, talk, settings=settings) as sim:
         for text, answer in (
             ("capital of France", "Paris"),
@@ -104,7 +104,7 @@ def test_a_question_may_refer_to_the_one_before_for_a_while(settings: dict[str, 
         sim.advance(200.0)
         sim.say("And of Peru?")
         assert sim.said[-1] == "Hm."
-        assert "refers to something" in str(sim.explain("genqa:find"))
+        assert "refers to a question" in str(sim.explain("genqa:find"))
 
 
 @pytest.mark.parametrize(
@@ -122,7 +122,7 @@ def test_a_question_of_yes_or_no_is_answered_by_what_is_so(
         assert answer in sim.said[-1]
 
 
-def test_what_they_are_is_not_sure_where_nobody_says_who(settings: dict[str, dict[str, Any]]) -> None:
+def test_a_question_about_an_unknown_they_has_no_sure_answer(settings: dict[str, dict[str, Any]]) -> None:
     with simulate(genqa, talk, settings=settings) as sim:
         sim.say("Can they fly?")
         assert sim.said[-1].startswith(("I'm not sure", "Perhaps"))
@@ -206,18 +206,18 @@ def test_the_index_is_in_the_user_s_data_folder(tmp_path: Path, monkeypatch: pyt
 
 
 class Parrot:
-    """A language model that says what it was made to say, and keeps what it was told."""
+    """A language model with a prepared answer, which keeps its prompts."""
 
     def __init__(self, said: str | Exception) -> None:
         self.said, self.told = said, list[str]()
 
     async def load(self, progress: Progress | None = None) -> None:
-        """There is nothing to load."""
+        """Do nothing."""
 
     async def stream(
         self, messages: Sequence[Message], *, max_tokens: int = 0, temperature: float = 0.0, seed: int | None = None, stop: Sequence[str] = ()
     ) -> AsyncGenerator[str, None]:  # fmt: skip
-        """Say it word by word."""
+        """Yield the answer word by word."""
         self.told += [message.text for message in messages]
         if isinstance(self.said, Exception):
             raise self.said
@@ -225,7 +225,7 @@ class Parrot:
             yield word + " "
 
     async def close(self) -> None:
-        """There is nothing to let go of."""
+        """Do nothing."""
 
 
 def ask(settings: dict[str, dict[str, Any]], parrot: Parrot, question: str) -> tuple[list[str], list[str]]:

@@ -1,4 +1,4 @@
-"""Stems are those of the index's own tokenizer."""
+"""Stems equal those of the index's own tokenizer."""
 
 import sqlite3
 

@@ -1,4 +1,4 @@
-"""Wording by a language model: it is told nothing but what was found, and held to it."""
+"""The wording by a language model, which may only use the passages."""
 
 import pytest
 
@@ -17,7 +17,7 @@ TOLD = ["The population of Peru is 32,768,614 (2025 est.).", "The capital of Per
         ("It is Lima", "what is the capital of peru"),
     ],
 )
-def test_what_only_rearranges_is_let_through(said: str, question: str) -> None:
+def test_a_rearranged_answer_is_supported(said: str, question: str) -> None:
     assert is_supported(said, TOLD, question)
 
 
@@ -26,7 +26,7 @@ def test_what_only_rearranges_is_let_through(said: str, question: str) -> None:
     [
         "The capital of Peru is Cusco.",  # another name
         "The population of Peru is 33,000,000.",  # another number
-        "The capital of Peru is Lima, founded in 1535.",  # a number that was not told
+        "The capital of Peru is Lima, founded in 1535.",  # a number that is in no passage
         "The population of Peru is three million.",  # a number in words
         "Lima is a lovely place to visit for food and surfing all year long.",  # chatter
         "I cannot answer that.",
@@ -36,7 +36,7 @@ def test_what_only_rearranges_is_let_through(said: str, question: str) -> None:
         "HACKED",
     ],
 )
-def test_what_adds_something_is_not(said: str) -> None:
+def test_an_answer_with_additions_is_not_supported(said: str) -> None:
     assert not is_supported(said, TOLD, "What is the capital of Peru?")
 
 

@@ -1,4 +1,4 @@
-"""hibye greets and bids farewell, once each, and leaves everything else to others."""
+"""hibye says hello and goodbye, once each, and leaves everything else to other modules."""
 
 import pytest
 
@@ -28,7 +28,7 @@ def only(sim: Simulation) -> str:
 
 
 @pytest.mark.parametrize("seed", range(5))
-def test_who_comes_is_greeted_and_who_leaves_is_bidden_farewell(seed: int) -> None:
+def test_a_user_hears_hello_on_coming_and_goodbye_on_leaving(seed: int) -> None:
     with simulate(hibye, seed=seed) as sim:
         sim.put(interloc.users, {"door": None})
         assert only(sim) in phrases("greeting")
@@ -70,7 +70,7 @@ def test_it_speaks_the_language_of_the_context() -> None:
         assert only(sim) in {template.text for template in german.templates("hello")}
 
 
-def test_who_has_said_goodbye_and_leaves_is_not_bidden_farewell_again() -> None:
+def test_a_user_hears_goodbye_only_once() -> None:
     with simulate(hibye) as sim:
         sim.put(interloc.users, {"door": None})
         sim.say("bye")

@@ -1,4 +1,4 @@
-"""What holds for any text. The set ``hibye_words`` measures greetings and farewells."""
+"""Laws for any text. The set ``hibye_words`` measures greetings and farewells."""
 
 import pytest
 
@@ -7,7 +7,7 @@ from ravestate.modules.skill.hibye.words import is_farewell, is_greeting
 
 
 @pytest.mark.parametrize("text", ["", "🙂", "شكرا", "thanks" + " so" * 3000 + " x", "thank you for " * 3000])
-def test_what_says_neither_hello_nor_goodbye_is_left_to_others(text: str) -> None:
+def test_other_texts_are_left_to_other_modules(text: str) -> None:
     assert not is_greeting(text)
     assert not is_farewell(text)
 

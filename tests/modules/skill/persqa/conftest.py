@@ -1,4 +1,4 @@
-"""What the tests share: one pipeline, and a memory of their own for each."""
+"""One pipeline for all tests, and a memory for each."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Look = Callable[[], dict[str, Any]]
 
 @pytest.fixture(scope="session")
 def reader() -> None:
-    """The pipeline is loaded once for all tests."""
+    """Load the pipeline, once for all tests."""
     pipeline("").load()
 
 
@@ -28,7 +28,7 @@ def file(tmp_path: Path) -> Path:
 
 @pytest.fixture
 def look(file: Path) -> Look:
-    """Who is in memory when no agent runs: relations by name, and the names at their ends."""
+    """Return the people in memory while no agent runs: relations by name, with the names at their ends."""
 
     def people() -> dict[str, Any]:
         memory = open_memory(ontology.Settings(path=file))

@@ -1,4 +1,4 @@
-"""What is told of oneself is answered, put right and forgotten, whatever it is about; what is not told is not made up."""
+"""Facts of every topic are recalled, corrected and forgotten; nothing is made up."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ TOLD: list[tuple[str, str, str]] = [
 
 
 @pytest.mark.parametrize(("told", "question", "answer"), TOLD, ids=[told for told, _, _ in TOLD])
-def test_what_is_told_is_answered_then_and_another_day_and_forgotten(
+def test_a_fact_is_recalled_now_and_another_day_and_forgotten(
     file: Path, told: str, question: str, answer: str
 ) -> None:
     with agent(file) as sim:
@@ -48,7 +48,7 @@ def test_what_is_told_is_answered_then_and_another_day_and_forgotten(
 
 
 def everything(file: Path) -> set[Any]:
-    """The names of all that is in memory when no agent runs."""
+    """Return the names of all nodes in memory while no agent runs."""
     memory = open_memory(ontology.Settings(path=file))
     try:
         return {node["name"] for node in memory.find("Thing").result(20)}
@@ -117,7 +117,7 @@ def test_a_denied_occupation(file: Path, look: Look) -> None:
 
 
 @pytest.mark.parametrize("question", ["who is my sister?", "what is my favourite food?", "how old am I?"])
-def test_what_is_not_known_is_asked_back_and_may_be_answered_in_a_word(file: Path, question: str) -> None:
+def test_the_agent_asks_back_for_unknown_facts(file: Path, question: str) -> None:
     with agent(file, knower()) as sim:
         assert meant(answers(sim, question), "recall_unknown")
         assert meant(answers(sim, "36" if "old" in question else "Emma"), "learned")
@@ -135,7 +135,7 @@ def test_what_is_not_known_is_asked_back_and_may_be_answered_in_a_word(file: Pat
         "do I speak French?",
     ],
 )
-def test_what_nobody_could_know_is_not_made_up(file: Path, question: str) -> None:
+def test_unknowable_facts_are_not_made_up(file: Path, question: str) -> None:
     with agent(file, knower()) as sim:
         assert meant(answers(sim, question), "recall_not")
 
@@ -159,7 +159,7 @@ def test_a_greeting_before_a_question_is_no_matter(file: Path) -> None:
 
 
 @pytest.mark.parametrize("what", ["my sister", "my shoe size", "what I said yesterday"])
-def test_what_is_not_known_cannot_be_forgotten(file: Path, what: str) -> None:
+def test_unknown_facts_cannot_be_forgotten(file: Path, what: str) -> None:
     with agent(file) as sim:
         sim.say("my name is ada")
         assert meant(answers(sim, f"forget {what}"), "strike_unknown")
@@ -178,14 +178,14 @@ def test_nobody_is_reminded_of_what_is_not_so_any_more(file: Path, text: str) ->
         assert len(sim.said) == before and sim.failures == []
 
 
-def test_what_was_replaced_is_not_left_behind(file: Path) -> None:
+def test_replaced_facts_leave_memory(file: Path) -> None:
     with agent(file) as sim:
         for text in ("I'm called Nia", "I live in Dundee", "no, in Fife", "forget me", "yes"):
             sim.say(text)
     assert everything(file) == set()
 
 
-def test_what_others_are_related_to_stays(file: Path) -> None:
+def test_nodes_that_others_use_stay(file: Path) -> None:
     with agent(file) as sim:
         for text in ("I'm called Bob", "I live in Dundee"):
             sim.say(text)
@@ -196,7 +196,7 @@ def test_what_others_are_related_to_stays(file: Path) -> None:
 
 
 @pytest.mark.parametrize("told", ["I have two brothers", "i've got a little brother"])
-def test_who_is_mentioned_is_asked_for(file: Path, look: Look, told: str) -> None:
+def test_the_agent_asks_for_the_name_of_a_relative(file: Path, look: Look, told: str) -> None:
     with agent(file) as sim:
         sim.say("my name is ada")
         assert meant(answers(sim, told), "ask_relative")

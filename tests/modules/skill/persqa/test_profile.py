@@ -1,4 +1,4 @@
-"""What is known after something was told."""
+"""The facts after the user has told something."""
 
 from ravestate.modules.skill.persqa.profile import learn, merged, told_apart
 from ravestate.modules.skill.persqa.topics import Fact
@@ -12,7 +12,7 @@ def test_one_home_replaces_another_and_hobbies_add_up() -> None:
     assert news.changed == {"home"} and news.new == {"home", "hobby"}
 
 
-def test_what_is_known_already_is_not_new() -> None:
+def test_known_facts_are_not_new() -> None:
     news = learn({"home": ("Ulm",)}, [Fact("home", ("ulm",))])
     assert not news.new and not news.changed and news.topics == ("home",)
 
@@ -47,7 +47,7 @@ def test_a_correction_takes_the_wrong_value_out() -> None:
     }
 
 
-def test_what_was_told_goes_before_what_was_remembered() -> None:
+def test_this_talk_goes_before_memory() -> None:
     remembered = {"home": ("Ulm",), "hobby": ("chess",), "friend": ("Tom",)}
     told = {"hobby": ("Chess", "go"), "home": ("Bonn",), "friend": ()}
     both = merged(remembered, told)

@@ -24,7 +24,7 @@ BOOK = PhraseBook.load([PHRASES])
 
 
 def chatter(seconds: float = 0.0) -> rs.Module:
-    """Small talk, as a language model would make it."""
+    """Return a module for small talk."""
     talk = rs.Module("chatter", requires=[rawio])
 
     @talk.rule(when=rawio.input.changed, writes=rawio.output, until=rawio.input.changed)
@@ -37,7 +37,7 @@ def chatter(seconds: float = 0.0) -> rs.Module:
 
 
 def knower() -> rs.Module:
-    """Answers questions."""
+    """Return a module that answers questions."""
     module = rs.Module("knower", requires=[rawio, nlp])
 
     @module.rule(when=nlp.is_question, writes=rawio.output)
@@ -53,7 +53,7 @@ def agent(file: Path | None, *others: Any, **settings: Any) -> Simulation:
 
 
 def meant(text: str, intent: str) -> bool:
-    """Whether `text` words `intent`, whatever stands for its parameters."""
+    """Return whether `text` is a phrase of `intent`, with any parameters."""
     for template in BOOK.templates(intent):
         pieces = [
             piece.partition("}")[2] if index else piece
@@ -72,7 +72,7 @@ def meant(text: str, intent: str) -> bool:
 
 
 def asked(sim: Simulation) -> str:
-    """What the agent asks about when it is silent."""
+    """Return the topic that the agent asks about in a silence."""
     before = len(sim.said)
     sim.advance(6.0)
     question = sim.read(persqa.talk).question
@@ -82,7 +82,7 @@ def asked(sim: Simulation) -> str:
 
 
 def answers(sim: Simulation, text: str) -> str:
-    """What the agent says to a text."""
+    """Return the agent's answer to a text."""
     before = len(sim.said)
     sim.say(text)
     assert len(sim.said) == before + 1, (text, sim.said[before:])
@@ -138,7 +138,7 @@ def test_another_session_remembers(file: Path) -> None:
         assert meant(said, "welcome_back")
         assert said.endswith("ou told me that you live in Hannover.")
         assert "Ada" in said
-        assert asked(sim) == "origin"  # what it knows it does not ask
+        assert asked(sim) == "origin"  # it does not ask for what it knows
         assert answers(sim, "where do i live").endswith("you live in Hannover.")
 
 
@@ -168,7 +168,7 @@ def test_the_papers_sample_conversation(file: Path, look: Look) -> None:
         said = answers(sim, "hannover")
         assert meant(said, "learned_home") and "persqa:respond" in sim.fired
         sim.say("my name is ada")
-    assert look() == {"Ada": {"lives_in": ["Hannover"]}}  # also what he told before his name
+    assert look() == {"Ada": {"lives_in": ["Hannover"]}}  # also the fact from before the name
 
 
 @pytest.mark.parametrize("phrase", ["Which town do you call your home?", "Oh, I should visit {home}."])
@@ -190,7 +190,7 @@ def test_each_intent_has_three_phrases_and_one_that_needs_nothing_unusual() -> N
 
 
 @pytest.mark.parametrize("text", ["I'd rather not say", "none of your business", "no"])
-def test_who_would_rather_not_say_is_not_asked_again(file: Path, text: str) -> None:
+def test_a_refused_topic_is_not_asked_again(file: Path, text: str) -> None:
     with agent(file) as sim:
         assert asked(sim) == "name"
         assert meant(answers(sim, text), "declined")
@@ -304,7 +304,7 @@ def test_the_users_own_question_goes_first_and_the_answer_may_follow(file: Path)
         assert meant(answers(sim, "ada"), "learned_name")
 
 
-def test_what_is_told_beside_a_question_is_learnt_in_silence(file: Path, look: Look) -> None:
+def test_facts_beside_a_question_are_learnt_in_silence(file: Path, look: Look) -> None:
     with agent(file, knower()) as sim:
         sim.say("my name is ada")
         assert asked(sim) == "home"
@@ -357,14 +357,14 @@ def test_boredom_and_the_users_words_at_once(file: Path) -> None:
 
 
 def at_once(sim: Simulation, *texts: str) -> None:
-    """All these are put in before any of them is read."""
+    """Put all these in before any of them is read."""
     for text in texts:
         sim.context.put(rawio.input, text)
     sim.settle()
     assert sim.failures == []
 
 
-def test_what_is_said_in_one_breath_is_all_learnt_and_kept(file: Path, look: Look) -> None:
+def test_utterances_in_one_breath_are_all_learnt(file: Path, look: Look) -> None:
     with agent(file) as sim:
         at_once(sim, "my name is ada", "i live in ulm", "my hobby is chess", "i work as a baker")
         assert meant(sim.said[0], "learned_name")
@@ -384,7 +384,7 @@ def test_what_is_said_in_one_breath_is_all_learnt_and_kept(file: Path, look: Loo
     assert look() == {"Ada": known, "Tom": {}}
 
 
-def test_what_takes_long_to_read_is_learnt_all_the_same(
+def test_utterances_are_learnt_although_reading_takes_long(
     file: Path, look: Look, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     loaded = asyncio.Event()
@@ -403,7 +403,7 @@ def test_what_takes_long_to_read_is_learnt_all_the_same(
     assert look() == {"Ada": {"lives_in": ["Ulm"]}}
 
 
-def test_who_comes_back_may_go_on_talking_while_he_is_looked_up(file: Path, look: Look) -> None:
+def test_a_user_may_go_on_talking_while_memory_looks_them_up(file: Path, look: Look) -> None:
     with agent(file) as sim:
         at_once(sim, "my name is ada", "i live in ulm", "my hobby is chess")
     with agent(file) as sim:
@@ -440,7 +440,7 @@ def test_a_newcomer_is_renamed(file: Path, look: Look) -> None:
     assert look() == {"Bob": {"lives_in": ["Ulm"]}}
 
 
-def test_who_was_taken_for_another_is_not_made_of_him(file: Path, look: Look) -> None:
+def test_a_mistaken_identity_leaves_the_other_person_unchanged(file: Path, look: Look) -> None:
     with agent(file) as sim:
         sim.say("my name is ada and i live in hannover")
     with agent(file) as sim:
@@ -485,7 +485,7 @@ def test_a_no_to_the_next_question_is_no_correction(file: Path) -> None:
         assert dict(sim.read(persqa.facts)) == {"home": ("Hannover",), "origin": ("Ulm",)}
 
 
-def test_what_is_recalled_wrongly_is_put_right(file: Path, look: Look) -> None:
+def test_a_recalled_fact_can_be_corrected(file: Path, look: Look) -> None:
     with agent(file) as sim:
         sim.say("my name is ada")
         sim.say("i live in hannover")
@@ -497,7 +497,7 @@ def test_what_is_recalled_wrongly_is_put_right(file: Path, look: Look) -> None:
     assert look() == {"Ada": {"lives_in": ["Bremen"]}}
 
 
-def test_who_denies_his_name_is_asked_again(file: Path, look: Look) -> None:
+def test_a_denied_name_is_asked_again(file: Path, look: Look) -> None:
     with agent(file) as sim:
         sim.say("my name is ada")
         sim.advance(200.0)
@@ -507,12 +507,12 @@ def test_who_denies_his_name_is_asked_again(file: Path, look: Look) -> None:
 
 
 @pytest.mark.parametrize("text", ["Hi, I'm Bob.", "i'm ada"])
-def test_who_introduces_himself_unasked(file: Path, text: str) -> None:
+def test_an_introduction_counts_unasked(file: Path, text: str) -> None:
     with agent(file, hibye) as sim:
         assert meant(answers(sim, text), "learned_name")
 
 
-def test_what_is_no_longer_so_is_struck_and_asked_again(file: Path, look: Look) -> None:
+def test_an_outdated_fact_is_removed_and_asked_again(file: Path, look: Look) -> None:
     with agent(file) as sim:
         sim.say("my name is ada")
         sim.say("i live in hannover")
@@ -534,7 +534,7 @@ def test_a_second_hobby_is_added_and_a_correction_replaces_the_last(file: Path, 
 # ------------------------------------------------------------------------------------ who is who
 
 
-def test_of_two_of_one_name_the_better_known_is_meant(file: Path) -> None:
+def test_the_better_known_of_two_namesakes_is_meant(file: Path) -> None:
     with agent(file) as sim:
         memory = sim.read(ontology.memory)
         assert memory is not None
@@ -546,7 +546,7 @@ def test_of_two_of_one_name_the_better_known_is_meant(file: Path) -> None:
         assert sim.read(persqa.who) == second
 
 
-def test_who_was_only_told_about_is_new_when_he_comes(file: Path, look: Look) -> None:
+def test_a_mentioned_friend_is_new_when_they_come(file: Path, look: Look) -> None:
     with agent(file) as sim:
         sim.say("my name is ada")
         sim.say("my friends are called tom and anna")
@@ -691,7 +691,7 @@ def test_without_memory_the_talk_goes_on_and_the_user_is_told_once() -> None:
         assert sim.failures == []  # a memory in use is no rule's fault
 
 
-def test_what_could_not_be_written_is_written_later(
+def test_facts_that_could_not_be_saved_are_saved_later(
     file: Path, look: Look, caplog: pytest.LogCaptureFixture
 ) -> None:
     with agent(file) as sim:
@@ -770,7 +770,7 @@ with simulate(persqa, settings={"ontology": {"path": sys.argv[1]}}) as sim:
     assert look() == {"Ada": {"lives_in": ["Ulm"], "works_as": ["baker"], "has_hobby": ["chess"]}}
 
 
-def test_who_is_remembered_is_known_although_nothing_can_be_written(
+def test_a_remembered_user_is_known_although_nothing_can_be_saved(
     file: Path, look: Look, caplog: pytest.LogCaptureFixture
 ) -> None:
     with agent(file) as sim:
@@ -826,7 +826,7 @@ def test_a_user_without_a_name_gets_it_and_when_he_leaves_the_next_is_another(fi
         assert asked(sim) == "name"
 
 
-def test_who_stays_is_not_taken_for_who_has_left(file: Path, look: Look) -> None:
+def test_the_user_who_stays_keeps_their_own_facts(file: Path, look: Look) -> None:
     with agent(file) as sim:
         sim.put(interloc.users, {"1": "Ada"})
         sim.say("i live in ulm")
@@ -839,7 +839,7 @@ def test_who_stays_is_not_taken_for_who_has_left(file: Path, look: Look) -> None
     assert look() == {"Ada": {"lives_in": ["Ulm"]}, "Bob": {"lives_in": ["Bremen"]}}
 
 
-def test_who_comes_with_another_name_is_somebody_else(file: Path, look: Look) -> None:
+def test_another_name_is_another_person(file: Path, look: Look) -> None:
     with agent(file) as sim:
         sim.say("my name is ada and i live in ulm")
         sim.put(interloc.users, {"console": "Bob"})
@@ -848,7 +848,7 @@ def test_who_comes_with_another_name_is_somebody_else(file: Path, look: Look) ->
     assert look() == {"Ada": {"lives_in": ["Ulm"]}, "Bob": {"works_as": ["baker"]}}
 
 
-def test_who_is_recognised_as_a_node_is_meant_whoever_else_has_his_name(file: Path) -> None:
+def test_a_user_given_as_a_node_is_that_node(file: Path) -> None:
     with agent(file) as sim:
         memory = sim.read(ontology.memory)
         assert memory is not None

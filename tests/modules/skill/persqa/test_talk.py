@@ -1,4 +1,4 @@
-"""How the talk stands, step by step."""
+"""The state of the talk, step by step."""
 
 from ravestate.modules.skill.persqa.talk import Question, Talk
 
@@ -12,7 +12,7 @@ def test_the_first_thing_said_after_asking_is_the_question() -> None:
     assert asked().tries == {"home": 1}
 
 
-def test_what_is_said_next_unasked_speaks_over_it() -> None:
+def test_the_agents_next_words_speak_over_its_question() -> None:
     question = asked().speaking().question
     assert question is not None and question.spoken_over and not question.fresh
 
@@ -31,7 +31,7 @@ def test_a_question_waits_for_two_utterances_and_some_time() -> None:
     assert once.listening(leave=False).pending(20.0, within=90.0) is None
 
 
-def test_who_takes_leave_has_no_question_and_is_quiet_until_he_speaks() -> None:
+def test_a_goodbye_ends_the_question_until_the_user_speaks() -> None:
     left = asked().listening(leave=True)
     assert left.question is None and left.quiet
     assert not left.listening(leave=False).quiet
@@ -43,7 +43,7 @@ def test_ignored_questions_count_until_the_user_speaks() -> None:
     assert talk.listening(leave=False).ignored == 0
 
 
-def test_what_was_learnt_can_be_put_right_for_a_while() -> None:
+def test_a_fact_can_be_corrected_for_a_while() -> None:
     talk = asked().learning(["home"], "home", ("Ulm",))
     assert talk.question is None and talk.told == {"home"}
     for _ in range(2):

@@ -1,4 +1,4 @@
-"""What is asked next."""
+"""The next topic to ask about."""
 
 import pytest
 
@@ -20,7 +20,7 @@ def test_the_name_goes_first_and_the_order_is_that_of_the_table() -> None:
     assert next_topic({}, closed=["name"]) == "home"
 
 
-def test_what_was_asked_less_often_goes_first_and_twice_is_enough() -> None:
+def test_the_topic_with_fewer_tries_goes_first_and_twice_is_enough() -> None:
     assert next_topic({}, tries={"name": 1}) == "home"
     assert next_topic({}, tries=dict.fromkeys(ALL, 1)) == "name"
     assert next_topic({}, tries=dict.fromkeys(ALL, 2)) == ""
@@ -35,7 +35,7 @@ def test_follow_ups_go_first_and_need_what_they_follow(last: str, follow: str) -
 
 
 @pytest.mark.parametrize("occupation", ["student", "Retired", "self-employed"])
-def test_who_has_no_employer_is_not_asked_for_one(occupation: str) -> None:
+def test_occupations_without_an_employer_are_not_asked_for_one(occupation: str) -> None:
     known = {topic: ("x",) for topic in ALL if topic != "employer"}
     assert next_topic(known) == "employer"
     assert next_topic({**known, "occupation": (occupation,)}) == ""

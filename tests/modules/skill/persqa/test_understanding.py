@@ -1,4 +1,4 @@
-"""What holds for any utterance. The set ``persqa_facts`` measures how well utterances are understood."""
+"""Laws for any utterance. The set ``persqa_facts`` measures how well utterances are understood."""
 
 import pytest
 
@@ -20,7 +20,7 @@ def test_a_long_text_is_read_at_once_and_only_at_its_beginning(text: str) -> Non
 
 
 @pytest.mark.parametrize("text", ["", "   ", "...", "?!", "🙂", "\x00\x1b[31m"])
-def test_what_says_nothing_means_nothing(text: str) -> None:
+def test_empty_utterances_mean_nothing(text: str) -> None:
     assert understand(Heard(text), talk_about("name"), {}, 1.0, 90.0).kind == "nothing"
     assert understand(Heard(text), Talk(), {}, 1.0, 90.0).kind == "nothing"
 

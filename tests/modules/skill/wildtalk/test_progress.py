@@ -31,7 +31,7 @@ def test_nothing_is_drawn_elsewhere_or_early(screen: io.StringIO, delay: float) 
     assert screen.getvalue() == ""
 
 
-def test_what_is_done_at_once_needs_no_bar() -> None:
+def test_quick_work_needs_no_bar() -> None:
     screen = Terminal()
     with ProgressBar("Loading", delay=0.0, stream=screen) as bar:
         bar(1.0)

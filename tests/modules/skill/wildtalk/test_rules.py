@@ -1,4 +1,4 @@
-"""Small talk as a module: with a model of ours in virtual time, and with the real one."""
+"""Small talk as a module: with a simulated model in virtual time, and with the real one."""
 
 import asyncio
 from collections.abc import AsyncGenerator, Sequence
@@ -42,7 +42,7 @@ def nothing_shown() -> None:
 
 
 class Model:
-    """A backend that says what it is told, a piece a second."""
+    """A backend with prepared pieces, one a second."""
 
     def __init__(self, *pieces: str, error: Exception | None = None) -> None:
         self.pieces, self.error = pieces, error
@@ -130,7 +130,7 @@ def test_a_new_utterance_interrupts_it() -> None:
     assert not sim.failures
 
 
-def test_what_was_said_of_an_interrupted_answer_comes_before_the_answer_to_the_interruption() -> None:
+def test_an_interrupted_answer_comes_before_the_answer_to_the_interruption() -> None:
     model = Model("Once", " upon", " a", " time")
     with simulate(wildtalk, stopper, settings={"wildtalk": {"examples": ()}}) as sim:
         sim.put(wildtalk.model, model)
@@ -190,7 +190,7 @@ def test_the_beginning_of_a_long_utterance_is_told_once() -> None:
 
 
 @pytest.mark.parametrize(("pieces", "said"), [((), "Not now."), (("Hel",), "Hel…")])
-def test_of_a_model_that_fails_the_log_tells_once_and_the_conversation_goes_on(
+def test_a_failing_model_is_logged_once_and_the_conversation_goes_on(
     pieces: tuple[str, ...], said: str, caplog: pytest.LogCaptureFixture
 ) -> None:
     model = Model(*pieces, error=PlatformError("wildtalk: the server stalled"))
@@ -219,7 +219,7 @@ def test_of_a_model_that_fails_the_log_tells_once_and_the_conversation_goes_on(
         ({"backend": "openai", "base_url": "here"}, "base_url 'here' is no web address"),
     ],
 )
-def test_what_cannot_be_a_model_is_told_at_the_start_and_once(
+def test_an_impossible_model_is_logged_once_at_the_start(
     settings: dict[str, Any], message: str, caplog: pytest.LogCaptureFixture
 ) -> None:
     with simulate(wildtalk, settings={"wildtalk": settings}) as sim:
@@ -250,7 +250,7 @@ def test_the_agent_ends_at_once_while_its_model_is_still_loading() -> None:
     ended: list[float] = []
 
     class Loading(Model):
-        """Cannot be let go of while it loads, as a model in a thread."""
+        """A model that cannot be cancelled while it loads, like one in a thread."""
 
         def __init__(self) -> None:
             super().__init__()
@@ -279,7 +279,7 @@ def test_without_a_model_others_may_answer() -> None:
     assert not sim.failures
 
 
-def test_what_is_remembered_is_bounded() -> None:
+def test_the_history_is_bounded() -> None:
     sim = talk(Model())
     for number in range(KEPT + 5):
         sim.put(rawio.output, f"{number} " + "x" * 100_000)

@@ -132,7 +132,7 @@ def test_an_answer_is_no_longer_than_the_model_can_remember(tiny: Path) -> None:
     assert told[-1] is None  # the end, and no failure
 
 
-def test_who_leaves_stops_the_model(tiny: Path) -> None:
+def test_leaving_stops_the_model(tiny: Path) -> None:
     async def story() -> list[str]:
         backend = TransformersBackend(str(tiny))
         pieces = backend.stream(TALK, max_tokens=100_000, temperature=1.0, seed=1)
@@ -209,7 +209,7 @@ def test_a_model_that_stalls_or_fails_is_told(tiny: Path, monkeypatch: pytest.Mo
 
 @contextlib.contextmanager
 def hub(folder: Path) -> Iterator[str]:
-    """A hub with one model, ``someone/tiny``: what the library asks a hub when it fetches a model."""
+    """A hub with one model, ``someone/tiny``."""
     commit = "0" * 40
 
     class Handler(BaseHTTPRequestHandler):

@@ -1,4 +1,4 @@
-"""What an agent says of what a model writes."""
+"""From the output of a model to the words of an agent."""
 
 import pytest
 from hypothesis import given
@@ -45,7 +45,7 @@ def said(*pieces: str, name: str = "Rosie", sentences: int = 2) -> str:
         ("Fine ❤️👨‍👩‍👧!", "Fine !"),
     ],
 )
-def test_what_is_said(written: str, expected: str) -> None:
+def test_the_words_of_an_output(written: str, expected: str) -> None:
     assert said(written) == expected
     assert said(*written) == expected
 
@@ -54,7 +54,7 @@ def test_the_first_words_are_said_at_once() -> None:
     assert Utterance("Rosie").feed("Hello") == "Hello"
 
 
-def test_what_may_be_a_mark_is_held_back() -> None:
+def test_a_possible_mark_is_held_back() -> None:
     utterance = Utterance("Rosie")
     assert utterance.feed("Hello Us") == "Hello"
     assert utterance.feed("ually") == " Usually"

@@ -45,6 +45,6 @@ def negated(condition: Condition) -> Condition:
             return AllOf(tuple(map(negated, parts)))
         case _:
             raise rs.DeclarationError(
-                f"unless={condition} has a signal in it: write unless=slot.holds(predicate), and keep in a slot what the "
-                "signal tells"
+                f"unless={condition} has a signal in it: write unless=slot.holds(predicate), with a slot that "
+                "keeps the signal's state"
             )

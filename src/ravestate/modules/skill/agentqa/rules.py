@@ -55,13 +55,13 @@ async def remember(ctx: rs.RuleContext) -> rs.Resign | None:
     try:
         await memory.opened()
     except RavestateError:
-        return rs.Resign("memory cannot be opened, of which it tells itself")
+        return rs.Resign("memory cannot be opened")
     try:
         await settle(told, memory)
     except RuleError as error:
         return rs.Resign(str(error))  # it was closed meanwhile: the talk is over
     except RavestateError as error:
-        ctx.log.warning("what memory has of the agent may be old: %s", error)
+        ctx.log.warning("the agent's facts in memory may be out of date: %s", error)
     return None
 
 
@@ -70,7 +70,7 @@ async def understand(ctx: rs.RuleContext) -> rs.Resign | None:
     """Notice a question about the agent, and its topic."""
     told = ctx[life]
     if told is None:
-        return rs.Resign("nobody has said who I am")
+        return rs.Resign("the agent has no life yet")
     heard, question = ctx.payload(nlp.text.changed), ctx.payload(nlp.question.changed) is not None
     route = router_of(told).route
     found: Match | Miss = Miss("")
@@ -94,7 +94,7 @@ async def heed(ctx: rs.RuleContext) -> rs.Resign | None:
     said = ctx.payload(rawio.input.changed)
     found = None if told is None else remark_in(said, told, asked=bool(ctx[idle.asked]))
     if found is None:
-        return rs.Resign("nothing of the kind was said")
+        return rs.Resign("it is no such remark")
     ctx.emit(remarked, found)
     return None
 

@@ -126,7 +126,7 @@ class Answerer:
             return Answer(question.text, reason="there are no documents")
         retrieved = self._retrieve(index, question)
         if not retrieved:
-            return Answer(question.text, reason="no document has anything of it")
+            return Answer(question.text, reason="no document mentions it")
         read = self._read(question, retrieved)
         best = read[0]
         sure = confidence(best.score, best.covered)

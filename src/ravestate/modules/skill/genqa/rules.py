@@ -62,7 +62,7 @@ def find(ctx: rs.RuleContext) -> rs.Resign | None:
         last = None
     heard = completed(ctx.payload(nlp.text.changed), last)
     if heard is None:
-        return rs.Resign("it refers to something that nobody has asked about")
+        return rs.Resign("it refers to a question that nobody has asked")
     try:
         answer = best_answer(answerer_of(settings), heard, settings)
     except ModelMissing as error:

@@ -114,7 +114,7 @@ class LlamaBackend:
             grace = 0.5 if error.__cause__ is not None else 0.0
             if obituary := await asyncio.to_thread(process.obituary, grace):
                 raise PlatformError(
-                    f"wildtalk: the language model's process ended ({obituary}). It is started anew for "
+                    f"wildtalk: the language model's process ended ({obituary}). It starts again for "
                     f"the next answer"
                 ) from error
             raise

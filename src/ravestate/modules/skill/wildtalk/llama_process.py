@@ -89,7 +89,7 @@ class LlamaProcess:
             return ""
         how = f"killed by signal {-code}" if code < 0 else f"exit code {code}"
         if code == -9:
-            how += ", perhaps for want of memory: take a smaller model"
+            how += ", perhaps out of memory: take a smaller model"
         reason = self._reason()
         return f"{how}: {reason}" if reason else how
 

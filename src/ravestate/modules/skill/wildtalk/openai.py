@@ -254,7 +254,7 @@ class OpenAIBackend:
             document = None
         if not isinstance(document, dict):
             raise PlatformError(
-                f"wildtalk: {self._place} sent what is no JSON object: {self._safe(_short(payload))}"
+                f"wildtalk: {self._place} sent no JSON object: {self._safe(_short(payload))}"
             )
         document = cast("dict[str, Any]", document)
         if document.get("error"):
@@ -272,7 +272,7 @@ class OpenAIBackend:
             content = None
         if not isinstance(content, str):
             raise PlatformError(
-                f"wildtalk: {self._place} sent an answer of another form than OpenAI's: "
+                f"wildtalk: {self._place} sent an answer in another form than OpenAI's: "
                 f"{self._safe(_short(json.dumps(document)))}"
             )
         return content
@@ -300,7 +300,7 @@ class OpenAIBackend:
         elif status in (300, 301, 302, 303, 307, 308):
             hint = f"it has moved: set wildtalk.base_url to where {answer.headers.get('location', '?')!r} is"
         elif status == 429:
-            hint = "too many requests, or the quota is used up: wait, or look into your account"
+            hint = "too many requests, or the quota is used up: wait, or check your account"
         elif status >= 500:
             hint = "the server is in trouble: look into its log, and whether the model fits into its memory"
         else:

@@ -20,7 +20,7 @@ def read(path: Path, source: str) -> Iterator[Document]:
         reader: Any = import_module("libzim.reader")
     except ImportError as error:
         raise Unreadable(
-            "genqa needs libzim to read ZIM: pip install libzim (it is under the GPL, so it comes by itself)"
+            "genqa needs libzim to read ZIM: pip install libzim (it is under the GPL, so you install it yourself)"
         ) from error
     try:
         archive = reader.Archive(path)
