@@ -181,7 +181,7 @@ def _expressions(file: str, node: yaml.Node, part: str) -> tuple[str, ...]:
 def _fact(name: str, key: str, node: yaml.Node) -> Fact | None:
     if key in COUNTED:
         instead = "born: 2024-03-01" if key == "age" else "another name"
-        raise _fault(name, node, f"{key} is not told here, but follows from elsewhere: write {instead}")
+        raise _fault(name, node, f"{key} is computed, and cannot be written here: write {instead}")
     if _is_null(node):
         return None
     if key in ("name", "born") and _kind(node) != "scalar":
@@ -248,9 +248,9 @@ def _text(name: str, node: yaml.Node) -> str:
         raise _fault(
             name,
             node,
-            f"a text is wanted, and this is a {_kind(node)}; a text with : or braces in front wants quotes",
+            f"this must be a text, not a {_kind(node)}; quote a text with :, or with braces in front",
         )
     text = str(node.value).strip()
     if not text or _is_null(node):
-        raise _fault(name, node, "a text is wanted, and this is empty")
+        raise _fault(name, node, "this must be a text, and it is empty")
     return text
