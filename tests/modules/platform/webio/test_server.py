@@ -265,4 +265,4 @@ def test_the_documented_client_says_when_nobody_is_there(
         nobody.bind(("127.0.0.1", 0))
         done = ask(f"127.0.0.1:{nobody.getsockname()[1]}")
     assert done.returncode == 1
-    assert done.stderr == "Nobody is there: start an agent, e.g. ravestate run webio hibye\n"
+    assert done.stderr == "No agent answers: start one, e.g. ravestate run webio hibye\n"

@@ -30,7 +30,7 @@ from .protocol import (
     Writing,
     parse,
     serialise,
-)
+)  # fmt: skip
 from .session import Ending, Session
 
 if TYPE_CHECKING:
