@@ -54,7 +54,7 @@ bench: setup ## measure speed against the peers and the floor
 
 .PHONY: quality
 quality: setup ## measure how well text is understood
-	@PYTHONPATH=tests $(BIN)/python -m quality.measure quality.modules quality.skills $(ARGS)
+	@PYTHONPATH=tests $(BIN)/python -m quality.measure quality.modules quality.language quality.skills $(ARGS)
 
 # ------------------------------------------------------------------------------------------- to work on it
 
@@ -129,7 +129,7 @@ $(DONE)/python:
 	@touch $@
 
 $(DONE)/build: $(DONE)/python constraints.txt
-	@$(PIP) pip hatchling editables
+	@$(PIP) pip hatchling hatch-fancy-pypi-readme editables
 	@touch $@
 
 $(DONE)/chat: $(DONE)/build pyproject.toml

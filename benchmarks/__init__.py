@@ -1,4 +1,4 @@
-"""What is claimed about speed, each claim measured against its peers and its floor in one run.
+"""Benchmarks: each claim about speed, measured against its peers and its floor in one run.
 
 ``python -m benchmarks`` from the repository's root; see README.md.
 """

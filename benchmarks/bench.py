@@ -1,4 +1,4 @@
-"""What the questions have at hand: contestants, the number of repetitions, and a way to say how far they are."""
+"""The tools of every question: contestants, the number of repetitions, and progress messages."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ __all__ = ["Bench"]
 
 
 class Bench(contextlib.ExitStack):
-    """One question's contestants; they end when it is left.
+    """One question's contestants; they end with the context manager.
 
     Args:
-        quick: Whether to repeat less, for a first look.
+        quick: Whether to repeat less often.
     """
 
     def __init__(self, question: str, quick: bool) -> None:
@@ -26,38 +26,38 @@ class Bench(contextlib.ExitStack):
         self.quick = quick
 
     def rounds(self, many: int, few: int = 3) -> Iterator[int]:
-        """Repetitions. In each, every contestant has its turn, so that a noisy moment hits them alike."""
+        """Repetitions. Every contestant runs once in each, so that noise hits them alike."""
         total = few if self.quick else many
         for number in range(total):
             self.progress(f"round {number + 1} of {total}")
             yield number
 
     def several(self, many: int, few: int) -> int:
-        """How many times within a repetition."""
+        """Return the number of measurements within a repetition."""
         return few if self.quick else many
 
     def ours(self, module: str = "benchmarks.peers.ours") -> Child:
-        """A process of ours."""
+        """Return a process of Ravestate."""
         return self._started(Child.ours(module))
 
     def clips(self) -> Child:
-        """CLIPS."""
+        """Return a process of CLIPS."""
         return self._started(Child.peer(environments.clips(self.progress), "clips_rules.py"))
 
     def reference(self) -> Child:
-        """The reference implementation."""
+        """Return a process of the reference implementation."""
         return self._started(Child.peer(environments.reference(self.progress), "reference.py"))
 
     def callbacks(self) -> Child:
-        """The floor."""
+        """Return a process of the floor."""
         return self._started(Child.peer(sys.executable, "callbacks.py"))
 
     def reference_interpreter(self) -> Path:
-        """The interpreter that has the reference implementation."""
+        """Return the interpreter that has the reference implementation."""
         return environments.reference(self.progress)
 
     def progress(self, text: str) -> None:
-        """Say on the error stream how far it is."""
+        """Print progress on the error stream."""
         if sys.stderr.isatty():
             print(f"\r\033[K{self.question}: {text}", end="", file=sys.stderr, flush=True)
         elif not text.startswith("round"):

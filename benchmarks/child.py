@@ -1,4 +1,4 @@
-"""Our half of the wire: a contestant in a process of its own, asked by JSON lines (see ``peers/wire.py``)."""
+"""A contestant in a process of its own, which answers requests in JSON lines (see ``peers/wire.py``)."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ ROOT = PEERS.parent.parent
 
 
 class ChildError(Exception):
-    """A contestant failed, or said nothing in time."""
+    """A contestant failed, or did not answer in time."""
 
 
 class Child:
     """A process that answers requests.
 
     Args:
-        command: What to run: an interpreter and its arguments.
+        command: The interpreter and its arguments.
     """
 
     def __init__(self, *command: str) -> None:
@@ -35,19 +35,19 @@ class Child:
 
     @classmethod
     def ours(cls, module: str) -> Child:
-        """A module of this package, run by the project's own interpreter."""
+        """Start a module of this package with the project's interpreter."""
         return cls(sys.executable, "-m", module)
 
     @classmethod
     def peer(cls, interpreter: Path | str, script: str) -> Child:
-        """A script among the peers, run by an interpreter of theirs."""
+        """Start a script of a peer with the peer's interpreter."""
         return cls(str(interpreter), str(PEERS / script))
 
     def ask(self, call: str, timeout: float = 600.0, /, **arguments: Any) -> Any:
-        """Have a function of the contestant called.
+        """Call a function of the contestant.
 
         Raises:
-            ChildError: It raised, ended, or took longer than `timeout` (seconds).
+            ChildError: The function raised, the process ended, or the call took longer than `timeout` (seconds).
         """
         assert self._process.stdin is not None
         assert self._process.stdout is not None
@@ -70,7 +70,7 @@ class Child:
         return reply["result"]
 
     def close(self) -> None:
-        """Let it end."""
+        """End the process."""
         assert self._process.stdin is not None
         try:
             self._process.stdin.close()

@@ -1,6 +1,6 @@
-"""The environments of the peers: made once, in a folder that git ignores, apart from the project's own.
+"""The environments of the peers, in a folder that git ignores.
 
-They must be apart: the reference implementation is imported by the same name as this project.
+They are separate because the reference implementation has the same import name as this project.
 """
 
 from __future__ import annotations
@@ -21,12 +21,12 @@ CLIPS = ["clipspy==1.0.6"]
 
 
 def reference(progress: Callable[[str], None]) -> Path:
-    """The interpreter that has the reference implementation."""
+    """Return the interpreter that has the reference implementation."""
     return _interpreter("reference", REFERENCE, progress)
 
 
 def clips(progress: Callable[[str], None]) -> Path:
-    """The interpreter that has CLIPS."""
+    """Return the interpreter that has CLIPS."""
     return _interpreter("clips", CLIPS, progress)
 
 

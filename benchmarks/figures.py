@@ -1,4 +1,4 @@
-"""A figure: what was measured, against what, and whether the target is reached."""
+"""A figure: the measurement, its comparison, and its target."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ class Spread:
 
     @classmethod
     def of(cls, values: Sequence[float]) -> Spread:
-        """The spread of at least one value."""
+        """Return the spread of at least one value."""
         ordered = sorted(values)
         if len(ordered) < 2:
             return cls(ordered[0], ordered[0], ordered[0])
@@ -33,15 +33,15 @@ class Figure:
 
     Attributes:
         question: The name under which the command line knows it.
-        what: What was measured.
+        what: The measured quantity.
         unit: "s", "B", "core" (share of one core) or "" (a count).
         ours: Ours, in that unit.
-        against: The peer, the floor, or our own other case, that it is compared with.
-        theirs: That one's, in the same unit.
-        ratio: Ours through theirs, taken in each repetition.
-        target: In words; empty where nothing was promised.
-        reached: Whether it is; None where nothing was promised.
-        failed: Why there is no figure.
+        against: The peer, the floor, or another case of ours, for comparison.
+        theirs: The compared figure, in the same unit.
+        ratio: Ours divided by theirs, taken in each repetition.
+        target: The target in words; empty without a claim.
+        reached: Whether the target is reached; None without a claim.
+        failed: The reason for a missing figure.
     """
 
     question: str
@@ -67,7 +67,7 @@ def compare(
     target: str = "",
     reach: Callable[[float], bool] | None = None,
 ) -> Figure:
-    """A figure of repetitions that were taken in turns; the target concerns the ratio."""
+    """Return a figure that compares two contestants; the target concerns the ratio."""
     ratio = None
     if all(theirs):
         ratio = Spread.of([one / other for one, other in zip(ours, theirs, strict=True)])
@@ -84,7 +84,7 @@ def measured(
     target: str = "",
     reach: Callable[[float], bool] | None = None,
 ) -> Figure:
-    """A figure of our own; the target concerns the value."""
+    """Return a figure of ours alone; the target concerns the value."""
     spread = Spread.of(ours)
     return Figure(
         question, what, unit, spread, target=target, reached=None if reach is None else reach(spread.median)

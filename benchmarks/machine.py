@@ -1,4 +1,4 @@
-"""What the figures were measured on."""
+"""The machine that the figures come from."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ __all__ = ["describe"]
 
 
 def describe() -> str:
-    """Processor, cores, system and interpreter; no names of hosts or people."""
+    """Return the processor, cores, system and interpreter; no names of hosts or people."""
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
     python = f"{platform.python_implementation()} {platform.python_version()}"
     return f"{_processor()}, {cores} cores, {platform.system()} {platform.machine()}, {python}"

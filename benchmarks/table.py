@@ -15,7 +15,7 @@ HEAD = ("question", "measured", "ours", "against", "theirs", "ratio", "target", 
 
 
 def as_table(figures: Iterable[Figure]) -> str:
-    """Text in columns, which is a Markdown table as well."""
+    """Return the figures as a Markdown table with aligned columns."""
     rows = [_row(figure) for figure in figures]
     widths = [max(map(len, column)) for column in zip(HEAD, *rows, strict=True)]
     lines = [_line(HEAD, widths), "|" + "|".join("-" * (width + 2) for width in widths) + "|"]
@@ -23,7 +23,7 @@ def as_table(figures: Iterable[Figure]) -> str:
 
 
 def write_json(path: Path, machine: str, figures: Iterable[Figure]) -> None:
-    """Everything in the table, unrounded: seconds, bytes, shares of a core."""
+    """Write all figures as JSON, unrounded: seconds, bytes, shares of a core."""
     document = {"machine": machine, "figures": [asdict(figure) for figure in figures]}
     path.write_text(json.dumps(document, indent=1) + "\n", encoding="utf-8")
 

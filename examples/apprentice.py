@@ -1,10 +1,9 @@
-"""An apprentice who is taught new rules while running.
+"""An apprentice that learns new rules at run time.
 
-"When I say ping, answer pong." adds a rule to this context; "Forget ping." makes that rule retire. Other
-contexts of the same policy are not touched. A learnt rule competes as any other: it is more specific than
-`puzzled`, so it goes first.
+"When I say ping, answer pong." adds a rule to this context. "Forget ping." makes that rule retire. Other contexts of
+the policy do not change. A learnt rule competes like any other: it is more specific than `puzzled`, so it wins.
 
-    python examples/apprentice.py          to teach on the console
+    python examples/apprentice.py          teach it on the console
 """
 
 import re
@@ -23,7 +22,7 @@ lessons = module.slot("lessons", 0)
 
 @module.rule(when=rawio.input.changed, emits=(taught, forgotten))
 async def attend(ctx: rs.RuleContext) -> None:
-    """Notice that something is taught, or to be forgotten."""
+    """Notice a lesson, or a request to forget one."""
     text = ctx.payload(rawio.input.changed).rstrip(".")
     if lesson := LESSON.fullmatch(text):
         ctx.emit(taught, lesson.groupdict())
@@ -41,13 +40,15 @@ async def learn(ctx: rs.RuleContext) -> None:
 
 @module.rule(when=rawio.input.changed, writes=rawio.output)
 async def puzzled(ctx: rs.RuleContext) -> None:
-    """Nothing that was learnt fits."""
+    """Answer when no lesson fits."""
     ctx[rawio.output] = "Nobody has told me what to say to that."
 
 
 def answer_to(word: str, reply: str, number: int) -> rs.Rule:
-    """A rule that answers one word, until it is to be forgotten. It stands in a module of its own: the
-    apprentice's module is shared by all contexts, and stays as it is."""
+    """Return a rule that answers one word until the user asks to forget it.
+
+    All contexts share the apprentice's module, so the rule gets a module of its own.
+    """
     lesson = rs.Module(f"lesson-{number}", requires=[module])
 
     def said(text: str) -> bool:

@@ -1,10 +1,10 @@
-"""A character of a game: what she says, how she looks and what she does are three slots.
+"""A game character with three slots: her words, her face and her hands.
 
-Rules that write different slots run side by side: an insult makes her frown while she answers. Rules that write
-the same slot exclude each other, and the more specific one goes first. None of them knows of the others, so a
-new mood is a new rule, and nothing else changes.
+Rules that write different slots run in parallel: an insult makes her frown while she answers. Rules that write the
+same slot exclude each other, and the more specific rule wins. No rule mentions another, so a new mood is just a new
+rule.
 
-    python examples/innkeeper.py           to meet her on the console
+    python examples/innkeeper.py           meet her on the console
 """
 
 import re
@@ -26,7 +26,7 @@ hands = module.slot("hands", "wipe the counter")
 
 @module.rule(when=rawio.input.changed, emits=(insulted, praised, order))
 async def understand(ctx: rs.RuleContext) -> None:
-    """One utterance may be an insult and an order at once."""
+    """Notice insults, praise and orders. One utterance may be all three."""
     text = ctx.payload(rawio.input.changed).lower()
     if any(word in text for word in RUDE):
         ctx.emit(insulted)
@@ -39,39 +39,39 @@ async def understand(ctx: rs.RuleContext) -> None:
 
 @module.rule(when=insulted, writes=face)
 async def frown(ctx: rs.RuleContext) -> None:
-    """A face needs no words."""
+    """Show anger. The face is a slot of its own, so any rule may speak meanwhile."""
     ctx[face] = "frowning"
 
 
 @module.rule(when=praised, writes=face)
 async def smile(ctx: rs.RuleContext) -> None:
-    """Nor does this one."""
+    """Show pleasure."""
     ctx[face] = "smiling"
 
 
 @module.rule(when=order, writes=(hands, rawio.output))
 async def serve(ctx: rs.RuleContext) -> None:
-    """An order is served."""
+    """Serve an order."""
     ctx[hands] = f"pour {ctx.payload(order)}"
     ctx[rawio.output] = "Here you are."
 
 
 @module.rule(when=order & insulted, writes=(hands, rawio.output))
 async def refuse(ctx: rs.RuleContext) -> None:
-    """An order with an insult is not: more specific than `serve`, so it goes first."""
+    """Refuse a rude order. This rule is more specific than `serve`, so it wins."""
     ctx[hands] = "cross her arms"
     ctx[rawio.output] = "Say that again and you drink from the trough."
 
 
 @module.rule(when=rawio.input.changed, writes=rawio.output)
 async def chat(ctx: rs.RuleContext) -> None:
-    """Whatever else is said."""
+    """Answer everything else."""
     ctx[rawio.output] = "If you say so. Ale, mead or water?"
 
 
 @module.rule(when=idle.bored, writes=(face, hands))
 async def calm_down(ctx: rs.RuleContext) -> None:
-    """Moods pass."""
+    """Return to the usual mood after some silence."""
     ctx[face] = "neutral"
     ctx[hands] = "wipe the counter"
 

@@ -1,9 +1,8 @@
-"""A museum guide who understands words, and words together with a gesture.
+"""A museum guide that understands words, and words together with a gesture.
 
-"What is this?" alone gets a general answer. The same words and a hand that points at a picture get an answer
-about that picture, also when the camera reports the hand a moment after the microphone has reported the words.
-No rule knows of the other, and nothing here counts seconds: the rule for both is worth more, as it is more
-specific, and so the rule for words alone waits until its patience is over.
+"What is this?" alone gets a general answer. The same words and a pointing hand get an answer about the picture. The
+camera may report the hand a moment after the words. The rule for both is more specific, so the rule for words alone
+waits until the patience of the other rule is over. No rule mentions the other or counts seconds.
 
     python examples/museum_guide.py        plays a scene in virtual time
 """
@@ -20,32 +19,32 @@ PICTURES = {
 module = rs.Module("museum", requires=[rawio])
 
 pointed = module.signal("pointed", payload=str)
-"""From the camera: the picture at which a visitor points."""
+"""The picture at which a visitor points; a camera raises this."""
 
 gaze = module.slot("gaze", "the visitor")
-"""Where the guide looks."""
+"""The target of the guide's gaze."""
 
 
 @module.rule(when=rawio.input.changed, writes=rawio.output)
 async def answer(ctx: rs.RuleContext) -> None:
-    """Words alone."""
+    """Answer words alone."""
     ctx[rawio.output] = "This room shows pictures from Holland. Point at one to hear more."
 
 
 @module.rule(when=rawio.input.changed & pointed, writes=rawio.output, patience=0.6)
 async def answer_about(ctx: rs.RuleContext) -> None:
-    """Words and a gesture, in either order."""
+    """Answer words and a gesture, in either order."""
     ctx[rawio.output] = PICTURES.get(ctx.payload(pointed), "That one I do not know.")
 
 
 @module.rule(when=pointed, writes=gaze)
 async def look(ctx: rs.RuleContext) -> None:
-    """A gesture alone turns the head. It writes another slot, so it excludes nobody and nobody excludes it."""
+    """Turn the head towards the picture. This rule writes another slot, so it runs beside the answers."""
     ctx[gaze] = ctx.payload(pointed)
 
 
 def main() -> None:
-    """Two visitors: one points, one does not."""
+    """Play a scene: one visitor points, another does not."""
     with simulate(module) as sim:
         sim.say("What is this?")
         sim.advance(0.3)

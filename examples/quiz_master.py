@@ -1,9 +1,8 @@
-"""A quiz master who asks, waits for an answer, and asks again when there is none.
+"""A quiz master that asks, waits for an answer, and asks again if none comes.
 
-`asked` is raised detached: it begins a causal group of its own. So the question may be asked again for its own
-sake (a loop), and an answer is an answer to the question, not a part of what made the guide ask it.
+`ask` is detached: each `asked` starts a new causal group. So the rule can react to its own signal (a loop).
 
-    python examples/quiz_master.py         to play on the console
+    python examples/quiz_master.py         play on the console
 """
 
 import ravestate as rs
@@ -11,7 +10,7 @@ from ravestate.modules import rawio
 
 
 class Settings(rs.Settings):
-    """What the quiz is about, and how long it waits."""
+    """The quiz question, its answer, and the time to wait."""
 
     question: str = "Which planet is nearest to the sun?"
     answer: str = "Mercury"
@@ -32,7 +31,7 @@ asked = module.signal("asked")
     detached=True,
 )
 async def ask(ctx: rs.RuleContext) -> None:
-    """At the beginning, and whenever a question has been open for too long."""
+    """Ask at the start, and again after too long a silence."""
     ctx[rawio.output] = ctx.settings.question
     ctx.emit(asked)
 
@@ -44,7 +43,7 @@ async def ask(ctx: rs.RuleContext) -> None:
     detached=True,
 )
 async def judge(ctx: rs.RuleContext) -> None:
-    """Something was said while a question was open. A wrong answer opens it once more."""
+    """Judge the answer to an open question. After a wrong answer, the question is open again."""
     if ctx.settings.answer.lower() in ctx.payload(rawio.input.changed).lower():
         ctx[rawio.output] = f"{ctx.settings.answer} it is!"
     else:

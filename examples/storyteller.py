@@ -1,10 +1,10 @@
-"""A storyteller who can be interrupted.
+"""A storyteller that listeners can interrupt.
 
-`until` ends a rule that runs: here, when anything is said. The function is cancelled where it waits, may clean
-up (here it closes the book), and what it has said so far stands. The words that interrupted it are an input like
-any other, and get an answer of their own.
+`until` ends a running rule, here at any input. The runtime cancels the function where it waits. The function may clean
+up (here it closes the book), and its words so far stand. The interrupting words are an ordinary input, with their own
+answer.
 
-    python examples/storyteller.py         to listen on the console, and interrupt
+    python examples/storyteller.py         listen on the console, and interrupt
 """
 
 import ravestate as rs
@@ -20,7 +20,7 @@ STORY = (
 module = rs.Module("storyteller", requires=[rawio])
 
 told = module.slot("told", 0)
-"""How many sentences of the story have been told."""
+"""The number of sentences told so far."""
 
 book = module.flag("book")
 """Whether the book is open."""
@@ -32,7 +32,7 @@ book = module.flag("book")
     until=rawio.input.changed,
 )
 async def tell(ctx: rs.RuleContext) -> None:
-    """Tell the story from where it was left."""
+    """Continue the story."""
     ctx[book] = True
     try:
         while ctx[told] < len(STORY):
@@ -46,7 +46,7 @@ async def tell(ctx: rs.RuleContext) -> None:
 
 @module.rule(when=rawio.input.changed, writes=rawio.output)
 async def listen(ctx: rs.RuleContext) -> None:
-    """Answer anything that is no wish for a story."""
+    """Answer everything but a request for a story."""
     ctx[rawio.output] = "Say 'story', and I go on."
 
 

@@ -1,11 +1,11 @@
-"""What every test shares: a data folder of its own run, never the user's; and the Hypothesis profiles.
+"""Fixtures of every test: a temporary data folder instead of the user's, and the Hypothesis profiles.
 
 - `ci` (the default of `make test` and of continuous integration): the same examples each time, so that a
   failure is the change's own.
 - `dev` (the default of a bare `pytest`): fresh examples, and the failing ones are remembered.
 - `fuzz` (`make fuzz`): fresh examples, and many.
 
-None has a deadline: how long something takes is a benchmark's question. Choose with `HYPOTHESIS_PROFILE`.
+No profile has a deadline: benchmarks measure time. Choose with `HYPOTHESIS_PROFILE`.
 """
 
 import os

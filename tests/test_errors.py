@@ -20,14 +20,14 @@ from ravestate.errors import nearest
         (rs.Resign, rs.RavestateError),
     ],
 )
-def test_each_error_is_one_of_ours_and_of_its_builtin_kind(
+def test_each_error_derives_from_the_root_and_a_builtin(
     error: type[Exception], builtin: type[Exception]
 ) -> None:
     assert issubclass(error, rs.RavestateError)
     assert issubclass(error, builtin)
 
 
-def test_all_faults_are_told_in_one_text() -> None:
+def test_one_text_has_all_faults() -> None:
     faults = rs.DeclarationErrors([rs.DeclarationError("one"), rs.DeclarationError("two")])
     assert str(faults) == "2 faults in the declarations:\n  - one\n  - two"
     assert str(rs.DeclarationErrors([rs.DeclarationError("one")])).startswith("1 fault in the declarations:")
@@ -73,10 +73,10 @@ def test_the_text_of_a_lookup_error_is_not_quoted() -> None:
         ("anything", [], ""),
     ],
 )
-def test_the_nearest_name_is_offered(name: str, known: list[str], hint: str) -> None:
+def test_the_nearest_name_is_the_hint(name: str, known: list[str], hint: str) -> None:
     assert nearest(name, known) == hint
 
 
-def test_a_misspelt_name_of_the_package_is_met_by_the_right_one() -> None:
+def test_a_misspelt_name_of_the_package_gets_a_hint() -> None:
     with pytest.raises(AttributeError, match="ravestate has no 'Modul'; did you mean 'Module'"):
         _ = rs.Modul

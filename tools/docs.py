@@ -2,7 +2,7 @@
 
 A page's place within its section is the `order:` of its front matter (10 if it has none), then its name.
 The reference has a page for each part of the public face, and one for each built-in module: what its README
-says, then what its docstrings say. Nothing is imported for it; the source is read.
+says, then what its docstrings say. The build reads the source and imports nothing.
 """
 
 import ast
@@ -34,13 +34,12 @@ PARTS = {
 }
 READING_ORDER = {
     "declare": ["module", "signal", "slot", "condition", "rule", "outcome", "settings", "core"],
-    "policy": ["compile", "policy", "plan", "conflicts", "findings"],
+    "policy": ["compile", "policy", "model", "conflicts", "findings"],
     "runtime": ["run", "context", "rule_context", "journal"],
     "testing": ["simulation"],
     "engine": ["trace", "explain", "snapshot", "engine", "events", "effects", "activation"],
 }
-"""The files of a part that are of use to others, in the order in which to read them. A part that is not named here
-shows all its files, by name."""
+"""The public files of a part, in reading order. A part without an entry shows all its files, by name."""
 KINDS = {"modality": "Modalities", "meta": "Meta modules", "skill": "Skills", "platform": "Platforms"}
 
 
@@ -93,7 +92,7 @@ def _modules(kind: str) -> list[str]:
 
 
 def _reference(part: str) -> str:
-    """What the room says of itself, and one directive for each of its files."""
+    """Return the docstring of a room, and one directive for each of its files."""
     if not (SOURCE / part).is_dir():
         return f"::: ravestate.{part}\n"
     room = SOURCE / part

@@ -5,11 +5,11 @@
 
 Three kinds:
 
-- Diagrams: the page's Python blocks are run, and the module that they make is drawn by `policy.diagram()`.
-- Timelines and causal groups: a simulation that a page makes is drawn from its trace.
-- Sketches: boxes and arrows, here.
+- Diagrams: the tool runs the page's Python blocks, and `policy.diagram()` draws their module.
+- Timelines and causal groups: the tool draws the trace of a page's simulation.
+- Sketches: boxes and arrows in this file.
 
-All are light or dark as the viewer wishes, and need no font or file beside them.
+All pictures follow the viewer's light or dark theme, and need no other file.
 """
 
 from __future__ import annotations
@@ -28,8 +28,8 @@ sys.path.insert(0, str(ROOT / "tests"))
 
 import ravestate as rs  # noqa: E402
 from ravestate.engine import trace as t  # noqa: E402
-from ravestate.policy.diagram.style import NODE_COLOURS, PAPER, TEXT  # noqa: E402
-from ravestate.policy.diagram.text import width  # noqa: E402
+from ravestate.draw.style import NODE_COLOURS, PAPER, TEXT  # noqa: E402
+from ravestate.draw.text import width  # noqa: E402
 from repo.snippets import Page  # noqa: E402
 
 FOLDER = ROOT / "docs" / "pictures"
@@ -174,7 +174,7 @@ def _style() -> str:
 
 @dataclass(slots=True)
 class Bar:
-    """What an activation did from one time to another."""
+    """A bar of the timeline: the state of an activation between two times."""
 
     rule: str
     kind: str
@@ -184,7 +184,7 @@ class Bar:
 
 
 def timeline(page: ModuleType, variable: str, *, end: float) -> str:
-    """Who held what, waited and ran: a row for each signal and each rule, time to the right."""
+    """Draw a timeline: a row for each signal and each rule, time to the right."""
     records = [record for record in vars(page)[variable] if record.time <= end]
     signals = _seen(
         r.signal for r in records if isinstance(r, t.Born) and r.signal.split(":")[0] not in ("core", "idle")

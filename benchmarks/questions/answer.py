@@ -1,8 +1,8 @@
 """How long until an input is answered?
 
-The same work for all: an input, a chain of k rules each raising the next signal, an answering rule on the last
-signal and a competing fallback rule on the input, both writing one output. The answering rule must answer, and
-the fallback must stay quiet; each contestant checks it for every input.
+All contestants do the same work. A chain of k rules follows an input; each rule raises the next signal. An answering
+rule on the last signal and a fallback rule on the input compete for one output. For every input, each contestant
+checks that the answering rule answers and the fallback stays quiet.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from benchmarks.figures import Figure, compare
 
 CHAINS = (1, 4, 8)
 LIVED_IN = 3000
-"""Inputs after which CLIPS is measured once more: clipspy slows with every input that it has seen."""
+"""Inputs before the second measurement of CLIPS: clipspy slows down with every input."""
 
 
 def at_most(ratio: float) -> bool:
@@ -24,7 +24,7 @@ def at_most(ratio: float) -> bool:
 
 
 def ask(bench: Bench) -> Iterable[Figure]:
-    """Ours against CLIPS (judged), and against the floor and the reference implementation."""
+    """Compare ours with CLIPS (the target), the floor and the reference implementation."""
     ours, clips, floor, reference = bench.ours(), bench.clips(), bench.callbacks(), bench.reference()
     for k in CHAINS:
         mine: list[float] = []

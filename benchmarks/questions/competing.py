@@ -1,9 +1,12 @@
 """How long to decide among a thousand rules for one slot?
 
-Four shapes. Tied: all on the input, and the first declared wins. Weighted: all on the input, and the one of
-greatest weight wins, declared in the middle. Predicates: the same, each with a predicate on the payload.
-Topics: ``input & topic_i``; a classifier that might raise any of a thousand topics raises one, and the rule of
-that topic wins over the others and over a fallback.
+There are four shapes:
+
+- Tied: all rules wait for the input, and the first declared rule wins.
+- Weighted: all rules wait for the input, and the greatest weight, declared in the middle, wins.
+- Predicates: the same, with a predicate on the payload in each rule.
+- Topics: ``input & topic_i``. A classifier declares a thousand topics and raises one. The rule of that topic wins
+  over the other rules and a fallback.
 """
 
 from __future__ import annotations
@@ -26,14 +29,14 @@ TITLES = {
     "topics": "on input & topic_i",
 }
 LIMIT = 0.002
-"""Seconds in which the decision has to fall."""
+"""Seconds that the decision may take."""
 
 
 class Contest:
-    """A module in which `rules` rules want the output.
+    """A module in which `rules` rules compete for the output.
 
     Attributes:
-        winner: The name of the rule that has to get it.
+        winner: The name of the rule that must win.
     """
 
     def __init__(self, shape: str, rules: int) -> None:
@@ -68,7 +71,7 @@ class Contest:
 
 
 def compete(shape: str, rules: int, inputs: int) -> list[float]:
-    """Seconds from the input to the answer, for each input."""
+    """Return the seconds from the input to the answer, for each input."""
 
     async def measure() -> list[float]:
         contest = Contest(shape, rules)

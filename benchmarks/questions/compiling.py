@@ -1,7 +1,7 @@
 """How long does it take to compile a policy?
 
-The common work with a chain of one, beside as many rules each on a signal of its own; declarations not counted.
-CLIPS builds as many rules from text. What counts is also how it grows: each rule of many against each of few.
+The common work with a chain of one, beside many rules with a signal of their own. Declarations do not count. CLIPS builds
+as many rules from text. A second row shows the growth: the time for each rule of many against each rule of few.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ FEW, MANY = 100, 10_000
 
 
 def compiling(unrelated: int) -> float:
-    """Seconds to compile."""
+    """Return the seconds to compile."""
     module = Agent(1, unrelated).module
     begin = time.perf_counter()
     rs.compile(module)
@@ -27,7 +27,7 @@ def compiling(unrelated: int) -> float:
 
 
 def ask(bench: Bench) -> Iterable[Figure]:
-    """Many rules against CLIPS, and each of many against each of few."""
+    """Compare many rules with CLIPS, and each rule of many with each rule of few."""
     ours, clips = bench.ours("benchmarks.questions.compiling"), bench.clips()
     many, few, theirs = [], [], []
     for _ in bench.rounds(5, 2):

@@ -1,6 +1,6 @@
-"""What does an agent cost that has nothing to do?
+"""What does an idle agent cost?
 
-Processor time of the whole process over some seconds of doing nothing, after one input was answered.
+The processor time of the whole process over some idle seconds, after one answered input.
 """
 
 from __future__ import annotations
@@ -11,11 +11,11 @@ from benchmarks.bench import Bench
 from benchmarks.figures import Figure, compare
 
 NONE = 0.001
-"""What counts as none: a thousandth of a core."""
+"""The share of a core that counts as none."""
 
 
 def ask(bench: Bench) -> Iterable[Figure]:
-    """Ours against the reference implementation, which ticks 20 times a second."""
+    """Compare ours with the reference implementation, which ticks 20 times a second."""
     seconds = bench.several(5, 3)
     for unrelated in (0, 500):
         ours, theirs = [], []

@@ -1,6 +1,6 @@
-"""How long does the import take, and what comes with it?
+"""How long does the import take, and which packages does it load?
 
-The wall time of an interpreter that imports and ends, less that of one that only ends.
+The wall time of an interpreter that imports Ravestate and ends, minus that of an interpreter that only ends.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ print(*sorted(roots - set(sys.stdlib_module_names) - {'ravestate'}))
 
 
 def ask(bench: Bench) -> Iterable[Figure]:
-    """Ours against the reference implementation, and the third parties that come along."""
+    """Compare ours with the reference implementation, and count the third-party packages."""
     reference = bench.reference_interpreter()
     ours, theirs = [], []
     for _ in bench.rounds(15, 5):

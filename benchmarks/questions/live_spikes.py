@@ -1,8 +1,10 @@
 """What does a spike cost when many are alive?
 
-Three shapes, each with 10,000 live spikes against 100. A burst: all are raised at once, and one rule handles
-each. In wait: spikes whose rule waits for a second signal that never comes; what one more costs. Beside: an
-input is answered while so many spikes lie in wait.
+There are three shapes, each with 10,000 live spikes against 100:
+
+- Burst: all spikes are raised at once, and one rule handles each.
+- One more: the rule of the spikes waits for a second signal that never comes; one more spike arrives.
+- Beside: an input gets its answer while these spikes wait.
 """
 
 from __future__ import annotations
@@ -19,11 +21,11 @@ from benchmarks.peers.wire import serve
 
 FEW, MANY = 100, 10_000
 SAMPLE = 100
-"""Spikes over which a single one's cost is taken."""
+"""Spikes in one measurement."""
 
 
 def burst(spikes: int) -> float:
-    """Seconds for each of so many spikes raised at once, until all are handled."""
+    """Return the seconds for each spike of a burst, until all are handled."""
 
     async def measure() -> float:
         module = rs.Module("burst")
@@ -50,7 +52,7 @@ def burst(spikes: int) -> float:
 
 
 def in_wait(spikes: int) -> dict[str, float]:
-    """Seconds for one more spike beside so many that lie in wait, and for an input to be answered beside them."""
+    """Return the seconds for one more spike beside `count` waiting spikes, and for an answer beside them."""
 
     async def measure() -> dict[str, float]:
         module = rs.Module("waiting")
@@ -88,7 +90,7 @@ def in_wait(spikes: int) -> dict[str, float]:
 
 
 def ask(bench: Bench) -> Iterable[Figure]:
-    """Many live spikes against few."""
+    """Compare many live spikes with few."""
     ours = bench.ours("benchmarks.questions.live_spikes")
     bursts: dict[int, list[float]] = {FEW: [], MANY: []}
     more: dict[int, list[float]] = {FEW: [], MANY: []}

@@ -1,7 +1,7 @@
-"""What does one more context hold, beyond the policy that it shares?
+"""How much memory does one more context hold, besides the shared policy?
 
-Many contexts of one policy on one loop; each has answered inputs, and everything has aged (virtual time would
-do, but this is the real thing). What tracemalloc counts after that, divided by their number.
+Many contexts of one policy run on one loop, in real time. Each has answered inputs, and all spikes have aged. The figure
+is the memory that tracemalloc counts, divided by the number of contexts.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ AGED = 6.0
 
 
 def held(contexts: int, k: int, unrelated: int) -> float:
-    """Bytes for each context."""
+    """Return the bytes for each context."""
 
     async def measure() -> float:
         agent = Agent(k, unrelated)
@@ -54,7 +54,7 @@ def held(contexts: int, k: int, unrelated: int) -> float:
 
 
 def ask(bench: Bench) -> Iterable[Figure]:
-    """A small agent, and one of a thousand rules."""
+    """Measure a small agent, and an agent with a thousand rules."""
     contexts = bench.several(100, 30)
     for k, unrelated in ((1, 0), (8, 1000)):
         values = [

@@ -1,9 +1,9 @@
-"""How long does the complete text agent take to decide who answers, to show its prompt, and what does it hold?
+"""How fast is the complete text agent, and how much memory does it hold?
 
-Decided: from the input to the moment when an answer is written, or when the language model is asked to word one; its
-own time is not ours. All modules of ``ravestate chat`` are loaded, and everything that they load on first use.
-Prompt: from the start of the process to the console's prompt on a terminal. Held: the resident memory of the same
-agent, without the language model, which runs in a process of its own.
+- Decided: the time from the input until a rule writes an answer or calls the language model. The time of the model does
+  not count. All modules of ``ravestate chat`` are loaded, with everything that they load on first use.
+- Prompt: the time from the start of the process to the console's prompt on a terminal.
+- Held: the resident memory of the agent, without the language model, which runs in a process of its own.
 """
 
 from __future__ import annotations
@@ -86,7 +86,7 @@ def decide(rounds: int) -> dict[str, list[float]]:
 
 
 def ask(bench: Bench) -> Iterable[Figure]:
-    """Decisions, the prompt, and memory, against what was promised."""
+    """Measure decisions, the prompt and memory, against the claims."""
     found = bench.ours(__name__).ask("decide", rounds=bench.several(8, 2))
     decided = found["decided"]
     yield measured(

@@ -1,7 +1,7 @@
-"""What does a plain function cost, which runs in a worker thread?
+"""What does a plain function in a worker thread cost?
 
-The common work with a chain of one, where the answering rule is a plain function; against the same with an
-``async`` one, and against the bare hop into a thread and back.
+The common work with a chain of one, where the answering rule is a plain function. It is compared with an ``async``
+answering rule, and with a bare hop into a thread and back.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from benchmarks.figures import Figure, compare
 
 
 def ask(bench: Bench) -> Iterable[Figure]:
-    """A plain function against an async one, and what it adds against the floor."""
+    """Compare a plain function with an async one, and its extra time with the floor."""
     ours, floor = bench.ours(), bench.callbacks()
     plain, direct, bare = [], [], []
     inputs = bench.several(100, 50)

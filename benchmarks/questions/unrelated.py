@@ -1,7 +1,7 @@
-"""What do rules cost that do not concern the input?
+"""What do unrelated rules cost?
 
-The common work with a chain of one, beside 10 and beside 10,000 rules, each on a signal of its own. Each case
-has a process of its own, so that neither pays for the other's memory.
+The common work with a chain of one, beside 10 and beside 10,000 rules, each with a signal of its own. Each case has its
+own process, so that neither pays for the memory of the other.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ FEW, MANY = 10, 10_000
 
 
 def ask(bench: Bench) -> Iterable[Figure]:
-    """An input beside many rules against one beside few."""
+    """Compare an input beside many rules with one beside few."""
     small, large = bench.ours(), bench.ours()
     few, many = [], []
     inputs = bench.several(100, 50)

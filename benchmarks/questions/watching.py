@@ -1,10 +1,9 @@
-"""What does an agent cost that is looked into?
+"""What does the board cost the agent that it shows?
 
-The agent of the question ``answer`` (a chain of four rules, an answer that competes with a fallback) as a conversation
-of the web page, with the board mounted or not; a board's browser looks on over a WebSocket or does not. The agent does
-nothing but answer, one input after another: the worst case for whoever looks on, as a rule that thinks makes the same
-records in more time. Each figure is the processor time of an answer over a turn, in which a recorder that has had its
-fill comes and goes several times.
+The agent of the question ``answer`` (a chain of four rules) is a conversation of the web page, with or without the board. A
+board's browser may be connected over a WebSocket. The agent answers one input after another. This is the worst case for the
+board: a rule that computes would make the same records in more time. Each figure is the processor time of an answer. Within
+each measurement, the recorder reaches its limit and starts again several times.
 """
 
 from __future__ import annotations
@@ -29,7 +28,7 @@ TURN = 0.6
 """Seconds of processor time for which one answers before the next has its turn."""
 
 TURNS = 15
-"""Of each, in one repetition."""
+"""Turns of each contestant in one repetition."""
 
 
 def chain() -> tuple[rs.Module, rs.Slot[str], rs.Slot[str]]:
@@ -85,7 +84,7 @@ def _begin_anew(recorder: Any) -> None:
     """Take from a recorder what it was granted for the time in which others had their turn."""
     recorder._granted = asyncio.get_running_loop().time()
     recorder._left = max(1, min(recorder._left, int(recorder._rate * PAUSE)))
-    recorder._leisure.share()
+    recorder._idle_share.share()
 
 
 def answered() -> list[list[float]]:
@@ -138,7 +137,7 @@ async def _read(socket: Any) -> None:
 
 
 def ask(bench: Bench) -> Iterable[Figure]:
-    """With and without somebody who looks on."""
+    """Compare the agent with and without a board."""
     ours = bench.ours("benchmarks.questions.watching")
     bare: list[float] = []
     mounted: list[float] = []

@@ -1,11 +1,11 @@
 """How long do many users of the web page wait for an answer?
 
-500 users are connected at once. They come within half a minute; when all are there, each says something every 10 s, at
-moments of their own, for half a minute. The server and the users are processes of their own, on one machine. The agent has
-all text modules but the language model; where no skill has anything to say, a rule in its place says what it has heard, so that an answer that
-went to the wrong user would be noticed. Measured, by the users, is the time from saying something to its answer.
+500 users connect within half a minute. Then, for half a minute, each user says something every 10 s, at random moments. The
+server and the users are separate processes on one machine. The agent has all text modules except the language model. In its
+place, a rule repeats the input, so that an answer to the wrong user is noticed. The users measure the time from an input to
+its answer.
 
-Against it: a server of the same make (uvicorn) that sends back each message, and does nothing else.
+The peer is a bare echo server on the same library (uvicorn).
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ PHRASES = (
 
 
 def start(kind: str) -> int:
-    """Serve on a port of its own, which is returned, until the process ends. What the agent remembers goes with it.
+    """Serve until the process ends, and return the port. The agent's memory is temporary.
 
     Args:
         kind: "agent" or "echo".
@@ -248,7 +248,7 @@ class User:
 
 
 def ask(bench: Bench) -> Iterable[Figure]:
-    """The agent against the echo, in turns."""
+    """Compare the agent with the echo server, in turns."""
     seconds = bench.several(40, 20)
     p95: dict[str, list[float]] = {"agent": [], "echo": []}
     medians: dict[str, list[float]] = {"agent": [], "echo": []}

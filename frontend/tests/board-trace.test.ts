@@ -117,7 +117,7 @@ test("of two runs that which answered is told, and what raised a spike of anothe
 test("one whose rule resigned by another run says so", () => {
   const trace = new Trace();
   trace.add([held(1, 7, "m:r", 1), gaveup(2, 7, 1, "resigned", "m:r", 6)]);
-  expect(gaveUp(trace.bar(7) as Bar, trace)).toBe("the rule resigned for it");
+  expect(gaveUp(trace.bar(7) as Bar, trace)).toBe("the rule resigned");
 });
 
 test("who was behind the answer is looked for when it is told, not while the records come in", () => {

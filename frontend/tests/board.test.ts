@@ -4,11 +4,14 @@ import { afterEach, expect, test, vi } from "vitest";
 import Bar from "../src/board/Bar.svelte";
 import { Board } from "../src/board/board.svelte";
 import Cause from "../src/board/Cause.svelte";
+import Glyph from "../src/board/Glyph.svelte";
 import type { Address } from "../src/board/link";
-import type { Policy, ServerFrame, TraceRecord } from "../src/board/protocol";
+import type { Description, ServerFrame, TraceRecord } from "../src/board/protocol";
+import Rule from "../src/board/Rule.svelte";
 import Say from "../src/board/Say.svelte";
 import Slots from "../src/board/Slots.svelte";
 import Tools from "../src/board/Tools.svelte";
+import { endState } from "../src/board/trace";
 import WhyNot from "../src/board/WhyNot.svelte";
 import { cause } from "../src/board/words";
 
@@ -34,7 +37,7 @@ const rule = (name: string) => ({
   background: false,
 });
 
-const POLICY: Policy = {
+const POLICY: Description = {
   modules: ["m"],
   rules: [rule("m:talk"), rule("m:answer")],
   signals: [
@@ -63,7 +66,7 @@ const POLICY: Policy = {
     { name: "m:people", module: "m", kind: "collection", type: "", signals: [], readers: [], writers: [] },
     { name: "m:secret", module: "m", kind: "value", type: "", signals: [], readers: [], writers: [] },
   ],
-  diagram: null,
+  diagram: { nodes: [], edges: [] },
 };
 
 /** A server that only remembers what it was told. */
@@ -159,7 +162,7 @@ test("why not is asked of the newest input, and the answer shows rules that can 
     whole: true,
   });
   await Promise.resolve();
-  expect(screen.getByText("Ready, but another answered")).toBeTruthy();
+  expect(screen.getByText("It was ready, but another rule answered")).toBeTruthy();
   await fireEvent.click(screen.getByRole("button", { name: "m:answer" }));
   expect(board.rule).toBe("m:answer");
 });
@@ -228,12 +231,12 @@ test("what is exported is a trace that the board opens", () => {
   expect(file.policy.rules[0].name).toBe("m:talk");
 });
 
-test("a conversation that has ended is not tried again", () => {
-  const [server, board] = Server.open();
+test("a chosen conversation that has ended is not tried again", () => {
+  const [server, board] = Server.open({ session: "secret", chosen: true });
   server.socket.onclose?.({ code: 4404 });
   expect(board.status).toBe("gone");
   board.send({ type: "pause" });
-  expect(board.trouble).toContain("no connection");
+  expect(board.trouble).toContain("not connected");
 });
 
 test("the search finds rules by all of its words, in what they are called, hear, write or emit", () => {
@@ -327,7 +330,7 @@ test("what only background rules hear does not take the place of what was said",
   const watch = { ...rule("m:watch"), background: true };
   const heard = (name: string, hearers: string[]) => ({ ...POLICY.signals[0], name, slot: null, hearers });
   const signals = [heard("m:typing", ["m:watch"]), heard("m:said", ["m:talk", "m:watch"])];
-  server.tell({ type: "policy", policy: { ...POLICY, rules: [talk, watch], signals } as Policy });
+  server.tell({ type: "policy", policy: { ...POLICY, rules: [talk, watch], signals } as Description });
   const came = (spike: number, signal: string) => ({ ...input(spike, spike, "null"), signal }) as TraceRecord;
   const clock = { missed: 0, behind: 0, now: 9, paused: false };
   server.tell({ type: "records", records: [came(3, "m:typing")], ...clock });
@@ -345,7 +348,7 @@ test("however long somebody writes, what was said before stays the cause", () =>
     { ...POLICY.signals[0], name: "m:said", slot: null, hearers: ["m:talk"] },
   ];
   const rules = [rule("m:talk"), { ...rule("m:watch"), background: true }];
-  server.tell({ type: "policy", policy: { ...POLICY, rules, signals } as Policy });
+  server.tell({ type: "policy", policy: { ...POLICY, rules, signals } as Description });
   const records = [{ ...input(1, 1, "1"), signal: "m:said" }] as TraceRecord[];
   for (let n = 2; n < 200; n++) records.push({ ...input(n, n, "null"), signal: "m:typing" } as TraceRecord);
   server.tell({ type: "records", records, missed: 0, behind: 0, now: 300, paused: false });
@@ -360,7 +363,7 @@ test("a write counts as heard if any of its signals is", () => {
     { ...POLICY.signals[0], name: "m:lit:true", hearers: ["m:watch"] },
   ];
   const rules = [rule("m:talk"), { ...rule("m:watch"), background: true }];
-  server.tell({ type: "policy", policy: { ...POLICY, rules, signals } as Policy });
+  server.tell({ type: "policy", policy: { ...POLICY, rules, signals } as Description });
   const records = [
     { ...input(3, 1, "true"), signal: "m:lit:changed" },
     { ...input(4, 2, "true"), signal: "m:lit:changed" },
@@ -462,7 +465,7 @@ test("what came of it follows each step while the clock stands still", () => {
     tell(input(3, 1, '"hi"'), { kind: "held", ...of, spike: 3, signal: "m:input:changed", lacks: [] });
     expect(words()).toContain("may not run yet");
     tell({ kind: "started", time: 1, run: 1, rule: "m:talk", clause: 0, spikes: [3] });
-    expect(words()).toContain("runs");
+    expect(words()).toContain("has been running");
     tell({ kind: "settled", time: 1, run: 1, rule: "m:talk", outcome: "done", reason: "", fired: true });
     expect(words()).toContain("ran");
   } finally {
@@ -497,7 +500,8 @@ test("what begins like JSON and is none is not sent as a text", async () => {
     await fireEvent.input(field, { target: { value: typed } });
     await fireEvent.click(screen.getByRole("button", { name: "Write" }));
     expect(server.sent.find(({ type }) => type === "put")?.value).toBe(sent);
-    expect(board.trouble === "").toBe(sent !== undefined);
+    expect(screen.queryByRole("alert") === null).toBe(sent !== undefined);
+    expect(board.trouble).toBe("");
   }
 });
 
@@ -544,7 +548,8 @@ test("what is refused can be mended: the field is there again, and has what was 
   server.tell({ type: "error", code: "refused", text: "true or false", of: "put" });
   flushSync();
   expect(screen.getByLabelText(label)).toHaveProperty("value", "banana");
-  expect(board.trouble).toBe("true or false");
+  expect(screen.getByRole("alert").closest("form")?.textContent).toContain("true or false"); // beside its field
+  expect(board.trouble).toBe("");
   await fireEvent.click(screen.getByRole("button", { name: "Cancel" }));
   expect(screen.queryByLabelText(label)).toBeNull();
 });
@@ -606,7 +611,7 @@ test("what was typed stays when there is no connection", async () => {
   server.socket.onclose?.({ code: 1006 });
   await fireEvent.submit(field.closest("form") as HTMLFormElement);
   expect(field).toHaveProperty("value", "Hello");
-  expect(board.trouble).toContain("no connection");
+  expect(board.trouble).toContain("not connected");
   board.stop();
 });
 
@@ -690,5 +695,73 @@ test("conversations are known by when they began, with whom, and their last word
     `${time}, “my name is Ada”, ended`,
     `${time}, Hugo, nothing said yet`,
     "and 130 older ones",
+  ]);
+});
+
+test("it follows the newest conversation of its browser until the user chooses one", () => {
+  const [server, board] = Server.open({});
+  expect(server.sent[0]).toEqual({ type: "hello", v: 1 });
+  const hello = () => {
+    server.socket.onopen?.();
+    return server.sent.at(-1);
+  };
+  board.meet("second");
+  expect(hello()).toEqual({ type: "hello", v: 1, session: "second" });
+  board.play("recorded", "old-trace.json");
+  board.meet("third"); // the recording stays
+  expect(hello()).toEqual({ type: "hello", v: 1, recording: "recorded" });
+  board.back();
+  expect(hello()).toEqual({ type: "hello", v: 1, session: "third" });
+  board.turnTo({ visitor: "other", chosen: true });
+  board.meet("fourth");
+  expect(hello()).toEqual({ type: "hello", v: 1, visitor: "other" });
+});
+
+test("if its browser's conversation is over, it shows the newest one of the server", () => {
+  const [server] = Server.open({ session: "over" });
+  server.socket.onclose?.({ code: 4404 });
+  server.socket.onopen?.();
+  expect(server.sent.at(-1)).toEqual({ type: "hello", v: 1 });
+});
+
+test("the export is named after the conversation", () => {
+  const [server, board] = Server.open();
+  expect(board.fileName).toBe("elske-v-trace.json");
+  const began = new Date(2026, 10, 22, 14, 5).getTime();
+  const conversations = [{ visitor: "v", name: "Ada Lovelace", began, said: null }];
+  server.tell({ type: "conversations", conversations, more: 0 });
+  expect(board.fileName).toBe("elske-ada-lovelace-2026-11-22t14-05-trace.json");
+});
+
+test("a failed rule shows its traceback, and the header counts failures", async () => {
+  const [server, board] = Server.open();
+  render(Bar, { board, main: "timeline", ondownload: () => {}, onopen: () => {}, onturn: () => {} });
+  expect(screen.queryByText(/failed/)).toBeNull();
+  const error = "Traceback (most recent call last):\nValueError: out of ink\n";
+  const of = { time: 1, run: 1, rule: "m:talk" };
+  const records: TraceRecord[] = [
+    input(3, 1, '"hi"'),
+    { kind: "started", ...of, clause: 0, spikes: [3] },
+    { kind: "settled", ...of, outcome: "failed", reason: "out of ink", fired: false, error },
+  ];
+  server.tell({ type: "records", records, missed: 0, behind: 0, now: 2, paused: true });
+  flushSync();
+  await fireEvent.click(screen.getByText("1 failed"));
+  expect(board.rule).toBe("m:talk");
+  const { container } = render(Rule, { board });
+  expect(container.querySelector("pre")?.textContent).toBe(error);
+});
+
+test("an interrupted run has a glyph of its own", () => {
+  const shapes = ["done", "interrupted", "resigned", "failed"].map(
+    (state) => render(Glyph, { state }).container.innerHTML,
+  );
+  expect(new Set(shapes).size).toBe(4);
+  expect(["done", "interrupted", "wiped", "retired", "failed"].map(endState)).toEqual([
+    "done",
+    "interrupted",
+    "interrupted",
+    "done",
+    "failed",
   ]);
 });

@@ -1,11 +1,17 @@
 import { cleanup, fireEvent, render, screen } from "@testing-library/svelte";
+import { tick } from "svelte";
 import { afterEach, expect, test, vi } from "vitest";
 import Composer from "../src/chat/Composer.svelte";
+import Header from "../src/chat/Header.svelte";
 import Log from "../src/chat/Log.svelte";
+import Suggestions from "../src/chat/Suggestions.svelte";
 import { Conversation } from "../src/lib/conversation.svelte";
 import { TestSocket } from "./socket";
 
-afterEach(cleanup);
+afterEach(() => {
+  cleanup();
+  sessionStorage.clear();
+});
 
 test("Enter says it, Shift-Enter begins a line, and while a character is composed it does neither", async () => {
   const onsay = vi.fn();
@@ -77,5 +83,70 @@ test("what looks like HTML is shown as text", async () => {
   const { container } = render(Log, { conversation });
   expect(container.querySelector("img")).toBeNull();
   expect(screen.getByRole("log").textContent).toContain(text);
+  conversation.stop();
+});
+
+test("the header says that the agent is paused, or does not respond", async () => {
+  vi.useFakeTimers();
+  const conversation = new Conversation({ open: TestSocket.make });
+  conversation.start();
+  const server = TestSocket.newest;
+  server.welcome("s");
+  const { container } = render(Header, { conversation });
+  const status = () => container.querySelector(".status")?.textContent;
+  expect(status()).toBe("here");
+  server.tell({ type: "paused", on: true });
+  await tick();
+  expect(status()).toBe("paused");
+  server.tell({ type: "paused", on: false });
+  await tick();
+  expect(status()).toBe("here");
+  conversation.say("hello");
+  vi.advanceTimersByTime(5_000);
+  await tick();
+  expect(status()).toBe("not responding");
+  server.tell({ type: "pong" });
+  await tick();
+  expect(status()).toBe("here");
+  conversation.stop();
+  vi.useRealTimers();
+});
+
+test("the first screen offers things to say until something is said", async () => {
+  const conversation = new Conversation({ open: TestSocket.make });
+  conversation.start();
+  TestSocket.newest.open();
+  TestSocket.newest.tell({
+    type: "welcome",
+    v: 1,
+    session: "s",
+    resumed: false,
+    first: 1,
+    agent: "Elske",
+    suggestions: ["Hello!", "Who are you?"],
+  });
+  render(Suggestions, { conversation });
+  expect(screen.getAllByRole("button").map((button) => button.textContent)).toEqual([
+    "Hello!",
+    "Who are you?",
+  ]);
+  await fireEvent.click(screen.getByRole("button", { name: "Who are you?" }));
+  expect(TestSocket.newest.sent.at(-1)).toMatchObject({ type: "say", text: "Who are you?" });
+  expect(screen.queryByRole("button")).toBeNull();
+  conversation.stop();
+});
+
+test("of five thousand lines only those near the view are in the DOM", async () => {
+  const conversation = new Conversation({ open: TestSocket.make });
+  conversation.start();
+  TestSocket.newest.welcome("s");
+  const { container } = render(Log, { conversation });
+  for (let n = 1; n <= 5000; n += 1) {
+    TestSocket.newest.tell({ type: "message", n, from: "agent", text: `Line ${n}`, time: 0 });
+  }
+  await tick();
+  const lines = container.querySelectorAll(".line");
+  expect(lines.length).toBeLessThan(200);
+  expect(lines[lines.length - 1]?.textContent).toContain("Line 5000");
   conversation.stop();
 });

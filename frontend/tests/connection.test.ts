@@ -64,17 +64,32 @@ test.each([
   expect(TestSocket.all).toHaveLength(1);
 });
 
-test("a server that is silent is asked, and taken for lost if it does not answer", () => {
+test("a server without a pong is silent, and lost after a while", () => {
   const first = TestSocket.newest;
   first.welcome("s");
-  vi.advanceTimersByTime(25_000);
+  vi.advanceTimersByTime(15_000);
   expect(first.sent.at(-1)).toEqual({ type: "ping" });
   first.tell({ type: "pong" });
-  vi.advanceTimersByTime(25_000 + 9_999);
+  vi.advanceTimersByTime(15_000 + 4_999);
   expect(statuses).toEqual(["open"]);
   vi.advanceTimersByTime(1);
-  expect(statuses).toEqual(["open", "lost"]);
+  expect(statuses).toEqual(["open", "silent"]);
+  vi.advanceTimersByTime(19_999);
+  expect(first.closed).toBe(false);
+  vi.advanceTimersByTime(1);
+  expect(statuses).toEqual(["open", "silent", "lost"]);
   expect(first.closed).toBe(true);
+});
+
+test("a server that does not take an utterance is silent until its next frame", () => {
+  const first = TestSocket.newest;
+  first.welcome("s");
+  connection.send({ type: "say", id: "a", text: "hello" });
+  vi.advanceTimersByTime(5_000);
+  expect(statuses).toEqual(["open", "silent"]);
+  expect(connection.send({ type: "say", id: "b", text: "hello?" })).toBe(true);
+  first.tell({ type: "pong" });
+  expect(statuses).toEqual(["open", "silent", "open"]);
 });
 
 test("a server that takes the connection and never welcomes is given up", () => {

@@ -1,7 +1,7 @@
 """Ravestate: interactive agents as Signal-Rule-Slot automata.
 
-Declare modules of rules in plain Python, compile them into a policy, run it, talk to it, test it in virtual
-time. Importing this loads no third party and no event loop; what needs them is loaded on first use.
+Declare modules of rules in plain Python, compile them into a policy, run it, talk to it, test it in virtual time.
+The import loads no third party and no event loop; names that need them load at their first use.
 """
 
 from __future__ import annotations
@@ -30,6 +30,7 @@ from ravestate.errors import (
 
 if TYPE_CHECKING:
     from ravestate.policy.compile import compile_policy as compile
+    from ravestate.policy.model import ClauseView
     from ravestate.policy.policy import Policy
     from ravestate.runtime.context import Context
     from ravestate.runtime.rule_context import RuleContext
@@ -37,6 +38,7 @@ if TYPE_CHECKING:
     from ravestate.settings import Settings
 
 __all__ = [
+    "ClauseView",
     "Collection",
     "Condition",
     "Constraint",
@@ -75,6 +77,7 @@ __all__ = [
 __version__ = "1.0.0.dev0"
 
 _LATER = {
+    "ClauseView": ("ravestate.policy.model", "ClauseView"),
     "Context": ("ravestate.runtime.context", "Context"),
     "Policy": ("ravestate.policy.policy", "Policy"),
     "RuleContext": ("ravestate.runtime.rule_context", "RuleContext"),
@@ -94,3 +97,7 @@ def __getattr__(name: str) -> Any:
     module, attribute = _LATER[name]
     value = globals()[name] = getattr(import_module(module), attribute)
     return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

@@ -1,19 +1,19 @@
-"""Every exception that Ravestate raises on purpose.
+"""The exceptions that Ravestate raises on purpose.
 
 ```text
 RavestateError
-├── DeclarationError(ValueError)     the designer's mistake, found before running
-├── DeclarationErrors(ExceptionGroup) all of them at once, raised by ``rs.compile``
-├── RuleError(RuntimeError)          a rule did what it may not, or failed
-│   ├── UndeclaredError(LookupError) it touched what its declaration does not name
-│   ├── RuleTimeout(TimeoutError)    it took longer than its ``timeout``
-│   └── RunEnded                     its run was over (interrupted, timed out) when it acted
-├── EngineError(RuntimeError)        an event that the automaton cannot take in its state
-└── PlatformError(RuntimeError)      the world failed: a device, a server, a file, a package
+├── DeclarationError(ValueError)      a designer's mistake, found before running
+├── DeclarationErrors(ExceptionGroup) all such mistakes at once, raised by ``rs.compile``
+├── UsageError                        no such module, file or setting; commands end with exit code 2
+├── RuleError(RuntimeError)           a rule failed, or broke its declaration
+│   ├── UndeclaredError(LookupError)  a rule touched a slot or a signal that it does not declare
+│   ├── RuleTimeout(TimeoutError)     a run took longer than the rule's ``timeout``
+│   └── RunEnded                      a rule acted after its run was over
+├── EngineError(RuntimeError)         an event that does not fit the engine's state
+└── PlatformError(RuntimeError)       the world failed: a device, a server, a file, a package
 ```
 
-Every message gives the offending value, where it was declared, the nearest valid name, and the line
-to write instead.
+Every message gives the refused value, its place, the nearest valid name, and the line to write instead.
 """
 
 from __future__ import annotations
@@ -30,20 +30,21 @@ __all__ = [
     "RuleTimeout",
     "RunEnded",
     "UndeclaredError",
+    "UsageError",
     "nearest",
 ]
 
 
 class RavestateError(Exception):
-    """The root: ``except rs.RavestateError`` catches everything that Ravestate raises on purpose."""
+    """The root of the tree: ``except rs.RavestateError`` catches all exceptions of Ravestate's own."""
 
 
 class DeclarationError(RavestateError, ValueError):
-    """A module, signal, slot, rule or condition is declared in a way that cannot work."""
+    """The declaration of a module, signal, slot, rule or condition cannot work."""
 
 
 class DeclarationErrors(RavestateError, ExceptionGroup[DeclarationError]):
-    """Every fault that compiling found; each one is a `DeclarationError` in ``.exceptions``."""
+    """All faults that compiling found; ``.exceptions`` holds a `DeclarationError` for each."""
 
     def __new__(cls, faults: Sequence[DeclarationError]) -> DeclarationErrors:
         return super().__new__(cls, _count(faults), faults)
@@ -62,12 +63,16 @@ def _count(faults: Sequence[DeclarationError]) -> str:
     return f"{len(faults)} fault" + ("s" if len(faults) != 1 else "") + " in the declarations"
 
 
+class UsageError(RavestateError):
+    """An agent is named wrongly: there is no such module, file or setting. Commands end with exit code 2."""
+
+
 class RuleError(RavestateError, RuntimeError):
-    """A rule did something that it may not do, returned nonsense, or failed."""
+    """A rule failed, returned nonsense, or broke its declaration."""
 
 
 class UndeclaredError(RuleError, LookupError):
-    """A rule read, wrote or emitted something that its declaration does not name (L3)."""
+    """A rule read, wrote or emitted a slot or a signal that its declaration does not name (L3)."""
 
     def __str__(self) -> str:
         return str(self.args[0]) if self.args else ""
@@ -78,19 +83,19 @@ class RuleTimeout(RuleError, TimeoutError):
 
 
 class RunEnded(RuleError):
-    """A run acted after its end: it had been interrupted, timed out, or the context was closed."""
+    """A rule acted after the end of its run: an interruption, a timeout, or the end of the context."""
 
 
 class EngineError(RavestateError, RuntimeError):
-    """The engine was given an event that its state does not allow: a fault of the shell around it."""
+    """An event did not fit the engine's state: a fault of the runtime around it."""
 
 
 class PlatformError(RavestateError, RuntimeError):
-    """Something outside failed: a device, a server, a file, or a package that is not installed."""
+    """A device, a server or a file failed, or a package is not installed."""
 
 
 def nearest(name: str, names: Iterable[str]) -> str:
-    """Word the hint "did you mean ...?" for a name that is not among `names`; empty if none is near."""
+    """Return the hint "; did you mean ...?" for a name that is not among `names`, or an empty text if none is near."""
     import difflib  # only on the way to an error
 
     known = list(names)
@@ -105,7 +110,7 @@ def nearest(name: str, names: Iterable[str]) -> str:
     best = max(known, key=likeness, default="")
     if known and likeness(best) >= ALIKE:
         return f"; did you mean {best!r}?"
-    if ":" in name:  # the right name in the wrong module, or the other way round
+    if ":" in name:  # the right name in the wrong module
         last = name.rsplit(":", 1)[-1]
         for other in known:
             if other.rsplit(":", 1)[-1] == last:
@@ -114,12 +119,11 @@ def nearest(name: str, names: Iterable[str]) -> str:
 
 
 ALIKE = 0.6
-"""The share of letters, in the same order, that two names of similar length have in common if one may be meant by the
-other."""
+"""The least likeness of a name to its nearest: the share of letters that both have in the same order."""
 
 
 def _is_a_slip(one: str, other: str) -> bool:
-    """Whether one letter more, less or another, or two neighbours exchanged, make one name of the other."""
+    """Return whether two names differ by one letter, or by two neighbours that changed places."""
     if min(len(one), len(other)) < 2:
         return False
     pairs = zip(one, other, strict=False)

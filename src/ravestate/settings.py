@@ -1,6 +1,6 @@
-"""Typed settings of modules: pydantic models whose fields may be named in declarations.
+"""Typed settings of modules: pydantic models whose fields a declaration may refer to.
 
-This file stands outside of the pure rooms because it needs a third party; ``rs.Settings`` loads it.
+The file is outside of the pure rooms because it needs pydantic; ``rs.Settings`` loads it.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ from pydantic._internal._model_construction import ModelMetaclass
 
 from ravestate.declare.module import Module
 from ravestate.declare.settings import SettingRef
+from ravestate.declare.wording import short
 from ravestate.errors import DeclarationError, DeclarationErrors, nearest
 
 __all__ = ["Settings", "load_settings", "value_of", "variable_of"]
@@ -24,10 +25,10 @@ TEXT = (str, pydantic.SecretStr)
 
 
 class _SettingsMeta(ModelMetaclass):
-    """Makes ``MySettings.field`` a reference to the setting, for use as an age or a weight."""
+    """A metaclass that makes ``MySettings.field`` a reference to the setting, for use as an age or a weight."""
 
     def __getattr__(cls, item: str) -> Any:
-        # Only once the class is complete: pydantic itself looks for defaults while it builds one.
+        # Pydantic itself looks for defaults until the class is complete.
         if cls.__dict__.get("__pydantic_complete__") and item in cls.__pydantic_fields__:  # type: ignore[attr-defined]  # pydantic's own
             return SettingRef(item, cls)
         try:
@@ -42,11 +43,14 @@ class _SettingsMeta(ModelMetaclass):
 
 
 class Settings(pydantic.BaseModel, metaclass=_SettingsMeta):
-    """Base of a module's settings: a pydantic model; unknown names are refused.
+    """The base of a module's settings: a pydantic model that refuses unknown names.
 
-    Values come, the strongest first, from code (``rs.Context(settings={...})``, ``--set``), from the
-    environment (``RAVESTATE_<MODULE>_<FIELD>``, JSON for anything but text), from the agent's file, and from
-    the defaults.
+    Values come from four sources, the strongest first:
+
+    - code: ``rs.Context(settings={...})`` and ``--set``
+    - the environment: ``RAVESTATE_<MODULE>_<FIELD>``, in JSON for every field but text
+    - the agent's file
+    - the defaults
 
     Example:
         >>> import ravestate as rs
@@ -66,15 +70,15 @@ def load_settings(
     given: Mapping[str, Mapping[str, Any] | pydantic.BaseModel] | None = None,
     environment: Mapping[str, str] | None = None,
 ) -> dict[str, Any]:
-    """The settings of each module that has some: given values, then the environment's, then defaults.
+    """Return the settings of each module: given values first, then the environment's, then the defaults.
 
     Args:
         modules: The modules of a policy.
-        given: For each module's name the values of fields, or a ready settings value.
-        environment: Variables; the process's own by default.
+        given: By a module's name, the values of fields, or an instance of the module's settings.
+        environment: Variables; those of the process by default.
 
     Raises:
-        DeclarationErrors: Every unknown module or field and every value of a wrong type.
+        DeclarationErrors: There are unknown modules, unknown fields or values of a wrong type; one error for each.
     """
     given = given or {}
     variables = os.environ if environment is None else environment
@@ -95,13 +99,13 @@ def load_settings(
             if not isinstance(values, model):
                 faults.append(
                     DeclarationError(
-                        f"settings for {name!r} must be of its class {model.__name__}, not {type(values).__name__}"
+                        f"settings for {name!r} must be an instance of {model.__name__}, not of {type(values).__name__}"
                     )
                 )
             continue
         if not isinstance(values, Mapping):  # pyright: ignore[reportUnnecessaryIsInstance]  # it comes from a file
             faults.append(
-                DeclarationError(f"settings for {name!r} must be fields and values, not {values!r}")
+                DeclarationError(f"settings for {name!r} must be fields and values, not {short(values)}")
             )
             continue
         try:
@@ -114,7 +118,7 @@ def load_settings(
 
 
 def variable_of(module: str, field: str) -> str:
-    """The name of the environment's variable for a setting: ``RAVESTATE_<MODULE>_<FIELD>``."""
+    """Return the name of the environment variable of a setting: ``RAVESTATE_<MODULE>_<FIELD>``."""
     return f"RAVESTATE_{module}_{field}".upper().replace("-", "_")
 
 
@@ -130,13 +134,13 @@ def _from_environment(
 
 
 def value_of(text: str, model: type[pydantic.BaseModel], field: str, parse: Callable[[str], Any]) -> Any:
-    """What a text from outside stands for: itself where the field takes text, else what `parse` makes of it.
+    """Return the value of a text from outside: the text itself for a field of type text, else its parsed form.
 
     Args:
-        text: E.g. of a variable, or behind ``--set``.
+        text: The text of a variable, or behind ``--set``.
         model: The settings.
         field: The name of one of their fields.
-        parse: Raises a ValueError where it can make nothing of a text, which then stands for itself.
+        parse: A parser that raises a ValueError for a text that it cannot read; such a text stays as it is.
     """
     annotation = cast("Any", model.model_fields[field].annotation)
     kinds = {annotation, *get_args(annotation)}
@@ -164,16 +168,11 @@ def _faults(
             )
         elif detail["type"] == "missing":
             yield DeclarationError(
-                f"{where} is missing: write --set {name}.{field}=..., settings={{{name!r}: {{{field!r}: ...}}}}, or set "
-                f"{variable_of(name, top)}"
+                f"{where} is missing: write --set {name}.{field}=... or settings={{{name!r}: {{{field!r}: ...}}}}, or set "
+                f"the variable {variable_of(name, top)}"
             )
         else:
-            # The value itself may be a secret: it is shown only when the field is not one.
+            # A message never shows a secret.
             secret = top not in model.model_fields or "Secret" in str(model.model_fields[top].annotation)
-            value = "" if secret else f" = {_short(detail['input'])}"
+            value = "" if secret else f" = {short(detail['input'])}"
             yield DeclarationError(f"{where}{value}: {detail['msg']}")
-
-
-def _short(value: object) -> str:
-    text = repr(value)
-    return text if len(text) <= 60 else text[:57] + "..."

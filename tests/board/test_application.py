@@ -128,7 +128,7 @@ async def test_what_comes_for_too_long_is_refused_and_leaves_the_way_free() -> N
                 )
             )
             assert {(answer.status_code, answer.text) for answer in answers} == {
-                (408, "a recording has to come within 300 s")
+                (408, "the upload took more than 300 s")
             }
             assert clock() - before == pytest.approx(application.LONGEST)  # pyright: ignore[reportUnknownMemberType]
 

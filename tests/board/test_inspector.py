@@ -150,7 +150,7 @@ async def test_why_not_is_answered_with_the_right_reason() -> None:
         found = await look.answer("why")
     assert found["verdict"] == "untouched"
     assert found["missing"][0]["raisers"][0]["words"].startswith(
-        "gossip:classify was done without raising it"
+        "gossip:classify finished without raising it"
     )
     assert found["whole"] is True
 
@@ -252,7 +252,7 @@ async def test_slots_are_written_and_signals_raised_by_hand() -> None:
         ({"type": "dance"}, "dance: Input tag 'dance'"),
         ({"type": "say", "text": ""}, "say: text: String should have at least 1 character"),
         ({"type": "diagram", "unfolded": "all"}, "diagram: unfolded: Input should be a valid list"),
-        ({"type": "hello", "v": 1}, "hello is said once"),
+        ({"type": "hello", "v": 1}, "hello comes once"),
         ([], "a frame is an object"),
     ],
 )  # fmt: skip

@@ -6,7 +6,8 @@ import ravestate as rs
 from board.looking import gossip
 from modules.platform.webio.visit import parrot
 from ravestate.board.description import describe
-from ravestate.board.picture import draw, fold
+from ravestate.board.picture import draw
+from ravestate.draw.fold import fold
 from ravestate.modules import hibye, idle
 
 
@@ -39,12 +40,12 @@ def test_the_layout_of_a_hundred_rules_has_every_node_in_a_place_of_its_own() ->
             name=f"rule_{number}",
         )(lambda ctx: None)  # fmt: skip
         signals.append(signal)
-    drawn = draw(describe(rs.compile(module)).diagram, {"large"})
-    assert len([node for node in drawn["nodes"] if node["kind"] == "rule"]) == 120
-    for one, other in itertools.combinations([node["box"] for node in drawn["nodes"]], 2):
+    drawn = draw(describe(rs.compile(module)).diagram, ["large"])
+    assert len([node for node in drawn.nodes if node.kind == "rule"]) == 120
+    for one, other in itertools.combinations([node.box for node in drawn.nodes], 2):
         apart = (
             one[0] + one[2] <= other[0] or other[0] + other[2] <= one[0]
             or one[1] + one[3] <= other[1] or other[1] + other[3] <= one[1]
         )  # fmt: skip
         assert apart, (one, other)
-    assert all(len(edge["points"]) >= 2 for edge in drawn["edges"])
+    assert all(len(edge.points) >= 2 for edge in drawn.edges)

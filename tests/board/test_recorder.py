@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 import ravestate as rs
 from board.looking import in_virtual_time, passing
-from ravestate.board.recorder import LUMP, Gap, Recorder, Recorders, _fair  # pyright: ignore[reportPrivateUsage]
+from ravestate.board.recorder import BATCH, Gap, Recorder, Recorders, _fair  # pyright: ignore[reportPrivateUsage]
 from ravestate.engine.trace import Born, Merged
 
 
@@ -128,7 +128,7 @@ async def test_all_of_them_together_keep_no_more_than_is_shared_out() -> None:
                 if place < 15 or number < 2:  # the last five say little
                     context.emit(tick)
             await passing(1)
-            assert sum(len(recorder.records) for recorder in kept) <= 3000 * 1.02 + 20 * LUMP
+            assert sum(len(recorder.records) for recorder in kept) <= 3000 * 1.02 + 20 * BATCH
         long, short = kept[:15], kept[15:]
         assert all(recorder.last > 250 and 100 < len(recorder.records) < 250 for recorder in long)
         assert all(len(recorder.records) == recorder.last for recorder in short)
@@ -213,13 +213,13 @@ async def test_a_gap_counts_as_a_record_for_who_watches_how_much_there_is() -> N
     context, _ = ticking()
     grown: list[int] = []
     recorder = Recorder(context, rate=0, spare=0, grown=lambda: grown.append(recorder.last))
-    recorder._left = LUMP - 1  # pyright: ignore[reportPrivateUsage]
+    recorder._left = BATCH - 1  # pyright: ignore[reportPrivateUsage]
     recorder._granted = 0.0  # pyright: ignore[reportPrivateUsage]
     async with context:
-        while recorder.last < LUMP:
+        while recorder.last < BATCH:
             recorder._take(Merged(1.0, 2, 1))  # pyright: ignore[reportPrivateUsage]
     assert isinstance(recorder.records[-1], Gap)
-    assert grown == [LUMP]
+    assert grown == [BATCH]
 
 
 @pytest.mark.parametrize(

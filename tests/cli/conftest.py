@@ -1,4 +1,4 @@
-"""A folder to work in, and nothing left behind of what the commands import."""
+"""A working folder for each test, and cleanup of the modules that commands import."""
 
 import sys
 from collections.abc import Iterator
@@ -9,7 +9,7 @@ import pytest
 
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
-    """An empty current folder; modules that are imported from it are forgotten afterwards."""
+    """An empty current folder. Modules imported from it are removed afterwards."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(sys, "path", list(sys.path))
     before = set(sys.modules)

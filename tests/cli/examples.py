@@ -1,4 +1,4 @@
-"""Agents in files, for the tests of the commands, and how to call these."""
+"""Agents in files for the tests of the commands, and helpers that call a command."""
 
 import textwrap
 from pathlib import Path
@@ -33,12 +33,12 @@ def write(path: Path, text: str) -> Path:
 
 
 def complaints(errors: str) -> str:
-    """What was complained of, but for warnings that the machine was busy."""
+    """Return the error output without warnings about a busy machine."""
     return "".join(line for line in errors.splitlines(keepends=True) if "blocked the loop" not in line)
 
 
 def call(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, str, str]:
-    """Call the command line: exit code, what it printed, and what it complained of, in which is no traceback."""
+    """Call the command line; return its exit code, output and error output. A traceback fails the test."""
     try:
         code = main(arguments)
     except SystemExit as ended:  # of argparse

@@ -1,7 +1,8 @@
-"""How an agent is named: modules by four ways, files, settings; every mistake in one line."""
+"""The arguments that name an agent: four kinds of names, agent files, settings; one line for each mistake."""
 
 import re
 from importlib.metadata import EntryPoint
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -9,7 +10,9 @@ import pytest
 
 import ravestate as rs
 from cli.examples import HELLO, call, write
-from ravestate.cli import UsageError, agent
+from ravestate.errors import UsageError
+from ravestate.loading import modules, spec
+from ravestate.loading.modules import load_module
 from ravestate.modules import rawio
 
 Capture = pytest.CaptureFixture[str]
@@ -23,7 +26,7 @@ def run(capsys: Capture, *arguments: str) -> str:
 
 
 def refused(capsys: Capture, *arguments: str, code: int = 2) -> str:
-    """Run what cannot be run, and return the complaint."""
+    """Run an agent that cannot run, and return the message."""
     found, out, errors = call(capsys, "run", *arguments)
     assert (found, out) == (code, ""), errors
     assert errors.startswith("ravestate run: ")
@@ -34,7 +37,7 @@ def refused(capsys: Capture, *arguments: str, code: int = 2) -> str:
 
 
 def test_a_module_by_its_built_in_name() -> None:
-    assert agent.load_module("rawio") is rawio.module
+    assert load_module("rawio") is rawio.module
 
 
 def test_a_module_by_its_file(folder: Path, capsys: Capture) -> None:
@@ -44,7 +47,7 @@ def test_a_module_by_its_file(folder: Path, capsys: Capture) -> None:
     assert run(capsys, "./sub/hello.py").startswith("Hello 1.0")
     assert run(capsys, "sub/hello.py").startswith("Hello 1.0")
     assert run(capsys, str(folder / "sub" / "hello.py")).startswith("Hello 1.0")
-    assert agent.load_module("sub/uses.py").name == "beside"
+    assert load_module("sub/uses.py").name == "beside"
 
 
 def test_a_module_by_a_dotted_path(folder: Path, capsys: Capture) -> None:
@@ -52,7 +55,7 @@ def test_a_module_by_a_dotted_path(folder: Path, capsys: Capture) -> None:
     write(folder / "pkg" / "inner.py", HELLO + "\n    other = rs.Module('other')\n    module = hello\n")
     assert run(capsys, "pkg.inner").startswith("Hello")
     assert run(capsys, "pkg.inner:hello").startswith("Hello")
-    assert agent.load_module("pkg.inner:other").name == "other"
+    assert load_module("pkg.inner:other").name == "other"
 
 
 def test_a_module_by_the_name_of_its_package_or_file_here(folder: Path, capsys: Capture) -> None:
@@ -74,7 +77,7 @@ def test_a_module_by_its_entry_point(folder: Path, monkeypatch: pytest.MonkeyPat
     )
     write(folder / "two.py", "import ravestate as rs\nwords = rs.Module('two words')")
     monkeypatch.syspath_prepend(folder)
-    assert agent.load_module("weather").name == "weather"
+    assert load_module("weather").name == "weather"
     for name, text in {
         "bad": "bad: expected an rs.Module (or a Python module that holds one), not 3",
         "gone": "entry point 'gone' (plugin:gone) fails: ",
@@ -83,26 +86,26 @@ def test_a_module_by_its_entry_point(folder: Path, monkeypatch: pytest.MonkeyPat
         "wether": "there is no module 'wether'; did you mean 'weather'?",
     }.items():
         with pytest.raises(rs.RavestateError) as caught:
-            agent.load_module(name)
+            load_module(name)
         assert isinstance(caught.value, UsageError) == (name != "wrong")
         assert text in str(caught.value)
 
 
 def install(monkeypatch: pytest.MonkeyPatch, **points: str) -> None:
-    """Pretend that packages with entry points are installed."""
+    """Pretend that packages with these entry points are installed."""
     found = [EntryPoint(name, value, "ravestate.modules") for name, value in points.items()]
 
     def entry_points(*, group: str) -> list[EntryPoint]:
         return [point for point in found if point.group == group]
 
-    monkeypatch.setattr(agent, "entry_points", entry_points)
+    monkeypatch.setattr(modules, "entry_points", entry_points)
 
 
 def test_the_installed_package_uses_the_right_group() -> None:
-    assert list(agent.entry_points(group="ravestate.modules")) == []  # the built-in ones need none
+    assert list(modules.entry_points(group="ravestate.modules")) == []  # the built-in ones need none
 
 
-def test_a_module_that_is_named_twice_is_taken_once(folder: Path, capsys: Capture) -> None:
+def test_a_module_named_twice_is_loaded_once(folder: Path, capsys: Capture) -> None:
     write(folder / "pkg.py", HELLO)
     assert run(capsys, "pkg", "pkg:hello", "rawio", "rawio").count("Hello") == 1
 
@@ -124,7 +127,7 @@ def test_a_module_that_is_named_twice_is_taken_once(folder: Path, capsys: Captur
         (":module", "module ':module' fails when it is imported: ValueError: Empty module name"),
     ],
 )
-def test_a_module_that_is_not_there(name: str, text: str, folder: Path, capsys: Capture) -> None:
+def test_a_missing_module_has_a_message(name: str, text: str, folder: Path, capsys: Capture) -> None:
     assert refused(capsys, name).startswith(text)
 
 
@@ -139,26 +142,26 @@ def test_a_module_that_is_not_there(name: str, text: str, folder: Path, capsys: 
         ("class Odd(BaseException): ...\nraise Odd('x')\n", r"\S+bad\.py:2: Odd: x"),
     ],
 )
-def test_a_module_that_fails_when_it_is_loaded(
+def test_a_module_that_fails_on_import_has_a_message_with_its_line(
     way: str, content: str, text: str, folder: Path, capsys: Capture
 ) -> None:
     write(folder / "bad.py", content)
     assert re.fullmatch(rf"\S+ ?\S* fails when it is (loaded|imported): {text}", refused(capsys, way))
 
 
-def test_ctrl_c_while_a_module_is_loaded_is_no_fault_of_the_module(folder: Path, capsys: Capture) -> None:
+def test_ctrl_c_during_an_import_is_not_the_module_s_fault(folder: Path, capsys: Capture) -> None:
     write(folder / "slow.py", "raise KeyboardInterrupt")
     for way in ("./slow.py", "slow"):
         assert call(capsys, "run", way) == (130, "", "")
 
 
-def test_a_package_that_is_missing_is_named(folder: Path, capsys: Capture) -> None:
+def test_the_message_names_a_missing_package(folder: Path, capsys: Capture) -> None:
     write(folder / "needs.py", "import no_such_package\n")
     assert "No module named 'no_such_package'" in refused(capsys, "./needs.py")
     assert "No module named 'no_such_package'" in refused(capsys, "needs")
 
 
-def test_a_wrong_declaration_is_a_fault_and_says_where(folder: Path, capsys: Capture) -> None:
+def test_a_wrong_declaration_is_a_fault_with_its_place(folder: Path, capsys: Capture) -> None:
     write(folder / "wrong.py", "import ravestate as rs\nm = rs.Module('two words')\n")
     for way in ("./wrong.py", "wrong", "wrong:m"):
         assert refused(capsys, way, code=1).startswith("Module: 'two words' is no name")
@@ -220,7 +223,7 @@ def test_secrets_come_from_the_environment(
 @pytest.mark.parametrize(
     ("content", "text"),
     [
-        ("modules: [", "agent.yaml is not valid YAML: while parsing"),
+        ("modules: [", "agent.yaml:1: not valid YAML (while parsing"),
         ("- rawio", "agent.yaml must hold `modules: [...]`, and may hold settings, seed, patience"),
         ("", "agent.yaml must hold `modules: [...]`"),
         ("moduls: [rawio]", "agent.yaml: unknown key 'moduls'; did you mean 'modules'?"),
@@ -237,12 +240,55 @@ def test_secrets_come_from_the_environment(
         ("modules: [./gone.py]", "there is no file ./gone.py"),
     ],
 )
-def test_an_agent_file_that_is_wrong(content: str, text: str, folder: Path, capsys: Capture) -> None:
+def test_a_wrong_agent_file_has_a_message(content: str, text: str, folder: Path, capsys: Capture) -> None:
     write(folder / "agent.yaml", content)
     assert refused(capsys, "agent.yaml").startswith(text)
 
 
-def test_all_that_is_wrong_in_an_agent_file_is_told_at_once(folder: Path, capsys: Capture) -> None:
+@pytest.mark.parametrize(
+    ("content", "text"),
+    [
+        (
+            "a: &a [x, x, x, x, x, x, x, x, x, x]\n"
+            + "".join(f"{b}: &{b} [{', '.join([f'*{a}'] * 10)}]\n" for a, b in pairwise("abcdefghijk")),
+            "agent.yaml:5: more than 100,000 values once the aliases are followed",
+        ),
+        ("modules: " + "[" * 5_000, "agent.yaml:1: nested more than 50 levels deep"),
+    ],
+    ids=["aliases", "nesting"],
+)
+@pytest.mark.parametrize("command", ["run", "check", "graph"])
+def test_an_agent_file_that_explodes_ends_at_once(
+    command: str, content: str, text: str, folder: Path, capsys: Capture
+) -> None:
+    (folder / "agent.yaml").write_text(content, encoding="utf-8")
+    assert call(capsys, command, "agent.yaml") == (2, "", f"ravestate {command}: {text}\n")
+
+
+def test_a_setting_that_explodes_counts_as_text(capsys: Capture) -> None:
+    assert "= '[[[" in refused(capsys, "idle", "--set", f"idle.bored_after={'[' * 5_000}", code=1)
+
+
+def test_check_and_graph_first_name_the_python_code_that_an_agent_file_runs(
+    folder: Path, capsys: Capture
+) -> None:
+    write(folder / "deep" / "hello.py", HELLO)
+    write(folder / "other.py", "print('ran'); import ravestate as rs; module = rs.Module('other')")
+    write(folder / "deep" / "agent.yaml", "modules: [rawio, ./hello.py, other]")
+    for command in ("check", "graph"):
+        code, _, errors = call(capsys, command, "deep/agent.yaml")
+        said = f"ravestate {command}: deep/agent.yaml runs Python code: {Path('deep/hello.py')}, other\n"
+        assert (code, errors) == (0, said)
+    assert run(capsys, "deep/agent.yaml").startswith("Hello")  # and nothing on stderr
+
+
+def test_an_agent_file_of_built_in_modules_runs_no_code_of_the_user(folder: Path, capsys: Capture) -> None:
+    write(folder / "hello.py", HELLO)
+    write(folder / "agent.yaml", "modules: [rawio]")
+    assert call(capsys, "check", "agent.yaml", "./hello.py")[2] == ""
+
+
+def test_one_message_has_all_mistakes_of_an_agent_file(folder: Path, capsys: Capture) -> None:
     write(
         folder / "agent.yaml",
         """
@@ -273,12 +319,12 @@ def test_all_that_is_wrong_in_an_agent_file_is_told_at_once(folder: Path, capsys
     ]
 
 
-def test_an_agent_file_that_cannot_be_read(folder: Path, capsys: Capture) -> None:
+def test_an_unreadable_agent_file_has_a_message(folder: Path, capsys: Capture) -> None:
     assert refused(capsys, "gone.yaml") == "cannot read gone.yaml: No such file or directory"
     (folder / "folder.yaml").mkdir()
     assert refused(capsys, "folder.yaml") == "cannot read folder.yaml: Is a directory"
     (folder / "binary.yaml").write_bytes(b"\xff\xfe\x00")
-    assert refused(capsys, "binary.yaml").startswith("binary.yaml is not valid YAML: ")
+    assert refused(capsys, "binary.yaml").startswith("binary.yaml: not valid YAML (")
 
 
 # ---------------------------------------------------------------------------------------- settings
@@ -308,32 +354,32 @@ def test_set_goes_before_the_environment_and_that_before_the_file(
         ("hello.words=[a, b]", "Hello 1.0 ('a', 'b')"),
     ],
 )
-def test_what_is_set_is_text_where_text_is_wanted_and_yaml_elsewhere(
+def test_a_set_value_is_text_for_a_text_field_and_yaml_for_others(
     text: str, said: str, folder: Path, capsys: Capture
 ) -> None:
     write(folder / "hello.py", HELLO)
     assert run(capsys, "./hello.py", "--set", text).startswith(said)
 
 
-def test_the_last_of_two_values_counts(folder: Path, capsys: Capture) -> None:
+def test_the_last_of_two_values_wins(folder: Path, capsys: Capture) -> None:
     write(folder / "hello.py", HELLO)
     assert run(capsys, "./hello.py", "--set", "hello.pause=2", "--set", "hello.pause=3").startswith(
         "Hello 3.0"
     )
 
 
-def test_settings_of_required_modules_are_known_too(folder: Path) -> None:
+def test_required_modules_have_settings_too(folder: Path) -> None:
     write(folder / "user.py", HELLO.replace("    hello = ", "    base = ").replace("@hello", "@base"))
     base = rs.Module("base")
     top = rs.Module("top", requires=[base])
     base.requires = [top]  # a cycle is the compiler's business
-    assert agent._all([top]) == [top, base]
+    assert spec._with_required([top]) == [top, base]
 
 
 @pytest.mark.parametrize(
     "text", ["hello", "hello.greeting", "greeting=x", "=x", ".=x", "hello.=x", ".greeting=x"]
 )
-def test_a_set_that_is_none(text: str, folder: Path, capsys: Capture) -> None:
+def test_a_malformed_set_has_a_message(text: str, folder: Path, capsys: Capture) -> None:
     assert refused(capsys, "rawio", "--set", text) == (
         f"--set {text}: write --set module.key=value, e.g. --set idle.bored_after=10"
     )
@@ -352,11 +398,11 @@ def test_a_set_that_is_none(text: str, folder: Path, capsys: Capture) -> None:
         ("rawio.loud=1", "module 'rawio' has no settings"),
     ],
 )
-def test_a_setting_that_is_not_there_is_wrong_use(text: str, fault: str, capsys: Capture) -> None:
+def test_an_unknown_setting_is_wrong_use(text: str, fault: str, capsys: Capture) -> None:
     assert refused(capsys, "idle", "rawio", "--set", text).startswith(f"--set {text}: {fault}")
 
 
-def test_all_settings_that_are_not_there_are_told_at_once(capsys: Capture) -> None:
+def test_one_message_has_all_unknown_settings(capsys: Capture) -> None:
     assert len(refused(capsys, "idle", "--set", "a.b=1", "--set", "idle.c=1", "--set", "d").splitlines()) == 3
 
 
@@ -368,10 +414,10 @@ def test_all_settings_that_are_not_there_are_told_at_once(capsys: Capture) -> No
         ("idle.bored_after=-1", "-1"),
     ],
 )
-def test_values_that_do_not_fit_are_faults(text: str, fault: str, capsys: Capture) -> None:
+def test_unfit_values_are_faults(text: str, fault: str, capsys: Capture) -> None:
     assert fault in refused(capsys, "idle", "rawio", "--set", text, code=1)
 
 
-def test_an_agent_knows_what_its_contexts_are_given() -> None:
-    options: Any = agent.Agent([], {"a": {}}, 3, 0.5).options()
+def test_an_agent_has_the_options_of_its_contexts() -> None:
+    options: Any = spec.AgentSpec([], {"a": {}}, 3, 0.5).options()
     assert options == {"settings": {"a": {}}, "seed": 3, "patience": 0.5}

@@ -1,4 +1,4 @@
-"""``ravestate chat``: everything together on the console, also through plain pipes."""
+"""``ravestate chat``: the complete agent on the console, and through pipes."""
 
 import argparse
 import subprocess
@@ -12,7 +12,7 @@ from cli.examples import HELLO, call, complaints, write
 from ravestate.cli import chat
 from ravestate.cli.complete import COMPLETE
 from ravestate.modules import BUILT_IN
-from ravestate.modules.meta.ontology.places import default_path
+from ravestate.modules.meta.ontology.opening import default_path
 from ravestate.modules.platform.conio.console import history_file
 from ravestate.runtime import run as run_file
 
@@ -21,7 +21,7 @@ Capture = pytest.CaptureFixture[str]
 
 @pytest.fixture
 def started(monkeypatch: pytest.MonkeyPatch) -> list[tuple[list[str], dict[str, Any]]]:
-    """What the command would have run: names of modules, and options."""
+    """The arguments of each run that the command starts: names of modules, and options."""
     seen: list[tuple[list[str], dict[str, Any]]] = []
 
     def run(*modules: Any, **options: Any) -> None:
@@ -31,7 +31,7 @@ def started(monkeypatch: pytest.MonkeyPatch) -> list[tuple[list[str], dict[str, 
     return seen
 
 
-def test_the_complete_agent_takes_part(started: Any, capsys: Capture) -> None:
+def test_it_runs_the_complete_agent(started: Any, capsys: Capture) -> None:
     assert call(capsys, "chat") == (0, "", "")
     ((names, options),) = started
     assert names == ["conio", *COMPLETE]
@@ -39,7 +39,7 @@ def test_the_complete_agent_takes_part(started: Any, capsys: Capture) -> None:
     assert set(names) <= set(BUILT_IN)
 
 
-def test_modules_and_settings_may_be_added_and_left_out(folder: Path, started: Any, capsys: Capture) -> None:
+def test_modules_can_be_added_and_left_out(folder: Path, started: Any, capsys: Capture) -> None:
     write(folder / "hello.py", HELLO)
     code, *_ = call(
         capsys,
@@ -58,7 +58,7 @@ def test_modules_and_settings_may_be_added_and_left_out(folder: Path, started: A
     assert options["settings"] == {"hello": {"pause": 2}}
 
 
-def test_only_what_takes_part_can_be_left_out(started: Any, capsys: Capture) -> None:
+def test_leaving_out_an_unknown_module_is_wrong_use(started: Any, capsys: Capture) -> None:
     code, out, errors = call(capsys, "chat", "--without", "wildtlk")
     assert (code, out, started) == (2, "", [])
     assert (
@@ -68,7 +68,7 @@ def test_only_what_takes_part_can_be_left_out(started: Any, capsys: Capture) -> 
 
 
 @pytest.mark.parametrize("command", ["chat", "board"])
-def test_its_help_tells_where_what_it_learns_is_kept(
+def test_the_help_names_the_file_of_the_memory(
     command: str, tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(sys, "platform", "linux")
@@ -79,11 +79,11 @@ def test_its_help_tells_where_what_it_learns_is_kept(
     assert Path(tmp_path, ".local/share/ravestate/default/memory.lbug") == default_path("default")
     assert "\n  ~/.local/share/ravestate/default/memory.lbug (--set ontology.path=FILE" in out
     assert all(f"ravestate memory {action}" in out for action in ("list", "show NAME", "forget NAME"))
-    assert (f"kept in {history_file()}\n" in out) == (command == "chat")
+    assert (f"you type in {history_file()}\n" in out) == (command == "chat")
     assert str(history_file()).startswith("/state/")
 
 
-def test_who_has_no_home_has_help(capsys: Capture, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_user_without_a_home_has_help(capsys: Capture, monkeypatch: pytest.MonkeyPatch) -> None:
     def homeless() -> Path:
         raise RuntimeError("Could not determine home directory.")
 
@@ -100,7 +100,7 @@ def test_it_needs_no_module() -> None:
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no device that is always full")
-def test_what_cannot_be_written_is_a_failure() -> None:
+def test_output_that_cannot_be_written_is_a_failure() -> None:
     command = [str(Path(sys.executable).parent / "ravestate"), "chat", "--without", "wildtalk"]
     with Path("/dev/full").open("w") as full:
         run = subprocess.run(
@@ -108,12 +108,11 @@ def test_what_cannot_be_written_is_a_failure() -> None:
         )
     assert run.returncode == 1
     assert (
-        "ravestate chat: conio: what the agent says cannot be written: No space left on device\n"
-        in run.stderr
+        "ravestate chat: conio: the agent's words cannot be written: No space left on device\n" in run.stderr
     )
 
 
-def test_a_pipe_is_answered_and_ends_it() -> None:
+def test_it_answers_a_pipe_and_ends_with_it() -> None:
     command = [str(Path(sys.executable).parent / "ravestate"), "chat", "--without", "wildtalk"]
     run = subprocess.run(
         command, input="hello\nbye\n", capture_output=True, text=True, timeout=60, check=False

@@ -1,4 +1,4 @@
-"""``ravestate check``: faults are 1, findings are told, all is well otherwise."""
+"""``ravestate check``: faults give exit code 1, findings give 0."""
 
 from pathlib import Path
 
@@ -10,22 +10,22 @@ from ravestate.modules import BUILT_IN
 Capture = pytest.CaptureFixture[str]
 
 
-def test_all_is_well(folder: Path, capsys: Capture) -> None:
+def test_an_agent_without_findings(folder: Path, capsys: Capture) -> None:
     write(folder / "hello.py", HELLO)
     assert call(capsys, "check", "./hello.py") == (
         0,
-        "1 rules, 10 signals, 3 slots: no faults, no findings\n",
+        "1 rule, 10 signals, 3 slots: no faults, no findings\n",
         "",
     )
 
 
-def test_findings_are_told_and_are_no_faults(folder: Path, capsys: Capture) -> None:
+def test_findings_are_printed_and_are_no_faults(folder: Path, capsys: Capture) -> None:
     write(
         folder / "odd.py",
         """
         import ravestate as rs
         module = rs.Module("odd")
-        go, lost, out = module.signal("go"), module.signal("lost"), module.slot("out")
+        go, lost, out = module.signal("go", input=True), module.signal("lost"), module.slot("out")
 
         @module.rule(when=go, writes=out, emits=lost)
         async def first(ctx): ...
@@ -41,7 +41,7 @@ def test_findings_are_told_and_are_no_faults(folder: Path, capsys: Capture) -> N
     assert lines[-1].endswith("no faults, 3 findings")
 
 
-def test_every_fault_is_told_at_once(folder: Path, capsys: Capture) -> None:
+def test_it_prints_every_fault_at_once(folder: Path, capsys: Capture) -> None:
     write(
         folder / "faulty.py",
         """
@@ -85,7 +85,7 @@ def test_settings_are_checked_with_their_declarations(folder: Path, capsys: Capt
     assert code == 2 and "--set late.afer=3: module 'late' has no such setting" in errors
 
 
-def test_a_module_that_declares_wrongly_is_a_fault(folder: Path, capsys: Capture) -> None:
+def test_a_module_with_a_wrong_declaration_is_a_fault(folder: Path, capsys: Capture) -> None:
     write(folder / "wrong.py", "import ravestate as rs\nmodule = rs.Module('')\n")
     code, _, errors = call(capsys, "check", "./wrong.py")
     assert code == 1 and errors.startswith("fault: Module: '' is no name")
@@ -107,4 +107,4 @@ def test_the_built_in_modules_have_no_faults(name: str, capsys: Capture) -> None
     code, out, _ = call(capsys, "check", name)
     assert code == 0
     kinds = {line.split(":")[0] for line in out.splitlines()[:-1]}
-    assert kinds <= {"unheard"}  # what a module offers is heard by others
+    assert kinds <= {"unheard"}  # other modules listen

@@ -1,11 +1,18 @@
 """``ravestate graph``: the diagram as SVG, DOT or Mermaid, on standard output or in a file."""
 
+import re
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
 import pytest
 
 from cli.examples import HELLO, call, write
+from ravestate.cli.complete import COMPLETE
+from ravestate.draw.build import build
+from ravestate.draw.fold import fold
+from ravestate.draw.svg import svg
+from ravestate.loading.modules import load_module
+from ravestate.policy.compile import compile_policy
 
 Capture = pytest.CaptureFixture[str]
 
@@ -39,14 +46,14 @@ def test_text_formats(hello: str, capsys: Capture, format: str, begins: str) -> 
         ("a.mermaid", "flowchart"),
     ],
 )
-def test_a_file_s_name_tells_its_format(
+def test_the_name_of_a_file_decides_its_format(
     hello: str, folder: Path, capsys: Capture, name: str, begins: str
 ) -> None:
     assert call(capsys, "graph", hello, "-o", name) == (0, f"wrote {name}\n", "")
     assert (folder / name).read_text(encoding="utf-8").startswith(begins)
 
 
-def test_a_format_goes_before_a_name(hello: str, folder: Path, capsys: Capture) -> None:
+def test_a_given_format_goes_before_the_name(hello: str, folder: Path, capsys: Capture) -> None:
     assert call(capsys, "graph", hello, "-o", "a.txt", "--format", "dot")[0] == 0
     assert (folder / "a.txt").read_text(encoding="utf-8").startswith("digraph")
 
@@ -61,6 +68,9 @@ def test_a_format_goes_before_a_name(hello: str, folder: Path, capsys: Capture) 
         (("-o", "a"), "cannot tell the format of a:"),
         (("-o", "no/such/a.svg"), "cannot write no/such/a.svg: No such file or directory"),
         (("--format", "png"), "invalid choice: 'png'"),
+        (("--without", "nlp"), "--without is for the complete agent: leave the modules out"),
+        (("--unfold", "helo"), "--unfold helo: the agent has no such module; did you mean 'hello'?"),
+        (("--unfold", "hello", "--no-fold"), "--unfold draws some modules, --no-fold all: write one of them"),
     ],
 )
 def test_wrong_use_is_2_and_writes_nothing(
@@ -69,6 +79,59 @@ def test_wrong_use_is_2_and_writes_nothing(
     code, out, errors = call(capsys, "graph", hello, *arguments)
     assert (code, out) == (2, "") and text in errors
     assert {path.name for path in folder.iterdir()} <= {"hello.py", "__pycache__"}
+
+
+@pytest.fixture(scope="module")
+def complete_agent() -> str:
+    """The diagram of the complete agent, folded."""
+    policy = compile_policy(*(load_module(name) for name in ("conio", *COMPLETE)))
+    return svg(fold(build(policy.rules.values())))
+
+
+def test_without_modules_it_draws_the_agent_of_chat_folded_to_its_modules(
+    complete_agent: str, capsys: Capture
+) -> None:
+    code, out, errors = call(capsys, "graph")
+    assert (code, out) == (0, f"{complete_agent}\n")
+    assert re.fullmatch(
+        r"ravestate graph: folded \d+ rules into their modules: --unfold MODULE draws the rules of one, --no-fold all\n",
+        errors,
+    )
+    assert all(f">module {name} (" in out for name in ("conio", *COMPLETE))
+
+
+def test_the_folded_picture_of_the_complete_agent_fits_a_screen(complete_agent: str) -> None:
+    root = ElementTree.fromstring(complete_agent.encode())
+    assert float(root.attrib["width"]) <= 1400 and float(root.attrib["height"]) <= 700
+
+
+def test_modules_can_be_left_out_of_the_complete_agent(capsys: Capture) -> None:
+    out = call(capsys, "graph", "--without", "emotion", "--format", "dot")[1]
+    assert "wildtalk" in out and "emotion" not in out
+
+
+def test_some_modules_can_be_unfolded_or_all(capsys: Capture) -> None:
+    code, out, errors = call(capsys, "graph", "--unfold", "hibye", "--format", "mermaid")
+    assert (code, errors) == (0, "")
+    assert '["hibye<br/>answer#95;hello' in out.replace("_", "#95;") and "wildtalk<br/>5 rules" in out
+    whole = call(capsys, "graph", "--no-fold", "--format", "mermaid")
+    assert whole[2] == "" and "wildtalk<br/>chat" in whole[1] and "5 rules" not in whole[1]
+
+
+def test_a_small_agent_is_folded_on_demand(hello: str, capsys: Capture) -> None:
+    assert "1 rule)" in call(capsys, "graph", hello, "--fold")[1]
+
+
+def test_an_agent_file_is_drawn(hello: str, folder: Path, capsys: Capture) -> None:
+    write(folder / "agent.yaml", "modules: [./hello.py]")
+    for arguments in (("agent.yaml",), ("-f", "agent.yaml")):
+        assert call(capsys, "graph", *arguments)[1] == call(capsys, "graph", hello)[1]
+
+
+def test_slots_that_no_rule_touches_are_left_out(folder: Path, capsys: Capture) -> None:
+    write(folder / "slots.py", HELLO + "\n    spare = hello.slot('spare')\n")
+    out = call(capsys, "graph", "./slots.py", "rawio")[1]
+    assert "hello:said" in out and "spare" not in out and "rawio" not in out
 
 
 def test_faults_are_1(folder: Path, capsys: Capture) -> None:

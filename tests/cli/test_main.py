@@ -1,5 +1,6 @@
 """The command line as a whole: help, exit codes, no traceback for a user's mistake."""
 
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -9,6 +10,7 @@ import pytest
 import ravestate as rs
 from cli.examples import HELLO, call, complaints, write
 from ravestate.cli import COMMANDS, main
+from ravestate.modules import BUILT_IN
 
 Capture = pytest.CaptureFixture[str]
 
@@ -22,7 +24,25 @@ def test_every_command_has_help(capsys: Capture) -> None:
         assert code == 0 and own.startswith(f"usage: ravestate {name}")
 
 
-def test_the_version_is_told(capsys: Capture) -> None:
+@pytest.mark.parametrize("arguments", [("--help",), ("run", "--help")])
+def test_help_lists_the_built_in_modules_and_imports_none(arguments: tuple[str, ...], folder: Path) -> None:
+    program = (
+        "import sys\n"
+        "from ravestate.cli import main\n"
+        "try: main(sys.argv[1:])\n"
+        "finally: print([m for m in sys.modules if m.startswith('ravestate.modules.')])"
+    )
+    run = subprocess.run(
+        [sys.executable, "-c", program, *arguments], capture_output=True, text=True, timeout=60, check=False
+    )
+    listed = run.stdout.partition("built-in modules:\n")[2].splitlines()
+    told = dict(line.split(maxsplit=1) for line in listed if re.match(r"  \w", line))
+    assert list(told) == sorted(BUILT_IN)
+    assert all(len(summary) > 10 for summary in told.values())
+    assert run.stdout.splitlines()[-1] == "[]"
+
+
+def test_it_prints_the_version(capsys: Capture) -> None:
     assert call(capsys, "--version") == (0, f"ravestate {rs.__version__}\n", "")
 
 
@@ -39,7 +59,7 @@ def test_options_are_not_guessed_from_their_beginnings(capsys: Capture) -> None:
     assert code == 2 and "--see" in errors
 
 
-def test_modules_may_stand_before_and_behind_options(folder: Path, capsys: Capture) -> None:
+def test_modules_may_come_before_and_after_options(folder: Path, capsys: Capture) -> None:
     write(folder / "hello.py", HELLO)
     code, out, errors = call(capsys, "check", "idle", "--set", "idle.bored_after=9", "./hello.py", "fillers")
     assert (code, errors) == (0, "")
@@ -57,7 +77,7 @@ def test_modules_may_stand_before_and_behind_options(folder: Path, capsys: Captu
         (("memory", "--nonsense=1", "list"), "memory", "unrecognized arguments: --nonsense=1"),
     ],
 )
-def test_wrong_use_tells_the_usage_of_that_command(
+def test_wrong_use_shows_the_usage_of_that_command(
     arguments: tuple[str, ...], usage: str, complaint: str, capsys: Capture
 ) -> None:
     code, out, errors = call(capsys, *arguments)
@@ -91,7 +111,7 @@ def test_a_pipe_that_closes_is_no_error(monkeypatch: pytest.MonkeyPatch) -> None
     assert main(["check", "rawio"]) == 0
 
 
-def test_the_world_s_failures_are_1(monkeypatch: pytest.MonkeyPatch, capsys: Capture) -> None:
+def test_a_platform_error_is_1(monkeypatch: pytest.MonkeyPatch, capsys: Capture) -> None:
     from ravestate.cli import check
 
     def fails(options: object) -> int:
@@ -129,4 +149,4 @@ def test_warnings_reach_the_user(folder: Path) -> None:
     )
     assert run.returncode == 0
     assert "ERROR ravestate: rule failing:fail failed: broken" in run.stderr
-    assert run.stderr.count("Traceback") == 1  # the rule's own
+    assert run.stderr.count("Traceback") == 1  # that of the rule

@@ -14,7 +14,7 @@ import pytest
 
 from cli.examples import call, write
 from ravestate.modules import ontology
-from ravestate.modules.meta.ontology.places import open_memory
+from ravestate.modules.meta.ontology.opening import open_memory
 
 Capture = pytest.CaptureFixture[str]
 
@@ -22,7 +22,7 @@ HOLD = """
     import sys
     from pathlib import Path
     from ravestate.modules import ontology
-    from ravestate.modules.meta.ontology.places import open_memory
+    from ravestate.modules.meta.ontology.opening import open_memory
 
     memory = open_memory(ontology.Settings(path=Path(sys.argv[1])))
     memory.opened().result()
@@ -62,7 +62,7 @@ def test_a_type_is_listed_and_types_are_counted(file: Path, capsys: Capture) -> 
     assert code == 2 and errors == "ravestate memory: there is no type 'Persn'; did you mean 'Person'?\n"
 
 
-def test_somebody_is_shown_by_name_or_id(file: Path, capsys: Capture) -> None:
+def test_a_person_is_shown_by_name_or_id(file: Path, capsys: Capture) -> None:
     code, out, _ = call(capsys, "memory", "--path", str(file), "show", "ada ")
     first, *rest = out.splitlines()
     assert code == 0 and rest == ["  name: Ada", "  born: 1815-12-10", "  lives_in -> City London"]
@@ -90,10 +90,11 @@ def test_everything_is_exported_and_loaded(file: Path, folder: Path, capsys: Cap
     assert stat.S_IMODE((folder / "all.json").stat().st_mode) == 0o600
     assert call(capsys, "memory", "--path", "other.lbug", "load", "all.json")[:2] == (0, "loaded 5\n")
     assert json.loads(call(capsys, "memory", "--path", "other.lbug", "export")[1]) == document
-    assert sorted(path.name for path in folder.iterdir()) == ["all.json", "memory.lbug", "other.lbug"]
+    names = ["all.json", "memory.lbug", "memory.lbug.sum", "other.lbug", "other.lbug.sum"]
+    assert sorted(path.name for path in folder.iterdir()) == names
 
 
-def test_what_cannot_be_written_or_read(file: Path, folder: Path, capsys: Capture) -> None:
+def test_files_that_cannot_be_written_or_read(file: Path, folder: Path, capsys: Capture) -> None:
     before = sorted(folder.iterdir())
     code, _, errors = call(capsys, "memory", "--path", str(file), "export", "no/where.json")
     assert code == 2 and "cannot write no/where.json: No such file" in errors
@@ -118,7 +119,7 @@ def test_nobody_is_forgotten_without_a_yes(
     assert call(capsys, "memory", "--path", str(file), "show", "Ada")[0] == 0
 
 
-def test_somebody_is_forgotten(file: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_person_is_forgotten(file: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "stdin", io.StringIO("y\n"))
     code, out, _ = call(capsys, "memory", "--path", str(file), "forget", "Ada")
     assert code == 0 and out.endswith("forgot 2\n")
@@ -132,6 +133,52 @@ def test_somebody_is_forgotten(file: Path, capsys: Capture, monkeypatch: pytest.
     )
     _, out, _ = call(capsys, "memory", "--path", str(file), "list", "--types")
     assert out.split() == ["Person", "2"]
+
+
+@pytest.mark.parametrize("answer", ["n\n", ""])
+def test_no_file_is_removed_without_a_yes(
+    file: Path, folder: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch, answer: str
+) -> None:
+    monkeypatch.setattr(sys, "stdin", io.StringIO(answer))
+    code, out, _ = call(capsys, "memory", "--path", str(file), "reset")
+    assert code == 1 and "nothing was removed" in out
+    assert out.startswith(
+        f"{file.resolve()}\n{file.resolve()}.sum\nRemove these files, with all that is known?"
+    )
+    assert sorted(folder.iterdir()) == [file, Path(f"{file}.sum")]
+
+
+def test_reset_removes_all_files_and_names_them(
+    file: Path, folder: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    file.unlink()  # the database alone, as after a crash
+    for name in ("memory.lbug.wal", "memory.lbug.wal.orphaned-1", "memory.lbug.new.wal"):
+        (folder / name).write_bytes(b"Ada")
+    (folder / "memory.lbug.mine").touch()
+    before = sorted(str(path.resolve()) for path in folder.glob("*") if path.suffix != ".mine")
+    monkeypatch.setattr(sys, "stdin", io.StringIO("y\n"))
+    code, out, _ = call(capsys, "memory", "--path", str(file), "reset")
+    assert (
+        code == 0
+        and [line for line in out.splitlines() if "removed /" in line][-1] == f"removed {before[-1]}"
+    )
+    assert all(f"removed {name}\n" in out for name in before)
+    assert [path.name for path in folder.iterdir()] == ["memory.lbug.mine"]
+    code, _, errors = call(capsys, "memory", "--path", str(file), "reset", "--yes")
+    assert code == 1 and f"there is no memory at {file.resolve()}" in errors
+
+
+def test_reset_mends_a_broken_memory(file: Path, capsys: Capture) -> None:
+    file.write_bytes(b"no database at all " * 300)
+    code, _, errors = call(capsys, "memory", "--path", str(file), "list")
+    assert code == 1 and f"ravestate memory reset --path {file.resolve()}" in errors
+    assert call(capsys, "memory", "reset", "--path", str(file), "-y")[0] == 0
+    assert not file.exists()
+
+
+def test_reset_leaves_a_server_alone(capsys: Capture) -> None:
+    code, _, errors = call(capsys, "memory", "--set", "ontology.url=bolt://localhost:1", "reset", "-y")
+    assert code == 2 and "this memory is on a server" in errors
 
 
 def test_the_settings_of_an_agent_are_used(file: Path, folder: Path, capsys: Capture) -> None:
@@ -169,7 +216,7 @@ def test_the_place_may_be_named_behind_the_action_too(file: Path, folder: Path, 
         assert "there is no memory yet" not in call(capsys, "memory", *action, "--path", str(file))[2]
 
 
-def test_settings_that_are_none_of_memory_s_are_refused(file: Path, capsys: Capture) -> None:
+def test_settings_of_other_modules_are_refused(file: Path, capsys: Capture) -> None:
     code, out, errors = call(capsys, "memory", "--path", str(file), "--set", "foo.pth=x", "list")
     assert (code, out) == (2, "") and "--set foo.pth=x: module 'foo' is not part of this agent" in errors
     code, _, errors = call(capsys, "memory", "list", "--set", "ontology.pth=x")
@@ -198,11 +245,15 @@ def test_a_file_that_an_agent_has_open(file: Path, folder: Path, capsys: Capture
         code, out, errors = call(capsys, "memory", "--path", str(file), "list")
         assert (code, out) == (1, "")
         assert f"is in use by process {process.pid}: only one process may have it open" in errors
+        code, _, errors = call(capsys, "memory", "--path", str(file), "reset", "-y")
+        assert code == 1 and "is in use by another process: end that agent first" in errors and file.exists()
         assert process.stdin is not None
         process.stdin.close()
 
 
-def test_wrong_use_and_what_is_missing(file: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_wrong_use_and_a_missing_package(
+    file: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+) -> None:
     assert call(capsys, "memory")[0] == 2
     assert call(capsys, "memory", "lst")[0] == 2
     code, _, errors = call(capsys, "memory", "--set", "ontology.pth=x", "list")

@@ -1,4 +1,4 @@
-"""``ravestate new``: a project that runs and whose tests pass, and names that it refuses."""
+"""``ravestate new``: a project that runs, with tests that pass, and the names that it refuses."""
 
 import os
 import shlex
@@ -19,7 +19,7 @@ def files(folder: Path) -> set[str]:
 
 @pytest.fixture(autouse=True)
 def activated(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The shell finds the commands of this environment."""
+    """Put the commands of this environment on the shell's path."""
     monkeypatch.setenv("PATH", f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}")
 
 
@@ -60,7 +60,7 @@ def test_a_project_whose_tests_pass(folder: Path, capsys: Capture) -> None:
     assert call(capsys, "check", "my-agent/agent.yaml")[0] == 0
 
 
-def test_what_is_to_be_typed_next_can_be_typed(
+def test_the_printed_next_steps_can_be_typed(
     folder: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     assert "\n  cd '1 bad/my-agent'\n" in call(capsys, "new", "1 bad/my-agent")[1]
@@ -69,11 +69,11 @@ def test_what_is_to_be_typed_next_can_be_typed(
         for line in call(capsys, "new", name)[1].splitlines()[-3:]:
             command = Path(shlex.split(line)[0])
             assert command.parent == Path(sys.executable).parent and command.exists()
-        for command in ("python", "ravestate"):  # somebody else's
+        for command in ("python", "ravestate"):  # of another installation
             (folder / command).touch(mode=0o755)
 
 
-def test_a_folder_further_down_and_one_that_is_empty(folder: Path, capsys: Capture) -> None:
+def test_a_nested_folder_and_an_empty_one_are_accepted(folder: Path, capsys: Capture) -> None:
     (folder / "empty").mkdir()
     assert call(capsys, "new", "empty")[0] == 0
     assert call(capsys, "new", "some/where/Robot7")[0] == 0
@@ -83,7 +83,7 @@ def test_a_folder_further_down_and_one_that_is_empty(folder: Path, capsys: Captu
 @pytest.mark.parametrize(
     "name", ["", ".", "..", "two words", "1st", "-x-y", "ä", "a/b c", "class", "import", "a.b"]
 )
-def test_what_is_no_name(name: str, folder: Path, capsys: Capture) -> None:
+def test_an_invalid_name_is_refused(name: str, folder: Path, capsys: Capture) -> None:
     code, out, errors = call(capsys, "new", "--", name)
     assert (code, out) == (2, "")
     assert "is no name for a project: use letters, digits, '-' and '_', e.g. my-agent" in errors
@@ -98,7 +98,7 @@ def test_names_of_other_modules_are_refused(name: str, folder: Path, capsys: Cap
     assert list(folder.iterdir()) == []
 
 
-def test_what_is_there_is_not_overwritten(folder: Path, capsys: Capture) -> None:
+def test_existing_files_are_not_overwritten(folder: Path, capsys: Capture) -> None:
     (folder / "taken").mkdir()
     (folder / "taken" / "precious.txt").write_text("mine", encoding="utf-8")
     (folder / "file").write_text("mine", encoding="utf-8")
@@ -108,7 +108,7 @@ def test_what_is_there_is_not_overwritten(folder: Path, capsys: Capture) -> None
     assert files(folder) == {"taken/precious.txt", "file"}
 
 
-def test_a_place_that_cannot_be_written(folder: Path, capsys: Capture) -> None:
+def test_a_folder_that_cannot_be_written_has_a_message(folder: Path, capsys: Capture) -> None:
     (folder / "file").write_text("", encoding="utf-8")
     code, _, errors = call(capsys, "new", "file/agent")
     assert code == 2 and errors.startswith("ravestate new: cannot write file/agent/README.md: ")

@@ -1,4 +1,4 @@
-"""``ravestate nlp``: shows what is seen in a text."""
+"""``ravestate nlp``: the analysis of a text."""
 
 import io
 import json
@@ -57,11 +57,11 @@ def test_the_agents_name_can_be_given(capsys: Capture) -> None:
     assert "signals   about_agent\n" in out
 
 
-def test_nothing_steers_the_terminal(capsys: Capture) -> None:
+def test_control_codes_do_not_reach_the_terminal(capsys: Capture) -> None:
     code, out, _ = call(capsys, "nlp", "\x1b[31mred\udcff")
     assert code == 0 and "\x1b" not in out and "red" in out
 
 
-def test_an_unknown_pipeline_is_a_message(capsys: Capture) -> None:
+def test_an_unknown_pipeline_has_a_message(capsys: Capture) -> None:
     code, out, errors = call(capsys, "nlp", "--pipeline", "nonsense", "hello")
     assert (code, out) == (1, "") and "there is no spaCy pipeline 'nonsense'" in errors

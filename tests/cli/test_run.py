@@ -16,7 +16,7 @@ def test_it_runs_to_its_end(folder: Path, capsys: pytest.CaptureFixture[str]) ->
     assert code == 0 and out.startswith("Hello")
 
 
-def test_faults_are_1_and_all_told(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_faults_are_1_and_all_printed(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     write(
         folder / "faulty.py",
         """

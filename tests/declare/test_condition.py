@@ -1,4 +1,4 @@
-"""The algebra of conditions: it builds values, and refuses what would silently mean something else."""
+"""The algebra of conditions: it builds values, and refuses code that would silently mean something else."""
 
 import functools
 import re
@@ -42,7 +42,7 @@ def test_and_and_or_build_flat_trees_in_order() -> None:
         (a & mood.holds(cheerful), "demo:a & demo:mood.holds(cheerful)"),
     ],
 )
-def test_a_condition_reads_as_it_was_written(condition: rs.Condition, text: str) -> None:
+def test_the_text_of_a_condition_is_its_code(condition: rs.Condition, text: str) -> None:
     assert repr(condition) == text
 
 
@@ -87,7 +87,7 @@ def test_only_conditions_can_be_combined(other: object) -> None:
         _ = a | other
 
 
-def test_a_slot_beside_a_condition_is_told_of_its_signal() -> None:
+def test_a_slot_beside_a_condition_gets_a_hint_at_its_signal() -> None:
     with pytest.raises(rs.DeclarationError, match=r"a slot is no signal: write & mood\.changed"):
         _ = a & mood
     with pytest.raises(rs.DeclarationError, match=r"a slot is no signal: write \| mood\.changed"):
@@ -161,7 +161,7 @@ async def both(value: object) -> AsyncIterator[bool]:
     ],
 )
 def test_a_predicate_whose_call_only_makes_an_object_is_refused(predicate: object) -> None:
-    """A coroutine is true, whatever it would return."""
+    """A coroutine object is always true."""
     with pytest.raises(
         rs.DeclarationError,
         match=rf"demo:a\.where\(.*\) \({HERE}:\d+\): .* always true: write a plain function of the payload",
@@ -177,7 +177,7 @@ def test_a_predicate_whose_call_only_makes_an_object_is_refused(predicate: objec
     "predicate",
     [cheerful, bool, str.isupper, Asks("x"), Asks("x").__call__, functools.partial(cheerful), re.Pattern],
 )
-def test_whatever_returns_at_once_is_a_predicate(predicate: object) -> None:
+def test_every_plain_callable_is_a_predicate(predicate: object) -> None:
     assert a.where(predicate).predicates == (predicate,)
     assert mood.holds(predicate).predicate == predicate
 

@@ -1,6 +1,7 @@
-"""Modules are values; every mistake in a declaration says what to write instead."""
+"""Modules are values; every message about a mistake ends with the text to write instead."""
 
 import functools
+import inspect
 import re
 import types
 from collections.abc import Callable
@@ -39,7 +40,7 @@ def do(ctx: object) -> None:
 # ---------------------------------------------------------------------------------------- what a module holds
 
 
-def test_a_module_holds_what_is_declared_with_it_and_nothing_else(demo: rs.Module) -> None:
+def test_a_module_holds_its_declarations_and_nothing_else(demo: rs.Module) -> None:
     go, mood, lit, people = demo.signal("go"), demo.slot("mood"), demo.flag("lit"), demo.collection("people")
     rule = demo.rule(when=go)(do)
     assert (demo.signals, demo.slots, demo.rules) == ([go], [mood, lit, people], [rule])
@@ -47,7 +48,7 @@ def test_a_module_holds_what_is_declared_with_it_and_nothing_else(demo: rs.Modul
     assert repr(demo) == "<module demo>"
 
 
-def test_everything_says_where_it_was_declared(demo: rs.Module) -> None:
+def test_every_declaration_knows_its_place(demo: rs.Module) -> None:
     for thing in (demo, demo.signal("a"), demo.slot("b"), demo.flag("c"), demo.collection("d")):
         assert re.fullmatch(f"{HERE}:[0-9]+", thing.origin)
     rule = demo.rule(when=demo.signal("go"))(do)
@@ -60,7 +61,7 @@ def test_a_rule_takes_one_or_many_slots_and_signals(demo: rs.Module) -> None:
     assert (rule.reads, rule.writes, rule.emits) == ((a,), (a, b), (x,))
 
 
-def test_a_rule_may_be_named(demo: rs.Module) -> None:
+def test_a_rule_may_have_another_name(demo: rs.Module) -> None:
     go = demo.signal("go")
     assert demo.rule(when=go)(do).name == "demo:do"
     assert demo.rule(when=go, name="other")(do).name == "demo:other"
@@ -82,7 +83,7 @@ def python_module(**contents: object) -> types.ModuleType:
     return found
 
 
-def test_a_python_module_stands_for_the_module_that_it_holds(demo: rs.Module) -> None:
+def test_a_python_module_stands_for_its_module(demo: rs.Module) -> None:
     other = rs.Module("other")
     assert as_module(python_module(module=demo, other=other)) is demo
     assert as_module(python_module(demo=demo, again=demo)) is demo
@@ -133,7 +134,7 @@ def test_settings_are_a_class_derived_from_settings(settings: Any) -> None:
 
 
 @pytest.mark.parametrize("declare", ["signal", "slot", "flag", "collection"])
-def test_what_is_kept_is_checked(declare: str, demo: rs.Module) -> None:
+def test_keep_and_limit_are_checked(declare: str, demo: rs.Module) -> None:
     make = getattr(demo, declare)
     refused("demo:x: keep='last': write keep='all' or keep='latest'", lambda: make("x", keep="last"))
     refused("demo:x: limit=0: write a whole number of at least 1", lambda: make("x", limit=0))
@@ -170,7 +171,7 @@ def test_a_function_without_an_argument_is_refused(demo: rs.Module) -> None:
     assert demo.rule(when=demo.signal("ok"))(takes_any).name == "demo:takes_any"
 
 
-def test_what_is_no_function_is_refused(demo: rs.Module) -> None:
+def test_a_rule_needs_a_function(demo: rs.Module) -> None:
     go = demo.signal("go")
     refused("@demo.rule(...) stands above a function, not 3", lambda: demo.rule(when=go)(3))
     rule = demo.rule(when=go)(do)
@@ -179,19 +180,19 @@ def test_what_is_no_function_is_refused(demo: rs.Module) -> None:
 
 
 @pytest.mark.parametrize("function", [lambda ctx: None, functools.partial(do)])
-def test_a_function_without_a_name_wants_one(function: Any, demo: rs.Module) -> None:
+def test_a_function_without_a_name_needs_one(function: Any, demo: rs.Module) -> None:
     refused("has no name of its own: write name='...'", lambda: demo.rule(when=demo.signal("go"))(function))
     assert demo.rule(when=demo.signal("go2"), name="named")(function).name == "demo:named"
 
 
 @pytest.mark.parametrize("when", [True, None, "go", do, 3])
-def test_a_condition_is_wanted(when: Any, demo: rs.Module) -> None:
+def test_a_rule_needs_a_condition(when: Any, demo: rs.Module) -> None:
     refused(f"when={when!r} is no condition: combine signals with & and |", lambda: demo.rule(when=when)(do))
     if when is not None:
         refused(f"until={when!r} is no condition", lambda: demo.rule(when=demo.signal("go"), until=when)(do))
 
 
-def test_a_slot_as_condition_is_told_of_its_signal(demo: rs.Module) -> None:
+def test_a_slot_as_condition_gets_a_hint_at_its_signal(demo: rs.Module) -> None:
     mood = demo.slot("mood")
     refused(
         "when=demo:mood is a slot: write when=mood.changed",
@@ -223,11 +224,35 @@ def test_reads_and_writes_name_slots_and_emits_names_signals(demo: rs.Module) ->
         refused(f"{what}='mood' is no slot", lambda what=what: demo.rule(when=go, **{what: ["mood"]})(do))
         refused(f"{what}=None is no slot", lambda what=what: demo.rule(when=go, **{what: None})(do))
     refused(
-        "emits=demo:mood is no signal: writing it signals; write writes=mood",
+        "emits=demo:mood is no signal: a write raises its signals; write writes=mood",
         lambda: demo.rule(when=go, emits=mood)(do),
     )
     message = refused("emits=5 is no signal", lambda: demo.rule(when=go, emits=5)(do))
     assert re.match(rf"rule demo:do \({HERE}:\d+\): emits=5", message)
+
+
+@pytest.mark.parametrize(
+    ("refusal", "declare"),
+    [
+        ("demo.rule", lambda m: m.rule(when=m.signal("go"), write=())),
+        ("has no argument 'write'; did you mean 'writes'?", lambda m: m.rule(when=None, write=())),
+        ("has no argument 'wen'; did you mean 'when'?", lambda m: m.rule(wen=None)),
+        ("has no argument 'cooldwon'; did you mean 'cooldown'?", lambda m: m.rule(when=None, cooldwon=3)),
+        ("has no argument 'defalt'; did you mean 'default'?", lambda m: m.slot("x", defalt=1)),
+        ("has no argument 'alwys'; did you mean 'always'?", lambda m: m.flag("x", alwys=True)),
+        ("has no argument 'imput'; did you mean 'input'?", lambda m: m.signal("x", imput=True)),
+        ("has no argument 'always'", lambda m: m.collection("x", always=True)),
+        ("rs.Module (", lambda m: rs.Module("x", setings=None)),
+        ("has no argument 'setings'; did you mean 'settings'?", lambda m: rs.Module("x", setings=None)),
+    ],
+)
+def test_a_misspelt_keyword_gets_a_hint(refusal: str, declare: Any, demo: rs.Module) -> None:
+    assert re.search(rf"\({HERE}:\d+\)", refused(refusal, lambda: declare(demo)))
+    assert demo.rules == demo.slots == []
+
+
+def test_help_shows_the_arguments_of_a_rule() -> None:
+    assert list(inspect.signature(rs.Module.rule).parameters)[:4] == ["self", "when", "reads", "writes"]
 
 
 def test_a_refused_rule_is_not_in_the_module(demo: rs.Module) -> None:

@@ -1,4 +1,4 @@
-"""What a rule may return or raise besides nothing."""
+"""The outcomes that a rule may return or raise."""
 
 import pytest
 

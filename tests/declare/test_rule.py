@@ -1,4 +1,4 @@
-"""A rule stays the function that it was made of."""
+"""A rule is still its function."""
 
 import asyncio
 import inspect
@@ -31,7 +31,7 @@ def test_a_rule_looks_like_its_function() -> None:
     assert list(inspect.signature(double).parameters) == ["ctx"]
 
 
-def test_a_rule_is_shown_by_its_name() -> None:
+def test_the_repr_of_a_rule_is_its_name() -> None:
     assert repr(double) == "<rule demo:double>"
 
 

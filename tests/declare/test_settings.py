@@ -1,4 +1,4 @@
-"""Settings named in a declaration."""
+"""References to settings in a declaration."""
 
 import ravestate as rs
 from ravestate.declare.settings import SettingRef
@@ -8,7 +8,7 @@ class Owner:
     pass
 
 
-def test_a_setting_is_named_alone_or_with_its_class() -> None:
+def test_a_reference_has_a_name_and_perhaps_a_class() -> None:
     assert rs.setting("late") == SettingRef("late")
     assert rs.setting("late") != SettingRef("late", Owner)
     assert repr(rs.setting("late")) == "setting('late')"

@@ -1,4 +1,4 @@
-"""Slots and their signals (L2), and what is said when a slot is taken for a signal."""
+"""Slots and their signals (L2), and the messages for a slot in the place of a signal."""
 
 import copy
 import re
@@ -26,7 +26,7 @@ def test_each_kind_of_slot_has_signals_of_its_own() -> None:
     assert [slot.kind for slot in (mood, lit, people)] == ["value", "flag", "collection"]
 
 
-def test_the_signals_keep_what_the_slot_says() -> None:
+def test_the_signals_have_the_options_of_the_slot() -> None:
     changed = mood.changed
     assert (mood.always, changed.input, changed.keep, changed.limit) == (True, True, "latest", 7)
     assert changed.origin == mood.origin and mood.origin.rsplit(":", 1)[0] == __file__
@@ -54,17 +54,17 @@ class Text(str):
 )
 def test_a_slot_with_a_type_takes_no_other(default: Any, kind: Any, good: Any, bad: Any) -> None:
     slot = demo.slot("s", default, type=kind)
-    slot.check(good, "somebody")
+    slot.check(good, "the writer")
     with pytest.raises(
         rs.RuleError,
-        match=f"somebody wrote {re.escape(repr(bad))} to demo:s, which takes .*, not {type(bad).__name__}",
+        match=f"the writer wrote {re.escape(repr(bad))} to demo:s, which takes .*, not {type(bad).__name__}",
     ):
-        slot.check(bad, "somebody")
+        slot.check(bad, "the writer")
 
 
 @pytest.mark.parametrize("kind", [None, Any, list[int], "str"])
-def test_types_that_cannot_be_checked_are_not(kind: Any) -> None:
-    demo.slot("s", type=kind).check(object(), "somebody")
+def test_unknown_types_are_not_checked(kind: Any) -> None:
+    demo.slot("s", type=kind).check(object(), "the writer")
     with pytest.raises(TypeError):
         NOTHING["key"] = 1
 
@@ -87,9 +87,7 @@ def test_types_that_cannot_be_checked_are_not(kind: Any) -> None:
         (mood, "hold", "did you mean 'holds'?"),
     ],
 )
-def test_a_misspelt_signal_of_a_slot_is_met_by_the_right_one(
-    slot: rs.Slot[object], attribute: str, text: str
-) -> None:
+def test_a_misspelt_signal_of_a_slot_gets_a_hint(slot: rs.Slot[object], attribute: str, text: str) -> None:
     with pytest.raises(AttributeError, match=text.replace("?", r"\?")):
         getattr(slot, attribute)
 
@@ -103,7 +101,7 @@ def test_a_slot_is_no_condition() -> None:
             combine()
 
 
-def test_a_slot_can_be_copied_and_shown() -> None:
+def test_a_slot_can_be_copied_and_printed() -> None:
     assert copy.copy(lit).true is lit.true
     assert repr(mood) == "demo:mood"
 

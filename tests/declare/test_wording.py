@@ -1,9 +1,9 @@
-"""Messages name things as they are typed, and the line where the mistake is."""
+"""The wording of messages: names as code, the line of the mistake, short values."""
 
 import pytest
 
 import ravestate as rs
-from ravestate.declare.wording import place_of_call, spelt
+from ravestate.declare.wording import cut, place_of_call, short, spelt
 
 
 @pytest.mark.parametrize(
@@ -16,12 +16,31 @@ from ravestate.declare.wording import place_of_call, spelt
         ("face", "guide", "face"),
     ],
 )
-def test_names_are_spelt_as_they_are_typed(name: str, home: str, typed: str) -> None:
+def test_names_are_spelt_as_code(name: str, home: str, typed: str) -> None:
     assert spelt(name, home) == typed
 
 
-def test_the_place_is_the_designers_line() -> None:
+def test_the_place_is_the_line_of_the_designer() -> None:
     go = rs.Module("m").signal("go")
     assert place_of_call().startswith(f"{__file__}:")
     with pytest.raises(rs.DeclarationError, match=f"{__file__}:"):
         bool(go & go)
+
+
+class Shy:
+    """A value whose own code fails."""
+
+    def __repr__(self) -> str:
+        raise RuntimeError
+
+
+def test_a_long_value_is_cut() -> None:
+    assert short("x" * 100) == "'" + "x" * 56 + "..."
+    assert cut("x" * 60) == "x" * 60
+    assert short(Shy()) == "<Shy without a repr>"
+
+
+def test_a_slot_refuses_a_value_without_a_repr() -> None:
+    """The message used to fail together with the value's own code."""
+    with pytest.raises(rs.RuleError, match="the rule wrote <Shy without a repr> to m:mood, which takes str"):
+        rs.Module("m").slot("mood", "", type=str).check(Shy(), "the rule")

@@ -65,13 +65,13 @@ class Host:
     @contextlib.contextmanager
     def away(self) -> Iterator[None]:
         """Lose all connections, and take no new ones within."""
-        gate = self.app.state.gate
-        gate.refusal = lambda headers: "away"
+        access = self.app.state.access
+        access.refusal = lambda headers: "away"
         self.drop()
         try:
             yield
         finally:
-            del gate.refusal
+            del access.refusal
 
 
 class Stage:

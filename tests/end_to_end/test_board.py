@@ -212,7 +212,7 @@ async def test_why_not_is_answered_with_the_right_reason(stage: Stage) -> None:
             "old => document.querySelector('#cause option')?.value !== old", arg=option
         )
         await page.locator("#cause").select_option(index=0)
-        await expect(answered).to_contain_text("keeper:classify was done without raising it")
+        await expect(answered).to_contain_text("keeper:classify finished without raising it")
 
 
 @on_stage
@@ -306,8 +306,8 @@ async def test_the_chat_page_leads_to_the_board_of_its_own_conversation(stage: S
 async def test_the_board_asks_for_the_token(stage: Stage) -> None:
     async with served(token="open-sesame-please") as host:
         async with stage.open(f"{host.address}board/") as page:
-            await page.get_by_label("This board asks for a token.").fill("open-sesame-please")
-            await page.get_by_role("button", name="Look in").click()
+            await page.get_by_label("This board needs a token.").fill("open-sesame-please")
+            await page.get_by_role("button", name="Open", exact=True).click()
             await expect(page.locator(".status")).to_have_text("live")
         async with stage.open(f"{host.address}board/#token=open-sesame-please") as page:
             await expect(page.locator(".status")).to_have_text("live")
@@ -344,7 +344,7 @@ async def test_a_lost_connection_comes_back_with_the_history(stage: Stage) -> No
         await say(page, "Since when?")
         await until_lane(page, "keeper:answer", "done")
         with host.away():
-            await expect(page.get_by_text("The agent is out of reach")).to_be_visible()
+            await expect(page.get_by_text("The agent does not respond")).to_be_visible()
         await expect(page.locator(".status")).to_have_text("live")
         assert [bar["outcome"] for bar in await until_lane(page, "keeper:answer", "done")] == ["done"]
 
@@ -401,7 +401,7 @@ async def test_a_policy_of_more_than_a_hundred_rules_can_be_read(stage: Stage) -
         await say(page, "7")
         await until_lane(page, "skill_7:answer", "done")
         assert 4 <= await lanes.count() < 50  # of those that did something, if only to wait for a topic
-        await page.get_by_role("button", name="more did nothing").click()
+        await page.get_by_role("button", name="idle rules").click()
         await expect(lanes).to_have_count(125)
         await page.get_by_label("Filter rules").fill("skill_12 output")
         await expect(lanes).to_have_count(1)
@@ -441,7 +441,7 @@ async def test_what_came_of_the_newest_input_leads_to_the_rules_and_back(stage: 
         )
         await lost.click()
         await expect(page.locator(".answer")).to_have_attribute("data-verdict", "outrun")
-        await page.get_by_role("button", name="Choose no rule").click()
+        await page.get_by_role("button", name="Close this rule").click()
         await expect(lost).to_be_visible()
 
 
@@ -451,7 +451,7 @@ async def test_choosing_a_cause_shows_the_time_in_which_it_was_answered(stage: S
         await say(page, "Since when?")
         await until_lane(page, "keeper:answer", "done")
         await page.get_by_role("tab", name="Rule").click()
-        causes = page.get_by_label("Which cause")
+        causes = page.get_by_label("Cause", exact=True)
         value = await causes.locator("option", has_text='"Since when?"').get_attribute("value")
         await causes.select_option(value)
         await expect(page.get_by_role("button", name="Follow", exact=True)).to_be_visible()
@@ -474,7 +474,7 @@ async def test_a_conversation_that_has_ended_takes_nothing_more_and_says_why(sta
         await expect(page.get_by_text("This conversation has ended: the visitor left.")).to_be_visible()
         await expect(page.get_by_role("button", name="Say", exact=True)).to_be_disabled()
         await expect(page.get_by_role("button", name="Edit keeper:notebook")).to_have_count(0)
-        await page.get_by_role("button", name="Look at another one").click()
+        await page.get_by_role("button", name="Open another one").click()
         await expect(page.locator(".status")).to_have_text("live")
         await expect(page.get_by_role("button", name="Say", exact=True)).to_be_enabled()
 
@@ -506,10 +506,10 @@ async def test_the_keyboard_reaches_the_timeline(stage: Stage) -> None:
         await expect(page.get_by_role("heading", name="keeper:small_talk")).to_be_visible()
         await expect(page.get_by_label("Filter rules")).to_have_value("")
         await page.keyboard.type("nowhere")
-        await expect(page.get_by_text("no rule has “nowhere”")).to_be_visible()
+        await expect(page.get_by_text("no rule matches “nowhere”")).to_be_visible()
         await page.keyboard.press("Escape")
         await expect(page.get_by_label("Filter rules")).to_have_value("")
-        await page.get_by_role("button", name="Choose no rule").click()
+        await page.get_by_role("button", name="Close this rule").click()
         timeline = page.get_by_role("application", name="Timeline")
         await timeline.focus()
         await page.keyboard.press("ArrowDown")
@@ -628,7 +628,7 @@ async def test_the_pictures_in_the_documentation(stage: Stage, tmp_path: Path) -
         await page.mouse.move(600, 600)
         await drawn(page)
         await page.screenshot(path=folder / "board.png")
-        await page.get_by_role("button", name="Choose no rule").click()
+        await page.get_by_role("button", name="Close this rule").click()
         await page.get_by_role("button", name="Newest").click()
         await page.get_by_role("button", name="Diagram").click()
         await expect(node(page, "rule keeper:answer")).to_be_visible()
@@ -643,3 +643,36 @@ async def test_the_pictures_in_the_documentation(stage: Stage, tmp_path: Path) -
     for picture in ("board.png", "board-diagram.png"):
         head = (folder / picture).read_bytes()[:24]
         assert struct.unpack(">II", head[16:24]) == (size["width"], size["height"])
+
+
+@on_stage
+async def test_the_board_follows_the_newest_conversation_of_its_browser(stage: Stage) -> None:
+    async with served() as host, stage.open(f"{host.address}board/") as board:
+        await expect(board.locator(".status")).to_have_text("live")
+        page = await board.context.new_page()
+        await page.goto(host.address)
+        await page.get_by_label("What you say to Elske").fill("It is quiet here.")
+        await page.get_by_label("What you say to Elske").press("Enter")
+        await until_lane(board, "keeper:small_talk", "done")
+        later = await board.context.new_page()
+        await later.goto(f"{host.address}board/")
+        await until_lane(later, "keeper:small_talk", "done")
+
+
+clumsy = rs.Module("clumsy", requires=(rawio,))
+
+
+@clumsy.rule(when=rawio.input.changed, writes=rawio.output)
+async def spill(ctx: rs.RuleContext) -> None:
+    """Fail."""
+    raise ValueError("out of ink")
+
+
+@on_stage
+async def test_a_failure_is_counted_and_shows_its_traceback(stage: Stage) -> None:
+    async with served(clumsy) as host, stage.open(f"{host.address}board/") as page:
+        await say(page, "Write this down.")
+        await page.get_by_role("button", name="1 failed").click()
+        await expect(page.get_by_role("heading", name="clumsy:spill")).to_be_visible()
+        await expect(page.locator("pre")).to_contain_text("Traceback (most recent call last)")
+        await expect(page.locator("pre")).to_contain_text('raise ValueError("out of ink")')

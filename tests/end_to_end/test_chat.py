@@ -3,7 +3,7 @@
 import asyncio
 from typing import Any
 
-from playwright.async_api import Page, expect
+from playwright.async_api import Page, WebSocketRoute, expect
 
 from end_to_end.host import Cue, host, namesake, storyteller, watcher
 from end_to_end.stage import PHONE, Stage, on_stage
@@ -219,10 +219,157 @@ async def test_on_a_phone_everything_fits(stage: Stage) -> None:
         )
         await expect(lines(page).last).to_be_in_viewport()
         await expect(page.get_by_label("What you say to Elske")).to_be_in_viewport(ratio=1)
-        for button in await page.get_by_role("button").all():
-            box = await button.bounding_box()
+
+
+@on_stage
+async def test_on_a_phone_fingers_find_everything(stage: Stage) -> None:
+    agent = Agent(host, webio, settings={"webio": {"port": 0, "token": TOKEN}})
+
+    async def check(page: Page) -> None:
+        found = page.locator("button, a, input, textarea").filter(visible=True)
+        assert await found.count() > 0
+        for target in await found.all():
+            box = await target.bounding_box()
             assert box is not None
-            assert min(box["width"], box["height"]) >= 36
+            assert min(box["width"], box["height"]) >= 44, await target.evaluate("(it) => it.outerHTML")
+
+    async with Server(agent, inside="board/") as served, stage.open(served.address, **PHONE) as page:
+        await expect(page.get_by_label("Token")).to_be_visible()
+        await check(page)
+        await page.get_by_label("Token").fill(TOKEN)
+        await page.get_by_label("Token").press("Enter")
+        await expect(page.get_by_role("button", name="Who are you?")).to_be_visible()
+        await check(page)
+        for number in range(20):
+            await say(page, f"{number}")
+        await expect(log(page)).to_contain_text("You said: 19")
+        await log(page).evaluate("(log) => { log.scrollTop = 0; }")
+        await expect(page.get_by_role("button", name="Newest")).to_be_visible()
+        await check(page)
+        await page.get_by_role("button", name="Leave").click()
+        await check(page)
+        await page.get_by_role("dialog").get_by_role("button", name="Leave").click()
+        await expect(page.get_by_role("button", name="Begin a new conversation")).to_be_visible()
+        await check(page)
+
+
+@on_stage
+async def test_the_first_screen_offers_three_things_to_say(stage: Stage) -> None:
+    async with stage.serve(host, title="Elske") as served, stage.open(served.address, **PHONE) as page:
+        offered = page.get_by_role("list", name="Things to say").get_by_role("button")
+        await expect(offered).to_have_text(["Hello!", "Who are you?", "What can you do?"])
+        await offered.nth(1).click()
+        await said(page, "Good evening.", "> Who are you?", "You said: Who are you?")
+        await expect(offered).to_have_count(0)
+
+
+@on_stage
+async def test_a_paused_agent_does_not_look_present(stage: Stage) -> None:
+    async with stage.serve(host, title="Elske") as served, stage.open(served.address) as page:
+        status = page.locator(".status")
+        await expect(status).to_have_text("here")
+        (session,) = served.sessions
+        session.context.pause()
+        session.notify()
+        await expect(status).to_have_text("paused")
+        await say(page, "Are you there?")
+        session.context.resume()
+        session.notify()
+        await expect(status).to_have_text("here")
+        await said(page, "Good evening.", "> Are you there?", "You said: Are you there?")
+
+
+@on_stage
+async def test_a_frozen_server_does_not_look_present(stage: Stage) -> None:
+    async with stage.serve(host, title="Elske") as served, stage.open("about:blank") as page:
+        await page.clock.install()
+        frozen = False
+
+        def meet(client: WebSocketRoute) -> None:
+            server = client.connect_to_server()
+            server.on_message(lambda text: None if frozen else client.send(text))
+
+        await page.route_web_socket("**/ws", meet)
+        await page.goto(served.address)
+        await expect(page.locator(".status")).to_have_text("here")
+        frozen = True
+        await say(page, "Are you there?")
+        await page.clock.fast_forward(5_000)
+        await expect(page.locator(".status")).to_have_text("not responding")
+        frozen = False
+        served.sessions[0].utter("I was far away.")
+        await expect(page.locator(".status")).to_have_text("here")
+
+
+@on_stage
+async def test_of_five_thousand_lines_only_those_near_the_view_are_in_the_page(stage: Stage) -> None:
+    async with stage.serve(host, title="Elske") as served, stage.open(served.address) as page:
+        await said(page, "Good evening.")
+        (session,) = served.sessions
+        for start in range(0, 5_000, 250):
+            for number in range(start, start + 250):
+                session.utter(f"Line {number}" + ", which is long" * (number % 40))
+            await expect(lines(page).last).to_contain_text(f"Line {start + 249}")
+        nodes = "document.querySelectorAll('*').length"
+        assert await page.evaluate(nodes) < 800
+        await expect(lines(page).last).to_be_in_viewport()
+        await log(page).evaluate("(log) => { log.scrollTop = 0; }")
+        await expect(page.get_by_text("Good evening.")).to_be_in_viewport()
+        assert await page.evaluate(nodes) < 800
+        await log(page).focus()
+        place = "(log) => log.scrollTop"
+        for _ in range(5):
+            before = await log(page).evaluate(place)
+            await page.keyboard.press("PageDown")
+            await page.wait_for_function(
+                f"(before) => ({place})(document.querySelector('[role=log]')) > before", arg=before
+            )
+        shown = await seen(page)
+        assert 1 < len(shown) == shown[-1] - shown[0] + 1  # no gap in what is in view
+        session.utter("Something new.")
+        await expect(page.get_by_role("button", name="Newest")).to_be_visible()
+        await page.mouse.move(300, 300)
+        for _ in range(30):
+            await page.mouse.wheel(0, -400)
+            await page.evaluate("() => new Promise(requestAnimationFrame)")
+        await expect(page.get_by_text("Good evening.")).to_be_in_viewport()
+        await page.get_by_role("button", name="Newest").click()
+        await expect(lines(page).last).to_have_text("Elske: Something new.")
+        await expect(lines(page).last).to_be_in_viewport()
+        assert await page.evaluate(nodes) < 800
+
+
+@on_stage
+async def test_lines_in_view_stay_where_they_are_as_others_come_and_go(stage: Stage) -> None:
+    async with stage.serve(host, title="Elske") as served, stage.open(served.address) as page:
+        await said(page, "Good evening.")
+        (session,) = served.sessions
+        for number in range(400):
+            session.utter(f"Line {number}" + ", which is long" * (number % 40))
+        await expect(lines(page).last).to_contain_text("Line 399")
+        await page.mouse.move(300, 300)
+        first = (await seen(page))[0]
+        while first > 100:  # upwards, where heights are still guesses
+            await page.mouse.wheel(0, -300)
+            await page.wait_for_function(
+                "(first) => [...document.querySelectorAll('.line')].some((line) => line.textContent.includes("
+                "`Line ${first - 1}`) && line.getBoundingClientRect().bottom > 60)",
+                arg=first,
+            )
+            shown = await seen(page)
+            assert shown[-1] - shown[0] + 1 == len(shown)
+            assert first - shown[0] < 30  # it moved by a wheel's turn, not more
+            first = shown[0]
+
+
+async def seen(page: Page) -> list[int]:
+    """Return the numbers of the lines in view."""
+    return await log(page).evaluate(
+        "(log) => { const view = log.getBoundingClientRect(); return [...log.querySelectorAll('.line')]"
+        ".filter((line) => { const box = line.getBoundingClientRect();"
+        " return box.bottom > view.top && box.top < view.bottom; })"
+        ".map((line) => Number(/Line ([0-9]+)/.exec(line.textContent)?.[1])); }"
+    )
 
 
 @on_stage

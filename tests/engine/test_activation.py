@@ -1,4 +1,4 @@
-"""The life of an activation, as a table; and that nothing whatsoever corrupts an engine (L12, L14, L17, L18)."""
+"""The table of an activation's life; and no sequence of events corrupts an engine (L12, L14, L17, L18)."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ ONE = compiled(World((SignalOf(),), (), (RuleOf(((Want("s0"),),)),)))[1]
 
 @pytest.mark.parametrize("step", Step)
 @pytest.mark.parametrize("state", State)
-def test_what_is_in_the_table_happens_and_what_is_not_is_an_error(state: State, step: Step) -> None:
+def test_a_step_in_the_table_happens_and_any_other_is_an_error(state: State, step: Step) -> None:
     activation = Activation(7, ONE.rule_plans[0].clauses[0])
     activation.state = state
     expected = TRANSITIONS.get((state, step))
@@ -43,7 +43,7 @@ def test_every_state_but_the_last_can_be_reached_and_left() -> None:
 
 
 class Abuse(RuleBasedStateMachine):
-    """An engine, a shell that does what it may, and one that does what it may not."""
+    """An engine under random events, allowed and forbidden ones."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -62,7 +62,7 @@ class Abuse(RuleBasedStateMachine):
         self.play.engine.receive(event, self.now)
 
     def refused(self, event: events.Event, *errors: type[Exception]) -> None:
-        """It is refused with a clear error, and nothing has changed."""
+        """Assert that an event is refused with a clear error, and changes nothing."""
         before = still(self.play)
         with pytest.raises(errors) as caught:
             self.receive(event)
@@ -154,7 +154,7 @@ class Abuse(RuleBasedStateMachine):
         )
 
     @rule(what=st.sampled_from(["write", "store", "discard", "emit", "wipe"]))
-    def name_what_there_is_not(self, what: str) -> None:
+    def name_an_unknown(self, what: str) -> None:
         self.refused(
             {
                 "write": events.Write("m:v00", 1),

@@ -1,4 +1,4 @@
-"""What no engine should be told, and that it says so clearly."""
+"""Events that no engine should receive are refused with a clear message."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ go, lit = m.signal("go"), m.flag("lit")
 
 @m.rule(when=go, writes=lit)
 async def light(ctx: rs.RuleContext) -> None:
-    """Only asked for by the engine, never called."""
+    """A rule that the engine starts and no test calls."""
 
 
 def running() -> tuple[Engine, int]:
-    """An engine, and the number of the run that it has asked for."""
+    """Return an engine, and the number of the run that it has started."""
     engine = Engine(rs.compile(m))
     engine.receive(events.Emit("m:go"), 0.0)
     (effect,) = engine.effects()
@@ -35,8 +35,8 @@ def running() -> tuple[Engine, int]:
     [
         (events.Store("m:lit", "key", 1), "m:lit is no collection"),
         (events.Discard("m:lit", "key"), "m:lit is no collection"),
-        (events.AddRule(rs.compile(rs.Module("other"))), r"make it by with_rule\(\)"),
-        (events.Finish(999, "done"), "run 999 is over, or never was"),
+        (events.AddRule(rs.compile(rs.Module("other"))), r"make it with policy\.with_rule\(rule\)"),
+        (events.Finish(999, "done"), "run 999 is over, or never began"),
         (cast("Any", "go"), "'go' is no event"),
     ],
 )
@@ -54,7 +54,7 @@ def test_a_run_ends_in_one_of_four_ways() -> None:
     engine, run = running()
     with pytest.raises(EngineError, match="done, resigned, failed, retired, not by 'won'"):
         engine.receive(events.Finish(run, cast("Any", "won")), 1.0)
-    engine.receive(events.Finish(run, "done"), 1.0)  # it was not over
+    engine.receive(events.Finish(run, "done"), 1.0)  # the refused event has not ended it
 
 
 def test_a_time_is_a_number() -> None:

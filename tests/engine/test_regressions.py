@@ -1,6 +1,6 @@
-"""What random worlds have found, each with the smallest example and the law that it broke.
+"""Faults that random worlds have found: the smallest example of each, and the law that it broke.
 
-Every world here was shrunk from one that a property test had made.
+Each world was shrunk from one that a property test had made.
 """
 
 from __future__ import annotations
@@ -19,12 +19,12 @@ V1 = (SlotOf(),)
 
 
 def on(*signals: str) -> tuple[tuple[Want, ...], ...]:
-    """A condition of one conjunction."""
+    """Return a condition of one conjunction."""
     return (tuple(Want(signal) for signal in signals),)
 
 
 def runs(play: Play) -> list[str]:
-    """The rules that were called, in order."""
+    """Return the rules that were called, in order."""
     return [line.split("<rule m:")[1].split(">")[0] for line in play.heard if "< Run(" in line]
 
 
@@ -59,7 +59,7 @@ def test_a_held_spike_counts_against_its_limit_after_detached_needs_have_forgott
 
 
 @pytest.mark.parametrize("end", ["resigned", "failed"])
-def test_who_resigned_does_not_take_the_same_spikes_again(end: str) -> None:
+def test_a_rule_that_resigned_does_not_take_the_same_spikes_again(end: str) -> None:
     # L18: the rule gives up these spikes. Another activation of it held the older s0 and the same s1.
     world = World(
         (SignalOf(), SignalOf(), SignalOf()),
@@ -103,8 +103,8 @@ def test_a_foreground_rule_may_wait_for_the_end_of_activity_and_more() -> None:
     Play(world, before=bounded).play()
 
 
-def test_the_best_of_a_bench_may_be_judged_against_a_rival() -> None:
-    # Making the activations of a bench while the members of its group are looked at was a RuntimeError.
+def test_the_best_of_a_conflict_set_may_be_judged_against_a_rival() -> None:
+    # Unfolding the alternatives in a loop over the members of their group was a RuntimeError.
     world = World(
         S3,
         V1,
@@ -120,7 +120,7 @@ def test_the_best_of_a_bench_may_be_judged_against_a_rival() -> None:
     empty(play)
 
 
-def test_who_waits_for_a_rival_is_asked_again_when_the_rival_begins_to_cool_down() -> None:
+def test_a_waiting_rule_asks_again_when_its_rival_begins_to_cool_down() -> None:
     # L9, L15: r1 waits to ripen on v0:changed and is worth more, so r0 waits; then r1 runs on another cause, is worth
     # nothing from then on, and nobody is left for whom r0 would have to wait.
     world = World(
@@ -136,10 +136,10 @@ def test_who_waits_for_a_rival_is_asked_again_when_the_rival_begins_to_cool_down
     assert next(line for line in play.heard if "<rule m:r0>" in line).startswith("0.5 s < Run(")
 
 
-def test_who_waits_for_a_ready_rival_is_asked_again_when_the_rival_loses_a_spike_of_another_cause() -> None:
+def test_a_waiting_rule_asks_again_when_its_ready_rival_loses_a_spike_of_another_cause() -> None:
     # L15, L16: r1 holds s0 and s1 and waits for r2, which writes for s1; r0 waits for r1. When r2 is done, s1 is
-    # consumed, and r1 lacks it: it has its patience of 1 s. But nobody asked again on behalf of r0, whose group is
-    # that of s0 alone, so r1 was never under pressure, and r0 waited for ever.
+    # consumed, and r1 lacks it: it has its patience of 1 s. But r0 did not ask again, as its group is that of s0
+    # alone. So r1 was never under pressure, and r0 waited for ever.
     def lasting(*signals: str) -> tuple[tuple[Want, ...], ...]:
         return (tuple(Want(signal, max_age=None) for signal in signals),)
 
@@ -164,7 +164,7 @@ def test_who_waits_for_a_ready_rival_is_asked_again_when_the_rival_loses_a_spike
     assert not play.engine.waiting
 
 
-def test_who_waits_for_a_rival_is_asked_again_when_the_rival_binds_itself_to_a_cause_that_cannot_do() -> None:
+def test_a_waiting_rule_asks_again_when_its_rival_takes_a_spike_that_cannot_be_joined() -> None:
     # L12, L16: two constraints on s1 want one causal group. With an s1 that fulfils one of them and not the other, the
     # rival is viable no longer: an input cannot come into a group that is there already.
     world = World(
@@ -180,7 +180,7 @@ def test_who_waits_for_a_rival_is_asked_again_when_the_rival_binds_itself_to_a_c
     assert next(line for line in play.heard if "<rule m:r0>" in line).startswith("0.5 s < Run(")
 
 
-def test_who_waits_for_a_rule_that_was_live_elsewhere_is_asked_again_when_it_is_not() -> None:
+def test_a_waiting_rule_asks_again_when_the_rule_that_was_live_elsewhere_is_not() -> None:
     # L16 (iii): r1 lacks v0:false, which r0 and r1 might cause as long as they are live for another cause. At 3 s they have
     # had their patience there, and r0 runs; from then on they are live nowhere else. Only the end of a rule's last
     # activation was noticed, and there is still the one that waits.
@@ -200,7 +200,7 @@ def test_who_waits_for_a_rule_that_was_live_elsewhere_is_asked_again_when_it_is_
 
 @pytest.mark.parametrize("traced", [False, True])
 @pytest.mark.parametrize("wiped", [False, True])
-def test_who_sits_on_a_bench_gives_up_a_spike_that_is_withdrawn(traced: bool, wiped: bool) -> None:
+def test_an_alternative_gives_a_withdrawn_spike_up(traced: bool, wiped: bool) -> None:
     # L20, L25: r1 would have lost the spike if its activation had been made, as it is when somebody traces.
     world = World(
         (SignalOf(keep="latest"),),
@@ -248,7 +248,7 @@ def test_a_spike_that_a_new_rule_may_look_back_at_is_forgotten_in_time() -> None
     empty(play)
 
 
-def test_who_waits_for_a_rule_is_asked_again_when_the_rule_retires() -> None:
+def test_a_waiting_rule_asks_again_when_the_rule_that_it_waits_for_retires() -> None:
     # L16, L18: r0 runs and may yet raise s0 for r1, for which r2 waits; at 0.25 s r1 retires, after a run for another cause.
     world = World(
         (SignalOf(),),

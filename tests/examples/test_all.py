@@ -1,4 +1,4 @@
-"""What every example has: a page of code that says what it shows, no faults, no rule that cannot run."""
+"""Every example has: a page of code that says what it shows, no faults, no rule that cannot run."""
 
 import ast
 

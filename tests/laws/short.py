@@ -1,4 +1,4 @@
-"""Short words for rules of few lines, and for what a trace says."""
+"""Helpers for rules of few lines, and for the contents of a trace."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from ravestate.engine.trace import Born, Dropped, GaveUp, Pressed, Set, Settled,
 
 
 def output(module: rs.Module, name: str = "out") -> rs.Slot[str]:
-    """A slot into which the same thing may be said twice."""
+    """Declare a slot that signals equal values too."""
     return module.slot(name, "", always=True)
 
 
 def writer(
     module: rs.Module, name: str, when: rs.Condition, *slots: rs.Slot[Any], after: float = 0.0, **options: Any
 ) -> rs.Rule[Any, Any]:
-    """A rule that takes some seconds and then writes its own name into its slots."""
+    """Declare a rule that, after some seconds, writes its own name into its slots."""
 
     async def write(ctx: Any) -> None:
         if after:
@@ -37,7 +37,7 @@ def emitter(
     only_if: Callable[[Any], bool] = lambda ctx: True,
     **options: Any,
 ) -> rs.Rule[Any, Any]:
-    """A rule that takes some seconds and then emits its signals, or, where ``only_if`` says no, does not."""
+    """Declare a rule that, after some seconds, emits its signals if ``only_if`` is true."""
 
     async def emit(ctx: Any) -> None:
         if after:
@@ -52,7 +52,7 @@ def emitter(
 def resigner(
     module: rs.Module, name: str, when: rs.Condition, *slots: rs.Slot[Any], after: float = 0.0, **options: Any
 ) -> rs.Rule[Any, Any]:
-    """A rule that takes some seconds and then resigns."""
+    """Declare a rule that, after some seconds, resigns."""
 
     async def resign(ctx: Any) -> rs.Resign:
         if after:
@@ -65,7 +65,7 @@ def resigner(
 def hearer(
     module: rs.Module, name: str, when: rs.Condition, signal: rs.Signal[Any], heard: list[Any], **options: Any
 ) -> rs.Rule[Any, Any]:
-    """A rule that only notes the payload of a signal."""
+    """Declare a rule that only notes the payload of a signal."""
 
     async def hear(ctx: Any) -> None:
         heard.append(ctx.payload(signal))
@@ -74,32 +74,32 @@ def hearer(
 
 
 def written(sim: Any, slot: rs.Slot[Any]) -> list[Any]:
-    """What was written into a slot, in order."""
+    """Return the values that were written into a slot, in order."""
     return [r.value for r in sim.trace if isinstance(r, Set) and r.slot == slot.name]
 
 
 def moments(sim: Any, slot: rs.Slot[Any]) -> list[tuple[float, Any]]:
-    """When (seconds) something was written into a slot, and what."""
+    """Return the values that were written into a slot, each with its time (seconds)."""
     return [(round(r.time, 6), r.value) for r in sim.trace if isinstance(r, Set) and r.slot == slot.name]
 
 
 def started(sim: Any) -> list[tuple[float, str]]:
-    """When (seconds) which rule began to run."""
+    """Return the rules that began to run, each with its time (seconds)."""
     return [(round(r.time, 6), r.rule.split(":")[1]) for r in sim.trace if isinstance(r, Started)]
 
 
 def outcomes(sim: Any) -> list[tuple[str, str]]:
-    """How which run ended, in order."""
+    """Return the runs that ended, in order: rule and outcome."""
     return [(r.rule.split(":")[1], r.outcome) for r in sim.trace if isinstance(r, Settled)]
 
 
 def births(sim: Any, signal: rs.Signal[Any]) -> list[Born]:
-    """The spikes of a signal, in order."""
+    """Return the births of a signal's spikes, in order."""
     return [r for r in sim.trace if isinstance(r, Born) and r.signal == signal.name]
 
 
 def given_up(sim: Any, rule: str) -> list[tuple[float, str, str]]:
-    """When (seconds) a rule gave up which signal, and why."""
+    """Return the signals that a rule gave up, each with its time (seconds) and the reason."""
     return [
         (round(r.time, 6), r.signal.split(":", 1)[1], r.reason)
         for r in sim.trace
@@ -108,7 +108,7 @@ def given_up(sim: Any, rule: str) -> list[tuple[float, str, str]]:
 
 
 def pressed(sim: Any) -> list[tuple[float, str, tuple[str, ...], float]]:
-    """When (seconds) which rule came under pressure, what it lacked, and until when it had patience."""
+    """Return the rules that came under pressure: time (seconds), rule, missing signals, end of patience (seconds)."""
     return [
         (round(r.time, 6), r.rule.split(":")[1], r.lacks, round(r.until, 6))
         for r in sim.trace
@@ -117,12 +117,12 @@ def pressed(sim: Any) -> list[tuple[float, str, tuple[str, ...], float]]:
 
 
 def drops(sim: Any, signal: rs.Signal[Any]) -> list[Dropped]:
-    """The spikes of a signal that were withdrawn, in order."""
+    """Return the withdrawals of a signal's spikes, in order."""
     return [r for r in sim.trace if isinstance(r, Dropped) and r.signal == signal.name]
 
 
 def pathways(policy: rs.Policy, rule: str, clause: int = 0) -> set[str]:
-    """The pathways of a clause; the short names of each one's signals in alphabetical order, e.g. ``"a b"``."""
+    """Return the pathways of a clause: for each the short names of its signals in alphabetical order, e.g. ``"a b"``."""
     return {
         " ".join(sorted(signal.name.split(":", 1)[1] for signal in pathway))
         for pathway in policy.clauses(rule)[clause].pathways
@@ -130,6 +130,6 @@ def pathways(policy: rs.Policy, rule: str, clause: int = 0) -> set[str]:
 
 
 def at_rest(sim: Any) -> bool:
-    """Whether no spike, activation, group or deadline is left."""
+    """Return whether no spike, activation, group or deadline is left."""
     alive = sim.snapshot()
     return not (alive["spikes"] or alive["activations"] or alive["groups"] or alive["next_deadline"])

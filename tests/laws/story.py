@@ -1,4 +1,4 @@
-"""A story in which a bit of everything happens. As a program it prints all that the engine asked for and observed."""
+"""A story with a bit of everything. As a program it prints all effects and trace records of the engine."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from scenarios.driver import Driver
 
 
 def everything() -> rs.Module:
-    """Rules of every sort."""
+    """Return a module with rules of every sort."""
     m = rs.Module("m")
     i, j, x, y = m.signal("i", payload=str), m.signal("j"), m.signal("x"), m.signal("y")
     out, face, mood = output(m), output(m, "face"), m.slot("mood", "calm")
@@ -44,7 +44,7 @@ def everything() -> rs.Module:
 
 
 def tell(sim: Any, seed: int = 7, steps: int = 40) -> None:
-    """Let it happen, in a random but repeatable order."""
+    """Play the story, in a random but repeatable order."""
     policy = sim.engine.policy if isinstance(sim, Driver) else sim.context.policy
     signals, slots = policy.signals, policy.slots
     dice = random.Random(seed)

@@ -5,12 +5,13 @@ from typing import Any
 import pytest
 
 import ravestate as rs
-from laws.short import hearer
+from laws.short import hearer, writer, written
+from ravestate.engine.trace import Merged
 from ravestate.testing import simulate
 
 
 def heard_of(m: rs.Module, slot: rs.Slot[Any]) -> list[tuple[str, Any]]:
-    """What the signals of a slot will have said."""
+    """Declare a rule for each signal of a slot, and return the list in which they note name and payload."""
     heard: list[tuple[str, Any]] = []
     for signal in slot.signals:
         what = signal.name.rsplit(":", 1)[1]
@@ -26,9 +27,9 @@ def test_every_slot_declares_its_signals() -> None:
     m = rs.Module("m")
     mood, lit, people = m.slot("mood", "calm"), m.flag("lit"), m.collection("people")
     assert mood.name == "m:mood"
-    assert mood.signals == ("m:mood:changed",)
-    assert set(lit.signals) == {"m:lit:changed", "m:lit:true", "m:lit:false"}
-    assert set(people.signals) == {"m:people:added", "m:people:removed", "m:people:changed"}
+    assert [s.name for s in mood.signals] == ["m:mood:changed"]
+    assert {s.name for s in lit.signals} == {"m:lit:changed", "m:lit:true", "m:lit:false"}
+    assert {s.name for s in people.signals} == {"m:people:added", "m:people:removed", "m:people:changed"}
     policy = rs.compile(m)
     assert policy.slots["m:mood"] is mood
     assert set(policy.signals) >= {s.name for slot in (mood, lit, people) for s in slot.signals}
@@ -58,7 +59,7 @@ def test_a_flag_signals_changed_and_its_new_value(play: Any) -> None:
         assert sorted(heard) == [("changed", False), ("false", False)]
 
 
-def test_a_collection_signals_what_came_and_what_went(play: Any) -> None:
+def test_a_collection_signals_added_and_removed_items(play: Any) -> None:
     m = rs.Module("m")
     people = m.collection("people")
     heard = heard_of(m, people)
@@ -121,6 +122,32 @@ def test_writing_an_equal_value_signals_nothing(play: Any) -> None:
         heard[1].clear()
         sim.put(people, {"ann": [1]})
         assert heard == [[], []]
+
+
+@pytest.mark.parametrize("how", ["add", "write", "remove"])
+def test_writing_an_equal_item_merges_no_groups(how: str) -> None:
+    m = rs.Module("m")
+    a, b, out, people = m.signal("a"), m.signal("b"), m.slot("out", ""), m.collection("people")
+
+    @m.rule(when=a & b, writes=people, weight=3)
+    async def know(ctx: Any) -> None:
+        match how:
+            case "add":
+                ctx[people].add("ann", [1])
+            case "write":
+                ctx[people] = {"ann": [1]}
+            case _:
+                ctx[people].remove("bob")
+
+    writer(m, "answer_a", a, out)
+    writer(m, "answer_b", b, out)
+    with simulate(m) as sim:
+        sim.put(people, {"ann": [1]})
+        sim.emit(a)
+        sim.emit(b)
+        assert written(sim, out) == ["answer_a", "answer_b"]  # two causes, two answers
+        assert not [record for record in sim.trace if isinstance(record, Merged)]
+        assert sim.fired.count("m:know") == 1
 
 
 def test_a_slot_may_say_that_every_write_signals(play: Any) -> None:

@@ -46,7 +46,7 @@ def test_a_condition_is_a_boolean_combination(play: Any) -> None:
 
 
 def refused(m: rs.Module, go: rs.Signal[Any]) -> tuple[Simulation, str]:
-    """What a rule of module `m` called `meddle` is told when it oversteps; it is refused as an error (L18)."""
+    """Return the error of the rule `m:meddle` when it oversteps; that is an Error of the run (L18)."""
     errors: list[rs.RuleFailure] = []
     hearer(m, "hear_error", rs.error, rs.error, errors)
     with simulate(m) as sim:
@@ -56,7 +56,7 @@ def refused(m: rs.Module, go: rs.Signal[Any]) -> tuple[Simulation, str]:
     assert isinstance(exception, rs.UndeclaredError)
     assert [(failure.rule, failure.exception) for failure in errors] == [(rule, exception)]
     assert "m:meddle" in str(exception)
-    assert f"{inspect.getsourcefile(refused)}:" in str(exception)  # where it was declared
+    assert f"{inspect.getsourcefile(refused)}:" in str(exception)  # the place of its declaration
     return sim, str(exception)
 
 
@@ -132,7 +132,7 @@ def test_a_payload_that_the_condition_does_not_name_is_refused() -> None:
     assert "m:other" in message
 
 
-def test_what_is_declared_is_allowed() -> None:
+def test_a_declared_access_is_allowed() -> None:
     m = rs.Module("m")
     go, mood, face, done = m.signal("go"), m.slot("mood", "calm"), output(m, "face"), m.signal("done")
     heard: list[Any] = []
@@ -149,7 +149,7 @@ def test_what_is_declared_is_allowed() -> None:
         assert (sim.read(face), heard) == ("calm", ["calm"])
 
 
-def test_two_rules_that_are_called_alike_in_two_modules_are_two(play: Any) -> None:
+def test_rules_of_two_modules_may_have_the_same_name(play: Any) -> None:
     one, two = rs.Module("one"), rs.Module("two")
     go = one.signal("go")
     two.requires.append(one)

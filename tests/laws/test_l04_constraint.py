@@ -10,7 +10,7 @@ from ravestate.testing import simulate
 
 
 def pair(condition: Any) -> tuple[rs.Module, rs.Signal[Any], rs.Signal[Any], rs.Slot[Any]]:
-    """A rule on two signals; `condition` makes its condition of them."""
+    """Declare a rule on two signals; `condition` combines them."""
     m = rs.Module("m")
     a, b, out = m.signal("a", payload=object), m.signal("b", payload=object), output(m)
     writer(m, "both", condition(a, b), out)
@@ -101,7 +101,7 @@ def test_where_waits_for_a_payload_that_fits(play: Any) -> None:
         assert moments(sim, out) == [(0.0, "both")]
 
 
-def test_where_that_fails_is_an_error_of_its_rule_and_no_match(play: Any) -> None:
+def test_a_predicate_that_raises_is_an_error_of_its_rule_and_no_match(play: Any) -> None:
     m, a, _, out = pair(lambda a, b: a.where(lambda n: 1 / n > 0))
     writer(m, "other", a, output(m, "face"))
     with play(m) as sim:
@@ -126,7 +126,7 @@ def test_holds_gates_a_rule(play: Any) -> None:
         assert moments(sim, out) == []
         sim.advance(6.0)
         sim.put(mood, "gay")
-        assert moments(sim, out) == []  # it is no spike: nothing fires by it
+        assert moments(sim, out) == []  # a predicate is no spike: no rule fires by it
         assert at_rest(sim)
         sim.emit(a)
         assert moments(sim, out) == [(6.0, "gated")]
@@ -141,7 +141,7 @@ def test_a_rule_whose_gate_opens_in_time_fires_at_that_moment(play: Any) -> None
         assert moments(sim, out) == [(3.0, "gated")]
 
 
-def test_what_waits_at_a_gate_is_not_ready_and_ages(play: Any) -> None:
+def test_an_activation_at_a_closed_gate_is_not_ready_and_ages(play: Any) -> None:
     m, a, _, _ = gated()
     with play(m) as sim:
         sim.emit(a)

@@ -187,7 +187,7 @@ def test_one_policy_serves_any_number_of_contexts(play: Any) -> None:
         assert other.read(out) == 1
 
 
-def test_what_is_added_to_one_context_is_not_in_another(play: Any) -> None:
+def test_a_rule_added_to_one_context_is_not_in_another(play: Any) -> None:
     m, extra = rs.Module("m"), rs.Module("extra")
     go, out = m.signal("go"), output(m)
     policy = rs.compile(m)

@@ -1,10 +1,10 @@
-"""L7: what a rule may cause, and what that is caused by."""
+"""L7: the effects of a rule, and their causes."""
 
 import ravestate as rs
 from laws.short import emitter, hearer, pathways, writer
 
 
-def test_a_rule_may_cause_what_it_emits() -> None:
+def test_a_rule_may_cause_the_signals_that_it_emits() -> None:
     m = rs.Module("m")
     go, x, y = m.signal("go"), m.signal("x"), m.signal("y")
     emitter(m, "cause", go, x, y)
@@ -28,7 +28,7 @@ def test_a_rule_may_cause_every_signal_of_a_slot_that_it_writes() -> None:
         assert pathways(policy, f"m:hear_{number}") == {f"go {signal.name.split(':', 1)[1]}"}
 
 
-def test_what_a_rule_only_reads_is_no_effect() -> None:
+def test_a_slot_that_a_rule_only_reads_is_no_effect() -> None:
     m = rs.Module("m")
     go, mood = m.signal("go"), m.slot("mood", "")
     hearer(m, "look", go, go, [], reads=mood)

@@ -126,7 +126,7 @@ def test_recovery_climbs_linearly_over_the_cooldown(play: Any) -> None:
         assert effective(sim, "m:rest") == pytest.approx(full)
 
 
-def test_a_rule_that_recovers_still_runs_when_nobody_competes(play: Any) -> None:
+def test_a_rule_that_recovers_still_runs_without_a_competitor(play: Any) -> None:
     m = rs.Module("m")
     a, out = m.signal("a"), output(m)
     writer(m, "rest", a, out, cooldown=8.0)

@@ -75,7 +75,7 @@ def test_two_causes_do_not_exclude_each_other(play: Any) -> None:
         assert written(sim, out) == ["specific", "specific"]
 
 
-def test_a_rule_that_only_looks_excludes_nobody(play: Any) -> None:
+def test_a_rule_that_only_looks_excludes_no_other(play: Any) -> None:
     m = rs.Module("m")
     i, out = m.signal("i"), output(m)
     writer(m, "act", i, out)
@@ -98,7 +98,7 @@ def test_detached_effects_share_no_cause(play: Any) -> None:
         assert sorted(written(sim, out)) == ["later", "now"]
 
 
-def test_a_conflict_tells_who_wins_and_by_how_much() -> None:
+def test_a_conflict_names_the_winner_and_its_lead() -> None:
     m = rs.Module("m")
     i, x, out = m.signal("i"), m.signal("x"), output(m)
     emitter(m, "cause", i, x)
@@ -114,7 +114,7 @@ def test_a_conflict_tells_who_wins_and_by_how_much() -> None:
     assert not one.tie
 
 
-def test_a_rule_that_writes_nothing_excludes_nobody(play: Any) -> None:
+def test_a_rule_that_writes_nothing_excludes_no_other(play: Any) -> None:
     m = rs.Module("m")
     i, x, out, heard = m.signal("i"), m.signal("x"), output(m), list[Any]()
     writer(m, "act", i, out)

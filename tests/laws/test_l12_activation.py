@@ -5,7 +5,7 @@ from typing import Any
 import pytest
 
 import ravestate as rs
-from laws.short import emitter, hearer, moments, output, started, writer, written
+from laws.short import at_rest, emitter, hearer, moments, output, started, writer, written
 
 
 def test_a_signal_that_arrives_while_the_rule_is_busy_starts_another_instance(play: Any) -> None:
@@ -54,7 +54,7 @@ def test_several_activations_may_hold_a_spike_and_consent_lets_one_have_it(play:
 
 
 @pytest.mark.parametrize("writes", [True, False])
-def test_of_two_prompts_and_one_answer_the_older_prompt_is_answered(play: Any, writes: bool) -> None:
+def test_the_older_of_two_prompts_takes_the_only_answer(play: Any, writes: bool) -> None:
     m = rs.Module("m")
     prompt, answer = m.signal("prompt", payload=int), m.signal("answer", payload=str)
     out, answered = m.slot("out", ""), list[Any]()
@@ -84,7 +84,7 @@ def test_of_two_prompts_and_one_answer_the_older_prompt_is_answered(play: Any, w
 
 
 def utterances() -> tuple[rs.Module, rs.Slot[str], list[Any]]:
-    """`question & about_agent`, both raised from the words of an utterance."""
+    """Declare rules on `question & about_agent`, both raised from the words of an utterance."""
     m = rs.Module("m")
     text = m.slot("text", "", always=True)
     question, about = m.signal("question"), m.signal("about")
@@ -170,7 +170,7 @@ def test_a_detached_constraint_need_not_cohere(play: Any) -> None:
         assert seen == [("who?", "you!")]
 
 
-def test_who_loses_a_coherent_spike_takes_another_of_the_same_cause(play: Any) -> None:
+def test_an_activation_that_loses_a_coherent_spike_takes_another_of_the_same_cause(play: Any) -> None:
     m = rs.Module("m")
     i, question, about, seal = (
         m.signal("i"),
@@ -193,3 +193,44 @@ def test_who_loses_a_coherent_spike_takes_another_of_the_same_cause(play: Any) -
         sim.advance(1.2)
         sim.emit(seal)
         assert heard == [2]
+
+
+@pytest.mark.parametrize("order", ["ab", "ba"])
+def test_spikes_of_groups_that_merge_join(play: Any, order: str) -> None:
+    m = rs.Module("m")
+    a, b, s0, s1 = (m.signal(name) for name in ("a", "b", "s0", "s1"))
+    emitter(m, "r0", b, s0)
+    hearer(m, "r1", a & s0 & s1, s1, [])
+    emitter(m, "r2", a & b, s1)
+    with play(m) as sim:
+        for name in order:
+            sim.emit({"a": a, "b": b}[name])
+        assert sim.fired == ["m:r0", "m:r2", "m:r1"]
+        assert at_rest(sim)
+
+
+def test_an_older_activation_takes_the_spikes_that_a_merge_brings_together(play: Any) -> None:
+    m = rs.Module("m")
+    a, b, s0, s1, heard = m.signal("a"), m.signal("b"), m.signal("s0"), m.signal("s1"), list[Any]()
+    emitter(m, "r0", b, s0)
+    hearer(m, "r1", a & s0 & s1, a, heard)
+    emitter(m, "r2", a.where(lambda payload: payload != "other") & b, s1)
+    with play(m) as sim:
+        for payload in ("other", "first", "second"):
+            sim.emit(a, payload)
+        sim.emit(b)
+        assert heard == ["first"]
+
+
+def test_a_lost_spike_no_longer_keeps_spikes_of_other_groups_out(play: Any) -> None:
+    m = rs.Module("m")
+    a, s, v, out = m.signal("a"), m.signal("s"), m.signal("v"), output(m)
+    emitter(m, "cause", a, s, only_if=lambda ctx: False)  # so that `a` and `s` cohere
+    writer(m, "both", s.max_age(1.0) & a & v, out)
+    with play(m) as sim:
+        sim.emit(s)  # of one group
+        sim.emit(v)
+        sim.emit(a)  # of another: the first activation cannot have both
+        sim.advance(1.0)
+        held = {signal["signal"] for signal in sim.snapshot()["activations"][0]["holds"]}
+        assert held == {"m:v", "m:a"}

@@ -84,7 +84,7 @@ def test_an_emitted_signal_occurs_at_once(play: Any) -> None:
         assert heard == [1, 2]
 
 
-def test_a_rule_that_starts_later_sees_what_was_written(play: Any) -> None:
+def test_a_rule_that_starts_later_sees_earlier_writes(play: Any) -> None:
     m = rs.Module("m")
     go, mood, seen = m.signal("go"), m.slot("mood", "calm"), list[Any]()
     writer(m, "gay", go, mood)

@@ -32,11 +32,11 @@ def test_a_spike_past_its_age_is_given_up_while_the_activation_is_incomplete(pla
         assert given_up(sim, "both") == [(2.0, "a", "age")]
         sim.emit(b)
         assert written(sim, out) == []
-        sim.emit(a)  # b is there still: a fresh one of a is all that it lacks
+        sim.emit(a)  # the first b is still live: only a fresh a is missing
         assert written(sim, out) == ["both"]
 
 
-def test_one_that_still_ripens_is_incomplete(play: Any) -> None:
+def test_an_activation_that_still_ripens_is_incomplete(play: Any) -> None:
     m = rs.Module("m")
     a, b, out = m.signal("a"), m.signal("b"), output(m)
     writer(m, "both", a.min_age(10.0).max_age(None) & b, out)
@@ -45,7 +45,7 @@ def test_one_that_still_ripens_is_incomplete(play: Any) -> None:
         sim.advance(1.0)
         sim.emit(b)
         sim.advance(9.5)
-        # By the one that holds a as well, and by the one that stood by when b came.
+        # The activation with both gives it up, and so does the one that b itself began.
         assert given_up(sim, "both") == [(6.0, "b", "age")] * 2
         assert written(sim, out) == []
         sim.emit(b)
@@ -66,7 +66,7 @@ def test_an_input_is_never_dropped_because_a_classifier_was_slow(play: Any, dela
         assert given_up(sim, "general") == []
 
 
-def test_one_that_waits_for_a_taken_slot_loses_nothing_to_age(play: Any) -> None:
+def test_an_activation_that_waits_for_a_taken_slot_loses_nothing_to_age(play: Any) -> None:
     m = rs.Module("m")
     i, out = m.signal("i"), output(m)
 

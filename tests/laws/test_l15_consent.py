@@ -38,7 +38,7 @@ def test_a_slot_that_a_finished_rule_has_taken_is_refused(play: Any) -> None:
         sim.emit(i)
         sim.advance(10.0)
         assert written(sim, out) == ["first"]
-        assert at_rest(sim)  # nobody waits for ever for what is gone
+        assert at_rest(sim)  # no activation waits for ever for a consumed cause
 
 
 def test_the_greater_effective_utility_goes_first(play: Any) -> None:
@@ -66,7 +66,7 @@ def test_weight_may_turn_the_order_round(play: Any) -> None:
         assert written(sim, out) == ["general"]
 
 
-def test_of_equals_the_first_declared_wins(play: Any) -> None:
+def test_the_first_declared_of_equals_wins(play: Any) -> None:
     m = rs.Module("m")
     i, out = m.signal("i"), output(m)
     for name in ("second", "first", "third"):
@@ -87,7 +87,7 @@ def test_a_rival_that_writes_another_slot_is_none(play: Any) -> None:
         assert moments(sim, out) == [(0.0, "general")]
 
 
-def test_a_rule_that_waits_for_unrelated_things_is_nobodys_rival(play: Any) -> None:
+def test_a_rule_that_waits_for_unrelated_things_is_no_rival(play: Any) -> None:
     m = rs.Module("m")
     i, j, k, out = m.signal("i"), m.signal("j"), m.signal("k"), output(m)
     writer(m, "unrelated", j & k, out, weight=10.0)
@@ -98,7 +98,7 @@ def test_a_rule_that_waits_for_unrelated_things_is_nobodys_rival(play: Any) -> N
         assert moments(sim, out) == [(0.0, "general")]
 
 
-def test_a_rule_that_runs_for_another_cause_is_nobodys_rival(play: Any) -> None:
+def test_a_rule_that_runs_for_another_cause_is_no_rival(play: Any) -> None:
     m = rs.Module("m")
     i, out = m.signal("i"), output(m)
     writer(m, "slow", i, out, after=10.0)
@@ -108,7 +108,7 @@ def test_a_rule_that_runs_for_another_cause_is_nobodys_rival(play: Any) -> None:
         assert started(sim) == [(0.0, "slow")] * 2
 
 
-def test_a_rival_in_stand_by_has_a_stake_if_it_waits_for_what_the_group_may_cause(play: Any) -> None:
+def test_a_rival_in_stand_by_has_a_stake_if_it_waits_for_an_effect_of_the_group(play: Any) -> None:
     m = rs.Module("m")
     i, x, out = m.signal("i"), m.signal("x"), output(m)
     emitter(m, "cause", i, x, after=3.0)
@@ -175,7 +175,7 @@ def test_the_group_of_a_detached_spike_is_not_asked(play: Any) -> None:
         assert moments(sim, out) == [(0.0, "look"), (3.0, "busy")]
 
 
-def test_merged_groups_keep_what_each_of_them_has_taken(play: Any) -> None:
+def test_merged_groups_keep_the_taken_slots_of_each(play: Any) -> None:
     m = rs.Module("m")
     i, j, x, out = m.signal("i"), m.signal("j"), m.signal("x"), output(m)
     emitter(m, "fuse", i.min_age(1.0) & j, x)
@@ -191,7 +191,7 @@ def test_merged_groups_keep_what_each_of_them_has_taken(play: Any) -> None:
         assert moments(sim, out) == [(5.0, "two")]
 
 
-def test_what_waits_for_two_groups_is_free_when_both_are(play: Any) -> None:
+def test_a_rule_that_waits_for_two_groups_runs_when_both_are_free(play: Any) -> None:
     m = rs.Module("m")
     i, j, out = every_group(m)
     resigner(m, "one", i, out, after=2.0, weight=10.0)
@@ -218,7 +218,7 @@ def test_a_rival_that_recovers_is_counted_at_its_effective_utility(play: Any) ->
         assert moments(sim, out) == [(5.0, "specific"), (6.0, "general")]
 
 
-def test_one_that_recovers_while_it_waits_runs_when_it_overtakes(play: Any) -> None:
+def test_a_rule_that_recovers_while_it_waits_runs_when_it_overtakes(play: Any) -> None:
     m = rs.Module("m")
     i, x, out = m.signal("i"), m.signal("x"), output(m)
     weight = 2 * (log(4) + log(4 / 3)) / log(4 / 3)  # twice what `specific` is worth
@@ -234,7 +234,7 @@ def test_one_that_recovers_while_it_waits_runs_when_it_overtakes(play: Any) -> N
         assert moments(sim, out) == [(0.0, "general"), (5.0, "general")]
 
 
-def test_two_that_wait_for_each_other_do_not_wait_for_ever(play: Any) -> None:
+def test_two_rules_that_wait_for_each_other_do_not_wait_for_ever(play: Any) -> None:
     m = rs.Module("m")
     i, y, z = m.signal("i"), m.signal("y"), m.signal("z")
     out, face = output(m), output(m, "face")

@@ -1,5 +1,6 @@
-"""L16: a rival stands while what it lacks may still come, and nobody waits longer than that."""
+"""L16: a rival stands while its missing spikes may still come, and no activation waits longer than that."""
 
+import sys
 from typing import Any
 
 import pytest
@@ -35,7 +36,7 @@ def test_a_spike_still_too_young_keeps_a_rival_viable(play: Any) -> None:
         sim.emit(j)
         sim.emit(i)
         sim.advance(10.0)
-        assert moments(sim, out) == [(3.0, "specific")]  # three times the patience: nobody was pressed
+        assert moments(sim, out) == [(3.0, "specific")]  # three times the patience: no rival was pressed
         assert pressed(sim) == []
 
 
@@ -52,7 +53,7 @@ def test_a_rival_that_ripens_is_waited_for_though_it_lies_in_another_group(play:
         assert moments(sim, out) == [(3.0, "specific")]
 
 
-def test_a_spike_that_is_consumed_makes_nobody_viable(play: Any) -> None:
+def test_a_consumed_spike_makes_no_rival_viable(play: Any) -> None:
     m = rs.Module("m")
     i, j, never, out = m.signal("i"), m.signal("j"), m.signal("never"), output(m)
     writer(m, "hold", j.max_age(None) & never, output(m, "face"))
@@ -64,7 +65,7 @@ def test_a_spike_that_is_consumed_makes_nobody_viable(play: Any) -> None:
         sim.advance(2.0)
         sim.emit(i)
         sim.advance(20.0)
-        # j lives on, for another slot; a new j might come, so there is patience, and no more than that
+        # j lives on, for another slot; a new j might come, so there is patience, but no more
         assert moments(sim, out) == [(0.0, "answer"), (3.0, "general")]
 
 
@@ -72,7 +73,7 @@ def test_a_spike_that_is_consumed_makes_nobody_viable(play: Any) -> None:
 
 
 def classified(after: float, **options: Any) -> tuple[rs.Module, rs.Signal[Any], rs.Slot[str]]:
-    """A classifier that takes its time, a rule for what it may find, and one for everything."""
+    """Declare a slow classifier, a rule for its finding, and a rule for everything."""
     m = rs.Module("m")
     i, x, out = m.signal("i"), m.signal("x"), output(m)
     emitter(m, "classify", i, x, after=after, **options)
@@ -82,7 +83,7 @@ def classified(after: float, **options: Any) -> tuple[rs.Module, rs.Signal[Any],
 
 
 @pytest.mark.parametrize("after", [0.0, 0.7, 60.0])
-def test_what_a_running_rule_may_yet_cause_is_waited_for_without_patience(play: Any, after: float) -> None:
+def test_a_rule_waits_for_the_effects_of_a_running_rule_without_patience(play: Any, after: float) -> None:
     m, i, out = classified(after)
     with play(m) as sim:
         sim.emit(i)
@@ -92,7 +93,7 @@ def test_what_a_running_rule_may_yet_cause_is_waited_for_without_patience(play: 
 
 
 @pytest.mark.parametrize("after", [0.0, 0.7, 60.0])
-def test_whoever_waited_is_reconsidered_when_a_rule_ends_without_its_signal(play: Any, after: float) -> None:
+def test_a_waiting_rule_is_reconsidered_when_another_ends_without_its_signal(play: Any, after: float) -> None:
     m, i, out = classified(after, only_if=no)
     with play(m) as sim:
         sim.emit(i)
@@ -102,7 +103,7 @@ def test_whoever_waited_is_reconsidered_when_a_rule_ends_without_its_signal(play
 
 
 def chain(stops_at: int) -> tuple[rs.Module, rs.Signal[Any], rs.Slot[str]]:
-    """Three links of 10 s each, of which one may end without its signal."""
+    """Declare a chain of three rules of 10 s each; one of them may end without its signal."""
     m = rs.Module("m")
     signals = [m.signal(f"s{number}") for number in range(4)]
     for number in range(3):
@@ -253,7 +254,7 @@ def test_patience_counts_from_the_moment_of_pressure(play: Any) -> None:
         assert moments(sim, out) == [(3.5, "plain")]
 
 
-def test_without_pressure_nobody_loses_patience(play: Any) -> None:
+def test_a_rival_loses_no_patience_without_pressure(play: Any) -> None:
     m, point, speech, out = fusion()
     with play(m) as sim:
         sim.emit(point)
@@ -293,7 +294,7 @@ def test_a_rule_that_is_pressed_twice_gets_no_second_patience(play: Any) -> None
 
 
 def foreign(after: float, **options: Any) -> tuple[rs.Module, rs.Signal[Any], rs.Signal[Any], rs.Slot[str]]:
-    """The rival lacks `x`, which only `make` raises, for another cause (`kick`)."""
+    """Declare a rival that lacks `x`, which only `make` raises, for another cause (`kick`)."""
     m = rs.Module("m")
     i, kick, x, out = m.signal("i"), m.signal("kick"), m.signal("x"), output(m)
     emitter(m, "make", kick, x, after=after, **options)
@@ -302,14 +303,14 @@ def foreign(after: float, **options: Any) -> tuple[rs.Module, rs.Signal[Any], rs
     return m, i, kick, out
 
 
-def test_nobody_waits_for_what_no_live_rule_could_cause(play: Any) -> None:
+def test_no_rule_waits_for_a_signal_that_no_live_rule_could_cause(play: Any) -> None:
     m, i, _, out = foreign(after=0.0)
     with play(m) as sim:
         sim.emit(i)
         assert moments(sim, out) == [(0.0, "general")]
 
 
-def test_what_a_running_rule_of_another_group_may_cause_is_waited_for_with_patience(play: Any) -> None:
+def test_a_rule_waits_with_patience_for_the_effects_of_a_running_rule_of_another_group(play: Any) -> None:
     m, i, kick, out = foreign(after=10.0)
     with play(m) as sim:
         sim.emit(kick)
@@ -318,7 +319,7 @@ def test_what_a_running_rule_of_another_group_may_cause_is_waited_for_with_patie
         assert moments(sim, out) == [(1.0, "general")]
 
 
-def test_what_a_rule_of_another_group_causes_in_time_makes_the_rival_ready(play: Any) -> None:
+def test_an_effect_of_another_group_in_time_makes_the_rival_ready(play: Any) -> None:
     m, i, kick, out = foreign(after=0.5)
     with play(m) as sim:
         sim.emit(kick)
@@ -327,7 +328,7 @@ def test_what_a_rule_of_another_group_causes_in_time_makes_the_rival_ready(play:
         assert moments(sim, out) == [(0.5, "specific")]
 
 
-def test_nobody_waits_longer_than_the_live_rule_of_another_group_lives(play: Any) -> None:
+def test_no_rule_waits_longer_than_the_live_rule_of_another_group_lives(play: Any) -> None:
     m, i, kick, out = foreign(after=0.5, only_if=no)
     with play(m) as sim:
         sim.emit(kick)
@@ -350,7 +351,7 @@ def test_a_rule_that_holds_a_spike_is_live(play: Any) -> None:
         assert moments(sim, out) == [(1.0, "general"), (20.0, "general")]
 
 
-def test_what_only_a_detached_rule_raises_is_no_input(play: Any) -> None:
+def test_a_signal_that_only_a_detached_rule_raises_is_no_input(play: Any) -> None:
     m = rs.Module("m")
     i, kick, x, out = m.signal("i"), m.signal("kick"), m.signal("x"), output(m)
     emitter(m, "make", kick, x, detached=True)
@@ -361,7 +362,7 @@ def test_what_only_a_detached_rule_raises_is_no_input(play: Any) -> None:
         assert moments(sim, out) == [(0.0, "general")]
 
 
-def test_what_is_declared_an_input_is_waited_for_though_a_rule_raises_it(play: Any) -> None:
+def test_a_rule_waits_for_a_declared_input_though_another_raises_it(play: Any) -> None:
     m = rs.Module("m")
     i, kick, x, out = m.signal("i"), m.signal("kick"), m.signal("x", input=True), output(m)
     emitter(m, "make", kick, x)
@@ -373,7 +374,7 @@ def test_what_is_declared_an_input_is_waited_for_though_a_rule_raises_it(play: A
         assert moments(sim, out) == [(1.0, "general")]
 
 
-def test_a_retired_rule_is_nobodys_rival(play: Any) -> None:
+def test_a_retired_rule_is_no_rival(play: Any) -> None:
     m = rs.Module("m")
     point, speech, out = m.signal("point"), m.signal("speech"), output(m)
 
@@ -409,7 +410,7 @@ def test_a_rival_is_pressed_from_the_moment_at_which_it_lost_a_spike(play: Any) 
 
 
 def mixed(after: float, **options: Any) -> tuple[rs.Module, rs.Signal[Any], rs.Signal[Any], rs.Slot[str]]:
-    """The rival lacks `x`, which may come in the group, and `j`, an input."""
+    """Declare a rival that lacks `x`, which may come in the group, and `j`, an input."""
     m = rs.Module("m")
     i, j, x, out = m.signal("i"), m.signal("j"), m.signal("x"), output(m)
     emitter(m, "classify", i, x, after=after, **options)
@@ -418,7 +419,7 @@ def mixed(after: float, **options: Any) -> tuple[rs.Module, rs.Signal[Any], rs.S
     return m, i, j, out
 
 
-def test_a_rival_elsewhere_has_a_stake_if_it_waits_for_what_the_group_may_cause(play: Any) -> None:
+def test_a_rival_elsewhere_has_a_stake_if_it_waits_for_an_effect_of_the_group(play: Any) -> None:
     m, i, j, out = mixed(after=3.0)
     with play(m) as sim:
         sim.emit(j)
@@ -437,7 +438,7 @@ def test_a_rival_elsewhere_lets_go_when_the_group_cannot_cause_it(play: Any) -> 
         assert moments(sim, out) == [(3.0, "general")]
 
 
-def test_what_lacks_an_input_besides_is_pressed(play: Any) -> None:
+def test_a_rival_that_also_lacks_an_input_is_pressed(play: Any) -> None:
     m, i, _, out = mixed(after=3.0)
     with play(m) as sim:
         sim.emit(i)
@@ -446,7 +447,7 @@ def test_what_lacks_an_input_besides_is_pressed(play: Any) -> None:
 
 
 @pytest.mark.parametrize("comes", [False, True])
-def test_what_rests_on_an_input_through_another_rule_is_pressed(play: Any, comes: bool) -> None:
+def test_a_rival_that_rests_on_an_input_through_another_rule_is_pressed(play: Any, comes: bool) -> None:
     m = rs.Module("m")
     i, j, x, out = m.signal("i"), m.signal("j"), m.signal("x"), output(m)
     emitter(m, "make", i & j, x)
@@ -476,7 +477,7 @@ def test_a_rival_whose_slot_is_consumed_is_not_viable(play: Any) -> None:
         assert at_rest(sim)
 
 
-def test_a_gate_that_is_closed_keeps_nobody_waiting(play: Any) -> None:
+def test_a_closed_gate_keeps_no_rule_waiting(play: Any) -> None:
     m = rs.Module("m")
     i, mood, out = m.signal("i"), m.slot("mood", "calm"), output(m)
     writer(m, "gated", i & mood.holds(lambda value: value == "gay"), out)
@@ -515,7 +516,7 @@ def test_pressure_on_one_cause_leaves_another_alone(play: Any) -> None:
         assert moments(sim, out) == [(1.0, "plain"), (1.3, "fused")]
 
 
-def test_a_rule_waits_for_what_stands_at_the_end_of_a_long_chain(play: Any) -> None:
+def test_a_rule_waits_for_the_end_of_a_long_chain(play: Any) -> None:
     m, length = rs.Module("m"), 500
     out = output(m)
     links = [m.signal(f"link{i}") for i in range(length + 1)]
@@ -529,7 +530,7 @@ def test_a_rule_waits_for_what_stands_at_the_end_of_a_long_chain(play: Any) -> N
         assert moments(sim, out) == [(3.0, "end")]
 
 
-def test_patience_does_not_begin_anew_when_a_rival_touches_what_another_gets(play: Any) -> None:
+def test_patience_does_not_start_over_when_a_rival_is_offered_a_spike_that_another_takes(play: Any) -> None:
     m = rs.Module("m")
     speech, gesture, out = m.signal("speech"), m.signal("gesture"), output(m)
     writer(m, "fuse", speech & gesture, out)
@@ -541,3 +542,29 @@ def test_patience_does_not_begin_anew_when_a_rival_touches_what_another_gets(pla
         sim.emit(gesture)
         sim.advance(5.0)
         assert moments(sim, out) == [(0.9, "fuse"), (1.4, "alone"), (1.8, "alone")]
+
+
+def test_a_derivation_may_be_deeper_than_the_interpreter_nests_calls(
+    play: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refuse(limit: int) -> None:
+        raise AssertionError(f"the recursion limit is the interpreter's: {limit}")
+
+    m = rs.Module("m")
+    a, out = m.signal("a"), output(m)
+    last, depth = a, sys.getrecursionlimit()
+    for number in range(depth):
+        signal = m.signal(f"s{number}")
+        emitter(m, f"r{number}", last, signal, after=0.0 if number else 2.0)
+        last = signal
+    writer(m, "answer", last, out)
+    writer(m, "fallback", a, out)
+    policy = rs.compile(m)
+    monkeypatch.setattr(sys, "setrecursionlimit", refuse)
+    with play(policy) as sim:
+        sim.emit(a)
+        sim.advance(1.0)
+        assert written(sim, out) == []
+        assert sim.snapshot()["activations"]
+        sim.advance(1.0)
+        assert written(sim, out) == ["answer"]

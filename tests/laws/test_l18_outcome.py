@@ -1,4 +1,4 @@
-"""L18: how a run ends, and what becomes of its slots and spikes: done, resign, error, retire."""
+"""L18: the outcomes of a run, and their effect on slots and spikes: done, resign, error, retire."""
 
 import logging
 from typing import Any
@@ -12,7 +12,7 @@ from ravestate.testing import simulate
 
 
 def two(act: Any, **options: Any) -> tuple[rs.Module, rs.Signal[Any], rs.Slot[str], list[rs.RuleFailure]]:
-    """`act`, then the next best for the same slot; and what `core:error` says."""
+    """Declare `act`, the next best rule for the same slot, and a listener of `core:error`."""
     m = rs.Module("m")
     i, out, errors = m.signal("i"), output(m), list[rs.RuleFailure]()
 
@@ -106,7 +106,7 @@ def test_a_rule_that_resigned_gives_up_these_spikes(play: Any) -> None:
         assert outcomes(sim) == [("shy", "resigned")] * 2
 
 
-def test_one_resigns_after_the_other(play: Any) -> None:
+def test_rules_resign_one_after_the_other(play: Any) -> None:
     m = rs.Module("m")
     i, out = m.signal("i"), output(m)
     for name in ("first", "second", "third"):
@@ -154,7 +154,7 @@ def test_a_rule_that_fails_after_it_has_written_is_done(play: Any) -> None:
         assert "m:act" in sim.fired
 
 
-def test_to_resign_after_a_write_is_an_error(play: Any) -> None:
+def test_resigning_after_a_write_is_an_error(play: Any) -> None:
     async def act(ctx: Any, out: Any) -> rs.Resign:
         ctx[out] = "half a sen"
         return rs.Resign("too late")
@@ -205,7 +205,7 @@ def test_a_rule_that_ends_in_time_is_not_timed_out(play: Any) -> None:
         assert (moments(sim, out), errors) == ([(2.9, "act")], [])
 
 
-def test_something_undeclared_is_an_error() -> None:
+def test_an_undeclared_access_is_an_error() -> None:
     async def act(ctx: Any, out: Any) -> None:
         ctx[other] = 1
 
@@ -285,7 +285,7 @@ def test_a_rule_that_retires_leaves_this_context(play: Any, raised: bool) -> Non
         assert written(other, out) == ["once"]
 
 
-def test_what_a_retired_rule_held_is_given_up(play: Any) -> None:
+def test_a_retired_rule_gives_its_spikes_up(play: Any) -> None:
     m = rs.Module("m")
     i, j, out = m.signal("i"), m.signal("j"), output(m)
 

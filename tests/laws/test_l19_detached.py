@@ -53,7 +53,7 @@ def test_one_spike_may_be_looked_at_more_than_once(play: Any) -> None:
         assert heard == [0, 1, 2]  # too old to be looked at
 
 
-def test_what_others_have_consumed_may_still_be_looked_at(play: Any) -> None:
+def test_a_detached_constraint_may_look_at_a_consumed_spike(play: Any) -> None:
     m = rs.Module("m")
     i, j, out = m.signal("i"), m.signal("j"), output(m)
     writer(m, "answer", j, out)

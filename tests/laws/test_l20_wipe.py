@@ -89,7 +89,7 @@ def test_a_running_rule_that_stands_on_a_descendant_is_cancelled(play: Any) -> N
         assert (ends, written(sim, out)) == (["2"], [])
 
 
-def test_what_came_from_a_cause_that_nobody_holds_any_more_is_withdrawn(play: Any) -> None:
+def test_a_descendant_of_a_cause_without_holders_is_withdrawn(play: Any) -> None:
     m = rs.Module("m")
     i, x, never, out = m.signal("i"), m.signal("x"), m.signal("never", input=True), output(m)
     emitter(m, "cause", i, x)
@@ -102,7 +102,7 @@ def test_what_came_from_a_cause_that_nobody_holds_any_more_is_withdrawn(play: An
         assert written(sim, out) == []
 
 
-def test_who_stands_on_the_rest_may_answer_if_the_wiped_rule_has_said_nothing(play: Any) -> None:
+def test_another_rule_may_answer_the_rest_if_the_wiped_rule_wrote_nothing(play: Any) -> None:
     m = rs.Module("m")
     i, x, out, ends = m.signal("i"), m.signal("x"), output(m), list[str]()
     emitter(m, "cause", i, x)
@@ -133,7 +133,7 @@ def test_a_plain_function_cannot_be_interrupted() -> None:
 
     @m.rule(when=i, writes=out)
     def act(ctx: Any) -> None:
-        sim.receive(Wipe(i.name))  # by somebody else, while it runs
+        sim.receive(Wipe(i.name))  # from outside, while it runs
         ctx[out] = "plain"
 
     with Driver(m) as sim:
@@ -157,7 +157,7 @@ def test_a_rule_may_wipe(play: Any) -> None:
         assert written(sim, out) == []
 
 
-def test_a_rule_that_wipes_what_it_stands_on_is_not_cancelled(play: Any) -> None:
+def test_a_rule_that_wipes_its_own_spike_is_not_cancelled(play: Any) -> None:
     m = rs.Module("m")
     a, out = m.signal("a"), output(m)
 
@@ -198,7 +198,7 @@ def test_a_signal_may_keep_only_its_latest_spike(play: Any) -> None:
         assert heard == [3]
 
 
-def test_what_a_wiped_run_causes_while_it_cleans_up_is_withdrawn_too(play: Any) -> None:
+def test_effects_of_a_wiped_run_that_cleans_up_are_withdrawn_too(play: Any) -> None:
     m = rs.Module("m")
     i, x, heard = m.signal("i"), m.signal("x"), list[Any]()
 

@@ -13,7 +13,7 @@ from laws.short import hearer, moments, outcomes, output, started, writer, writt
 def talker(
     until: Callable[[rs.Signal[Any], rs.Signal[Any], rs.Slot[str]], rs.Condition], **options: Any
 ) -> tuple[rs.Module, rs.Signal[Any], rs.Signal[Any], rs.Signal[Any], rs.Slot[str], rs.Slot[str]]:
-    """Speaks for ten seconds, one word each; `until` is made of two signals and a slot."""
+    """Declare a rule that speaks for ten seconds, one word each; `until` combines two signals and a slot."""
     m = rs.Module("m")
     i, stop, hush = m.signal("i"), m.signal("stop", payload=object), m.signal("hush")
     mood, out = m.slot("mood", "patient"), output(m)
@@ -35,7 +35,7 @@ def test_a_run_is_ended_at_that_very_moment(play: Any) -> None:
         sim.emit(stop)
         assert outcomes(sim) == [("talk", "interrupted")]
         sim.advance(20.0)
-        assert written(sim, out) == ["word 0", "word 1", "word 2"]  # what it wrote so far stands
+        assert written(sim, out) == ["word 0", "word 1", "word 2"]  # its writes so far stand
         assert sim.read(out) == "word 2"
         assert sim.failures == []
 
@@ -87,7 +87,7 @@ def test_spikes_born_before_the_run_do_not_count(play: Any) -> None:
         assert len(written(sim, out)) == 10
 
 
-def test_a_rule_is_not_interrupted_by_what_started_it(play: Any) -> None:
+def test_a_rule_is_not_interrupted_by_the_spike_that_started_it(play: Any) -> None:
     m = rs.Module("m")
     text, out = m.slot("text", "", always=True), output(m)
 
@@ -99,7 +99,7 @@ def test_a_rule_is_not_interrupted_by_what_started_it(play: Any) -> None:
     with play(m) as sim:
         sim.put(text, "one")
         sim.advance(2.0)
-        sim.put(text, "two")  # barge-in: the first is ended, and the second answered as if nothing had been
+        sim.put(text, "two")  # barge-in: the first answer ends, and the second input gets a full one
         assert outcomes(sim) == [("answer", "interrupted")]
         sim.advance(10.0)
         assert started(sim) == [(0.0, "answer"), (2.0, "answer")]
@@ -206,7 +206,7 @@ def test_the_gate_of_a_condition_may_open_after_its_spike(play: Any) -> None:
         assert outcomes(sim) == [("talk", "interrupted")]
 
 
-def test_what_interrupts_is_not_consumed_by_it(play: Any) -> None:
+def test_an_interruption_does_not_consume_its_spike(play: Any) -> None:
     m, i, stop, _, _, out = talker(lambda stop, hush, mood: stop)
     writer(m, "react", stop, out)
     with play(m) as sim:
@@ -229,7 +229,7 @@ def test_every_run_that_watches_is_ended(play: Any) -> None:
 
 
 @pytest.mark.parametrize("held", [True, False])
-def test_what_is_wiped_before_it_is_old_enough_interrupts_nobody(play: Any, held: bool) -> None:
+def test_a_spike_wiped_before_it_is_old_enough_interrupts_no_run(play: Any, held: bool) -> None:
     m, i, stop, hush, _, out = talker(lambda stop, hush, mood: stop.min_age(2.0))
     if held:
         hearer(m, "hold", stop & hush, stop, [])
@@ -244,7 +244,7 @@ def test_what_is_wiped_before_it_is_old_enough_interrupts_nobody(play: Any, held
         assert sim.snapshot()["spikes"] == []
 
 
-def test_what_is_superseded_before_it_is_old_enough_interrupts_nobody(play: Any) -> None:
+def test_a_spike_superseded_before_it_is_old_enough_interrupts_no_run(play: Any) -> None:
     m = rs.Module("m")
     i, gesture, out = m.signal("i"), m.signal("gesture", keep="latest"), output(m)
     writer(m, "talk", i, out, after=4.0, until=gesture.min_age(2.0))

@@ -106,7 +106,7 @@ def test_pressure_holds_while_an_activation_is_kept_waiting(play: Any) -> None:
         assert moments(sim, rs.pressure) == [(1.0, True), (3.0, False)]
 
 
-def test_to_gather_is_no_pressure(play: Any) -> None:
+def test_gathering_is_no_pressure(play: Any) -> None:
     m = rs.Module("m")
     i, j, out = m.signal("i"), m.signal("j"), output(m)
     writer(m, "wait", i & j, out)

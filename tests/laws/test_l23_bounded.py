@@ -1,13 +1,15 @@
-"""L23: every signal has an overflow policy; when everything has settled and aged, nothing is left."""
+"""L23: every signal has an overflow policy; nothing is left at rest; a loop without an end is fair to the rest."""
 
+import asyncio
 import gc
 from collections import Counter
+from collections.abc import Callable
 from typing import Any
 
 import pytest
 
 import ravestate as rs
-from laws.short import at_rest, drops, hearer, output, writer, written
+from laws.short import at_rest, drops, emitter, hearer, output, writer, written
 from laws.story import everything, tell
 from scenarios.driver import Driver
 
@@ -75,7 +77,7 @@ def test_every_signal_has_a_limit() -> None:
 
 
 def census() -> Counter[str]:
-    """The live objects of the engine, by kind."""
+    """Count the live objects of the engine, by kind."""
     gc.collect()
     kinds = (type(one) for one in gc.get_objects())
     return Counter(k.__qualname__ for k in kinds if str(k.__module__).startswith("ravestate.engine"))
@@ -105,7 +107,7 @@ def test_live_objects_return_to_their_number_at_rest() -> None:
         assert not {"Spike", "Activation", "Group", "Watch"} & set(counts[0])
 
 
-def test_what_is_forgotten_early_leaves_nothing_behind(play: Any) -> None:
+def test_a_wiped_signal_leaves_nothing_behind(play: Any) -> None:
     m = rs.Module("m")
     a, b, out = m.signal("a"), m.signal("b"), output(m)
     writer(m, "both", a.max_age(None) & b, out)
@@ -117,3 +119,137 @@ def test_what_is_forgotten_early_leaves_nothing_behind(play: Any) -> None:
         sim.wipe(a)
         assert at_rest(sim)
         assert written(sim, out) == []
+
+
+def endless(m: rs.Module, *stages: rs.Signal[Any], until: Callable[[], bool]) -> Counter[str]:
+    """Declare a loop of detached rules, which ends when `until` is true or after 5,000 turns each; return the turns."""
+    turns = Counter[str]()
+
+    def add(signal: rs.Signal[Any], raised: rs.Signal[Any], name: str) -> None:
+        async def turn(ctx: Any) -> None:
+            turns[name] += 1
+            if not until() and turns[name] < 5_000:
+                ctx.emit(raised)
+
+        m.rule(when=signal, emits=raised, detached=True, name=name)(turn)
+
+    for number, signal in enumerate(stages):
+        add(signal, stages[(number + 1) % len(stages)], f"turn{number}")
+    return turns
+
+
+@pytest.mark.parametrize("stages", [1, 2, 3])
+def test_a_loop_without_an_end_lets_the_rest_have_its_turn(play: Any, stages: int) -> None:
+    m = rs.Module("m")
+    a, out, heard = m.signal("a"), output(m), list[Any]()
+    turns = endless(m, a, *(m.signal(f"b{n}") for n in range(1, stages)), until=lambda: bool(heard))
+    writer(m, "fallback", a.where(lambda payload: payload == "input"), out)
+    hearer(m, "speak", out.changed, out.changed, heard)
+    with play(m) as sim:
+        sim.emit(a, "input")
+        assert written(sim, out) == ["fallback"]
+        assert 1_000 <= turns.total() <= 1_010
+
+
+def test_a_rule_on_pressure_has_its_turn_beside_a_loop(play: Any) -> None:
+    m = rs.Module("m")
+    a, b, out, heard = m.signal("a"), m.signal("b"), output(m), list[Any]()
+    turns = endless(m, a, until=lambda: bool(heard))
+    hearer(m, "impatient", rs.pressure.true, rs.pressure.true, heard)
+    writer(m, "alone", a.where(lambda payload: payload == "input"), out)
+    writer(m, "both", a.where(lambda payload: payload == "input") & b, out)
+    with play(m) as sim:
+        sim.emit(a, "input")
+        assert heard
+        assert turns.total() < 1_010
+
+
+def test_a_turn_of_one_loop_does_not_wait_for_all_turns_of_another(play: Any) -> None:
+    m = rs.Module("m")
+    a, b = m.signal("a"), m.signal("b")
+    one = endless(m, a, until=lambda: one.total() > 2_000)
+    n = rs.Module("n")
+    other = endless(n, n.signal("c"), until=lambda: one.total() > 2_000)
+    emitter(n, "start", b, n.signals[0])
+    emitter(m, "both", m.signal("go"), a, b)
+    with play(m, n) as sim:
+        sim.emit(m.signals[-1])
+        assert abs(one.total() - other.total()) < 10
+
+
+def test_a_loop_without_an_end_is_named_once_in_an_error(play: Any) -> None:
+    m = rs.Module("m")
+    a, b, errors = m.signal("a"), m.signal("b"), list[Any]()
+    turns = endless(m, a, b, until=lambda: turns.total() % 3_000 == 0)
+    hearer(m, "unlucky", b, b, [])
+    hearer(m, "report", rs.error, rs.error, errors)
+    with play(m) as sim:
+        for _ in range(2):
+            sim.emit(a)
+        assert turns.total() == 6_000
+        assert [failure.rule for failure in errors] == ["m:turn0"]
+        [(name, error)] = sim.failures
+        assert name == "m:turn0"
+        assert isinstance(error, rs.RuleError)
+        assert "m:turn0, m:turn1 set each other off" in str(error)
+        assert ".min_age(seconds)" in str(error)
+
+
+def test_a_loop_over_errors_lets_the_rest_have_its_turn(play: Any) -> None:
+    m = rs.Module("m")
+    a, out, heard, fails = m.signal("a"), output(m), list[Any](), Counter[str]()
+
+    @m.rule(when=a)
+    async def fail(ctx: Any) -> None:
+        fails["m:fail"] += 1
+        if not heard and fails.total() < 5_000:
+            raise ValueError("again")
+
+    emitter(m, "retry", rs.error, a, detached=True)
+    writer(m, "answer", a.where(lambda payload: payload == "input"), out)
+    hearer(m, "speak", out.changed, out.changed, heard)
+    with play(m) as sim:
+        sim.emit(a, "input")
+        assert heard == ["answer"]
+        assert fails.total() < 1_000
+
+
+def test_many_inputs_are_no_loop(play: Any) -> None:
+    m = rs.Module("m")
+    a, b, c, out = m.signal("a"), m.signal("b"), m.signal("c", limit=5_000), output(m)
+
+    @m.rule(when=a, emits=(b, c), detached=True)
+    async def spread(ctx: Any) -> None:
+        for _ in range(2_000):
+            ctx.emit(c)
+        ctx.emit(b)
+
+    hearer(m, "many", c, c, [])
+    writer(m, "last", b, out)
+    with play(m, trace=False) as sim:
+        sim.emit(a)
+        assert not sim.failures
+        assert sim.fired.count("m:many") == 2_000
+
+
+def test_inputs_from_outside_are_answered_while_a_loop_has_no_end() -> None:
+    m = rs.Module("m")
+    a, b, out, enough = m.signal("a"), m.signal("b"), output(m), list[bool]()
+    question = m.slot("question", "", input=True)
+    turns = endless(m, a, b, until=lambda: bool(enough))
+    emitter(m, "classify", question.changed, m.signal("classified"))
+    writer(m, "answer", m.signals[-1], out)
+    writer(m, "fallback", question.changed, out)
+
+    async def talk() -> list[str]:
+        answers: list[str] = []
+        async with rs.Context(m) as context:
+            context.emit(a)
+            for number in range(2):
+                context.put(question, str(number))
+                answers.append(await context.next(out.changed, timeout=30.0))
+            enough.append(True)
+        return answers
+
+    assert asyncio.run(talk()) == ["answer"] * 2
+    assert 1_000 < turns.total() < 9_000  # the loop still turns at the last answer

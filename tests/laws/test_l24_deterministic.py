@@ -17,14 +17,14 @@ from ravestate.engine.engine import Engine
 from ravestate.engine.snapshot import snapshot
 from ravestate.engine.trace import Record
 from ravestate.runtime.journal import Journal, replay
-from ravestate.testing import Simulation, simulate
+from ravestate.testing import simulate
 from scenarios.driver import Driver
 
 TESTS = Path(__file__).parents[1]
 
 
 def redo(engine: Engine, log: list[tuple[str, Any, float]]) -> None:
-    """Do to an engine what was done to another one."""
+    """Repeat the calls of one engine on another."""
     for verb, event, moment in log:
         if verb == "receive":
             engine.receive(event, moment)
@@ -72,7 +72,7 @@ def test_the_same_simulation_gives_the_same_trace() -> None:
 
 
 def test_the_origin_of_time_does_not_matter() -> None:
-    """Times are the caller's: begun later, everything happens as much later."""
+    """A later origin of time shifts everything by as much."""
 
     def shape(driver: Driver) -> list[tuple[str, float]]:
         begin = driver.trace[0].time
@@ -102,12 +102,12 @@ def test_the_engine_asks_no_clock_and_throws_no_dice(monkeypatch: pytest.MonkeyP
 
 
 def state(engine: Engine) -> dict[str, Any]:
-    """All but the next deadline: to be woken for nothing is harmless, and one that has passed may be forgotten late."""
+    """Return a snapshot without the next deadline: an early call is harmless, and stale deadlines may stay a while."""
     return {**snapshot(engine), "next_deadline": None}
 
 
 class Fidgety(Driver):
-    """Advances the engine again and again, for nothing."""
+    """A driver that also advances the engine when nothing is due."""
 
     goal = 0.0
 
@@ -128,7 +128,7 @@ class Fidgety(Driver):
         if self.now < min(due, self.goal):
             self.engine.advance(
                 (self.now + min(due, self.goal)) / 2
-            )  # on the way there, where nothing is due
+            )  # between deadlines, where nothing is due
             assert self.engine.effects() == []
         return due
 
@@ -142,10 +142,9 @@ def test_a_spurious_advance_changes_nothing(seed: int) -> None:
 
 
 @pytest.mark.parametrize("seed", range(3))
-def test_what_was_recorded_can_be_replayed(seed: int) -> None:
+def test_a_record_can_be_replayed(seed: int) -> None:
     policy, journal = rs.compile(everything()), Journal()
-    context = rs.Context(policy, seed=0, trace=True, journal=journal)
-    with Simulation(context) as sim:
+    with simulate(policy, journal=journal) as sim:
         tell(sim, seed)
         sim.advance(60.0)
         live, records = sim.snapshot(), list(sim.trace)
@@ -160,7 +159,7 @@ def test_what_was_recorded_can_be_replayed(seed: int) -> None:
 
 
 def test_after_a_crash_it_resumes_where_it_was() -> None:
-    """What was done to an engine up to a moment is all that its state depends on."""
+    """The state of an engine depends only on the calls up to a moment."""
     policy = rs.compile(everything())
     pictures: list[tuple[int, dict[str, Any]]] = []
 
@@ -178,7 +177,7 @@ def test_after_a_crash_it_resumes_where_it_was() -> None:
 
 
 @pytest.mark.parametrize("trace", [True, False])
-def test_rules_start_in_the_same_order_whether_anybody_looks_on_or_not(trace: bool) -> None:
+def test_rules_start_in_the_same_order_with_and_without_an_observer(trace: bool) -> None:
     m = rs.Module("m")
     heard, noted, out, face = m.signal("heard"), m.signal("noted"), m.slot("out", ""), m.slot("face", "")
 

@@ -1,4 +1,4 @@
-"""L25: at any moment, for every rule: what it holds, lacks, waits for, and why it did not fire; all can be traced."""
+"""L25: explanations of every rule at any moment: its spikes, its wait, and why it did not fire; and the trace."""
 
 import json
 from typing import Any, get_args
@@ -14,7 +14,7 @@ from scenarios.driver import Driver
 
 
 def alive(sim: Any, rule: str) -> ActivationState:
-    """What is said of the one live activation of a rule."""
+    """Return the explanation of the one live activation of a rule."""
     [activation] = sim.explain(rule).activations
     return activation
 
@@ -28,7 +28,7 @@ def fusion(**options: Any) -> tuple[rs.Module, rs.Signal[Any], rs.Signal[Any]]:
     return m, point, speech
 
 
-def test_what_a_rule_holds_and_what_it_lacks(play: Any) -> None:
+def test_the_spikes_that_a_rule_holds_and_lacks(play: Any) -> None:
     m, _, speech = fusion()
     with play(m) as sim:
         assert sim.explain("m:fused").activations == ()
@@ -40,7 +40,7 @@ def test_what_a_rule_holds_and_what_it_lacks(play: Any) -> None:
         assert (plain.state, plain.holds, plain.lacks) == ("waiting", (("m:speech", 0.25),), ())
 
 
-def test_whom_it_waits_for_and_by_how_many_nats_it_loses(play: Any) -> None:
+def test_the_rival_that_it_waits_for_and_the_nats_between(play: Any) -> None:
     m, _, speech = fusion(weight=2.0)
     with play(m) as sim:
         sim.emit(speech)
@@ -50,7 +50,7 @@ def test_whom_it_waits_for_and_by_how_many_nats_it_loses(play: Any) -> None:
         assert nats == pytest.approx(2.0 * policy.utility("m:fused") - policy.utility("m:plain"))
 
 
-def test_until_when_it_waits_at_the_latest(play: Any) -> None:
+def test_the_latest_end_of_its_wait(play: Any) -> None:
     m, _, speech = fusion(patience=3.0)
     with play(m) as sim:
         sim.advance(1.0)
@@ -60,7 +60,7 @@ def test_until_when_it_waits_at_the_latest(play: Any) -> None:
         assert alive(sim, "m:fused").until == 4.0
 
 
-def test_until_when_a_spike_is_kept(play: Any) -> None:
+def test_the_time_at_which_a_spike_grows_too_old(play: Any) -> None:
     m, point, _ = fusion()
     with play(m) as sim:
         sim.advance(1.0)
@@ -68,7 +68,7 @@ def test_until_when_a_spike_is_kept(play: Any) -> None:
         assert alive(sim, "m:fused").until == 6.0
 
 
-def test_a_wait_without_bound_is_said_to_have_none(play: Any) -> None:
+def test_a_wait_without_a_bound_has_no_end(play: Any) -> None:
     m = rs.Module("m")
     i, x, out = m.signal("i"), m.signal("x"), output(m)
     emitter(m, "classify", i, x, after=50.0)
@@ -82,7 +82,7 @@ def test_a_wait_without_bound_is_said_to_have_none(play: Any) -> None:
         assert alive(sim, "m:classify").state == "running"
 
 
-def test_a_taken_slot_is_said_to_be_taken(play: Any) -> None:
+def test_a_taken_slot_is_named(play: Any) -> None:
     m = rs.Module("m")
     i, out = m.signal("i"), output(m)
     resigner(m, "busy", i, out, after=5.0)
@@ -106,7 +106,7 @@ def test_a_spike_that_ripens_and_a_gate_that_is_closed(play: Any) -> None:
         assert "may not run" in str(sim.explain("m:gated")) == repr(sim.explain("m:gated"))
 
 
-def test_condition_pathways_and_utility_are_told(play: Any) -> None:
+def test_condition_pathways_and_utility_are_listed(play: Any) -> None:
     m, _, _ = fusion()
     with play(m) as sim:
         [clause] = sim.explain("m:fused").clauses
@@ -119,7 +119,7 @@ def test_condition_pathways_and_utility_are_told(play: Any) -> None:
 
 
 def why(sim: Any, rule: str) -> str:
-    """What is told of a rule that has not fired on the input of this story."""
+    """Return the explanation of a rule that has not fired on the input of this story."""
     assert rule not in sim.fired
     return "\n".join(sim.explain(rule).history)
 
@@ -245,7 +245,7 @@ def test_every_sort_of_decision_is_traced() -> None:
         assert [record.time for record in sim.trace] == sorted(record.time for record in sim.trace)
 
 
-def test_what_was_born_held_and_settled_is_traced_with_its_causes(play: Any) -> None:
+def test_births_holdings_and_outcomes_are_traced_with_their_causes(play: Any) -> None:
     m, point, speech = fusion()
     with play(m) as sim:
         sim.emit(point)
@@ -261,7 +261,7 @@ def test_what_was_born_held_and_settled_is_traced_with_its_causes(play: Any) -> 
 
 def test_without_a_listener_no_record_is_made(monkeypatch: pytest.MonkeyPatch) -> None:
     def never(*_: object) -> None:
-        raise AssertionError("nobody listens")
+        raise AssertionError("no tracer listens")
 
     for record in get_args(trace.Record):
         monkeypatch.setattr(trace, record.__name__, never)
@@ -292,7 +292,7 @@ def test_the_state_is_plain_data(play: Any) -> None:
             assert {"rule", "state", "holds", "lacks", "waits_for", "until"} <= set(activation)
 
 
-def test_a_snapshot_shows_also_what_has_no_repr(play: Any) -> None:
+def test_a_snapshot_shows_values_without_a_repr(play: Any) -> None:
     class Odd:
         def __repr__(self) -> str:
             raise ValueError("no")

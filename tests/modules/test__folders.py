@@ -1,4 +1,4 @@
-"""Where a user's files are kept, on each platform."""
+"""The folder for a user's files, on each platform."""
 
 import sys
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Room that is given back: wherever that is possible, and without a word where it is not."""
+"""Memory goes back to the system where that is possible; elsewhere the call does nothing."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import pytest
 from ravestate.modules._room import give_back
 
 
-def test_it_is_asked_of_the_c_library(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_c_library_returns_the_memory(monkeypatch: pytest.MonkeyPatch) -> None:
     asked: list[int] = []
 
     class Library:
@@ -23,7 +23,7 @@ def test_it_is_asked_of_the_c_library(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.parametrize("error", [OSError, TypeError, AttributeError])
-def test_another_system_is_let_be(error: type[Exception], monkeypatch: pytest.MonkeyPatch) -> None:
+def test_another_system_keeps_the_memory(error: type[Exception], monkeypatch: pytest.MonkeyPatch) -> None:
     def refuse(_: Any) -> None:
         raise error
 

@@ -1,4 +1,4 @@
-"""The sentence models: what they say, that they are shared, and what is told when they are missing."""
+"""The sentence models: their results, sharing, and the errors for missing files."""
 
 import importlib.util
 import os
@@ -25,8 +25,8 @@ def test_like_sentences_lie_near_each_other() -> None:
     assert vectors[0] @ vectors[1] > vectors[0] @ vectors[2] + 0.1
 
 
-def test_order_and_company_change_nothing() -> None:
-    """Sentences are run in batches by length; each gets its own vector all the same."""
+def test_batches_change_no_vector() -> None:
+    """The encoder runs sentences in batches by length; each gets its own vector."""
     texts = [
         "Yes.",
         "a much longer sentence about the weather in the north of the country " * 9,
@@ -46,7 +46,7 @@ def test_the_answer_has_the_highest_score() -> None:
     assert scores.argmax() == 1
 
 
-def test_nothing_gives_nothing() -> None:
+def test_an_empty_list_gives_an_empty_list() -> None:
     assert Encoder().encode([]).shape == (0, 384)
     assert Reranker().score("Why?", []).shape == (0,)
 
@@ -57,7 +57,7 @@ def test_any_text_has_a_vector_and_a_score(text: str) -> None:
     assert np.isfinite(Reranker().score(text, ["A passage.", text])).all()
 
 
-def test_a_model_is_loaded_once_however_many_threads_ask(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_many_threads_load_a_model_once(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(model, "_loaded", {})
     made: list[Path] = []
 
@@ -76,7 +76,7 @@ def test_a_model_is_loaded_once_however_many_threads_ask(monkeypatch: pytest.Mon
     assert len(set(map(id, found))) == 1
 
 
-def test_threads_may_ask_at_once() -> None:
+def test_threads_may_use_a_model_at_once() -> None:
     questions = ["What is the capital of Peru?", "Why does it rain?", "Who are you?", "How old is the moon?"]
     passages = ["The capital of Peru is Lima.", "It rains when drops in a cloud grow heavy."]
     wanted = [Reranker().score(question, passages) for question in questions]
@@ -95,13 +95,13 @@ def test_threads_may_ask_at_once() -> None:
         np.testing.assert_allclose(got[index], scores, atol=1e-4)
 
 
-def test_nothing_is_loaded_before_it_is_asked(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_making_an_encoder_loads_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(model, "SentenceModel", lambda folder: pytest.fail("loaded"))
     Encoder()
     Reranker("/nowhere")
 
 
-def test_a_folder_of_ones_own_is_taken(tmp_path: Path) -> None:
+def test_a_folder_of_the_user(tmp_path: Path) -> None:
     own = tmp_path / "own"
     shutil.copytree(folder_of(None, "bge_small_en"), own)
     (own / "1_Pooling").mkdir()
@@ -141,8 +141,8 @@ def test_without_a_library_the_message_says_what_to_install(
         SentenceModel(tmp_path)
 
 
-def test_a_folder_that_is_none_is_named() -> None:
-    with pytest.raises(rs.PlatformError, match="'/nowhere' is no folder"):
+def test_a_missing_folder_is_named() -> None:
+    with pytest.raises(rs.PlatformError, match="'/nowhere' is not a folder"):
         Reranker("/nowhere").load()
 
 
@@ -151,15 +151,15 @@ def test_a_folder_without_the_files_says_which_is_missing(tmp_path: Path) -> Non
         Reranker(tmp_path).load()
 
 
-def test_a_broken_file_is_an_error_of_ours(tmp_path: Path) -> None:
+def test_a_broken_file_is_a_platform_error(tmp_path: Path) -> None:
     (tmp_path / "model.onnx").write_bytes(b"no model")
     (tmp_path / "tokenizer.json").write_text("{}", encoding="utf-8")
     with pytest.raises(rs.PlatformError, match="cannot be loaded"):
         Encoder(tmp_path).load()
 
 
-def test_nothing_is_reported_to_anybody(tmp_path: Path) -> None:
-    """onnxruntime keeps a record of its use in the user's folders, and sends it to its makers, unless it is told not to."""
+def test_the_library_reports_nothing(tmp_path: Path) -> None:
+    """By default onnxruntime records its use in the user's folders, and reports it to its makers."""
     program = "from ravestate.modules._sentences import Encoder; Encoder().encode(['Hello.'])"
     environment = {k: v for k, v in os.environ.items() if not k.startswith(("ORT_", "XDG_"))}
     subprocess.run([sys.executable, "-c", program], env={**environment, "HOME": str(tmp_path)}, check=True)

@@ -1,4 +1,4 @@
-"""No control characters get through."""
+"""Text without control characters."""
 
 from hypothesis import given
 from hypothesis import strategies as st
@@ -14,12 +14,12 @@ def test_every_line_end_is_a_line_feed() -> None:
     assert printable("a\r\nb\rc\n\td") == "a\nb\nc\n\td"
 
 
-def test_what_is_no_text_can_be_seen() -> None:
+def test_broken_bytes_become_visible() -> None:
     assert without_controls(b"caf\xe9".decode("utf-8", "surrogateescape")) == "caf\ufffd"
 
 
 @given(st.text(st.characters(codec=None, categories=None), max_size=40))
-def test_what_is_left_can_be_printed(text: str) -> None:
+def test_the_result_can_be_printed(text: str) -> None:
     for clean in (printable(text), without_controls(text)):
         clean.encode()
         assert all(c in "\n\t" or not (ord(c) < 32 or 127 <= ord(c) < 160) for c in clean)
@@ -27,5 +27,5 @@ def test_what_is_left_can_be_printed(text: str) -> None:
 
 
 @given(st.lists(st.text(st.characters(codec=None, categories=None), max_size=10)))
-def test_pieces_are_cleaned_as_their_whole(pieces: list[str]) -> None:
+def test_pieces_are_cleaned_like_their_whole(pieces: list[str]) -> None:
     assert "".join(map(without_controls, pieces)) == without_controls("".join(pieces))

@@ -1,4 +1,4 @@
-"""Who may cause what (L7): closures over the effects of rules."""
+"""The static graph of causes (L7): closures over the effects of rules."""
 
 import ravestate as rs
 from ravestate.policy.causes import Causes
@@ -23,7 +23,7 @@ def signals(policy: Policy, *which: str) -> list[int]:
 
 
 def chain() -> tuple[Policy, Causes]:
-    """entry -> first -> x -> second -> y (detached) -> third -> out; and aside, which only looks at x."""
+    """entry -> first -> x -> second -> y (detached) -> third -> out; and `aside` looks at x, detached."""
     m = rs.Module("m")
     entry, x, y, z = (m.signal(name) for name in ("entry", "x", "y", "z"))
     out = m.slot("out")
@@ -53,7 +53,7 @@ def test_ancestors_stop_at_detached_rules_and_detached_constraints() -> None:
     assert causes.ancestors(out) is causes.ancestors(out)  # computed once
 
 
-def test_wide_ancestors_go_over_detached_effects() -> None:
+def test_wide_ancestors_include_detached_effects() -> None:
     policy, causes = chain()
     y, z = signals(policy, "y", "z")
     assert names(policy, causes.wide_ancestors(y)) == ["first", "second"]
@@ -86,7 +86,7 @@ def test_downstream_are_the_writing_clauses_in_reach_the_best_first() -> None:
     assert downstream(policy.rule_plan("m:plain")) == ()
 
 
-def test_grounded_is_what_may_ever_occur() -> None:
+def test_grounded_signals_may_occur() -> None:
     policy, causes = chain()
     entry, x, y, z, out = signals(policy, "entry", "x", "y", "z", "out:changed")
     assert causes.grounded([entry]) >= {entry, x, y, z, out}
@@ -94,7 +94,7 @@ def test_grounded_is_what_may_ever_occur() -> None:
     assert causes.grounded([]) == frozenset()
 
 
-def test_grounded_wants_a_whole_clause() -> None:
+def test_a_grounded_effect_needs_a_whole_clause() -> None:
     m = rs.Module("m")
     a, b, c = (m.signal(name) for name in "abc")
     rule(m, "both", a & b, emits=c)

@@ -57,12 +57,12 @@ def pairs(count: int) -> rs.Condition:
 def test_too_many_clauses_are_refused_before_they_are_made(count: int, alternatives: str) -> None:
     with pytest.raises(
         rs.DeclarationError,
-        match=f"condition has {alternatives} alternatives, more than 256: raise a signal of its own",
+        match=f"condition has {alternatives} alternatives, more than 256: move a part of it to a rule that emits a signal",
     ):
         normal_form(pairs(count))
 
 
-def test_as_many_clauses_as_are_allowed() -> None:
+def test_the_greatest_number_of_clauses() -> None:
     assert len(normal_form(pairs(8))) == MAX_CLAUSES == 256
 
 
@@ -71,7 +71,7 @@ def test_a_part_with_too_many_clauses_is_refused() -> None:
         normal_form(a & pairs(9) | b)
 
 
-def test_a_part_that_stands_in_many_places_is_looked_at_once() -> None:
+def test_a_part_in_many_places_is_expanded_once() -> None:
     condition: rs.Condition = a
     for _ in range(60):
         condition = condition & b | condition & c
@@ -94,6 +94,6 @@ def test_depth_is_no_limit() -> None:
     assert repr(AnyOf((layers, a))).count("(") == 1999
 
 
-def test_what_is_no_condition_is_refused() -> None:
+def test_a_part_must_be_a_condition() -> None:
     with pytest.raises(rs.DeclarationError, match="'a' is no condition: combine signals with & and"):
         normal_form("a")

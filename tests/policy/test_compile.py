@@ -1,4 +1,4 @@
-"""Compiling (L6): order, numbers from settings, and every fault at once with what to write instead."""
+"""Compiling (L6): order, numbers from settings, and every fault at once, each with the text to write instead."""
 
 import re
 import types
@@ -39,13 +39,13 @@ def faults(*modules: Any) -> list[str]:
 # ---------------------------------------------------------------------------------------- what is well
 
 
-def test_nothing_but_core_is_a_policy() -> None:
+def test_core_alone_is_a_policy() -> None:
     policy = rs.compile()
     assert [module.name for module in policy.modules] == ["core"]
     assert list(policy.signals)[:3] == ["core:startup", "core:shutdown", "core:error"]
 
 
-def test_modules_stand_behind_what_they_require_each_once() -> None:
+def test_a_module_comes_after_those_it_requires_and_once() -> None:
     base = rs.Module("base")
     left, right = rs.Module("left", requires=[base]), rs.Module("right", requires=[base])
     top = rs.Module("top", requires=[right, left])
@@ -58,7 +58,7 @@ def test_python_modules_are_accepted() -> None:
     assert module in rs.compile(holder).modules
 
 
-def test_rules_clauses_and_names_stand_in_declaration_order() -> None:
+def test_rules_clauses_and_names_keep_the_order_of_declaration() -> None:
     m = rs.Module("m")
     b, a = m.signal("b"), m.signal("a")
     rule(m, "z", a | b)
@@ -66,10 +66,10 @@ def test_rules_clauses_and_names_stand_in_declaration_order() -> None:
     policy = rs.compile(m)
     assert list(policy.rules) == ["m:z", "m:y"]
     assert [name for name in policy.signals if name.startswith("m:")] == ["m:b", "m:a"]
-    assert [clause.signals for clause in policy.clauses("m:z")] == [("m:a",), ("m:b",)]
+    assert [clause.signals for clause in policy.clauses("m:z")] == [(a,), (b,)]
 
 
-def test_inputs_are_what_no_rule_raises_or_what_is_declared_so() -> None:
+def test_a_signal_that_no_rule_raises_or_with_input_true_is_an_input() -> None:
     m = rs.Module("m")
     free, raised, both = m.signal("free"), m.signal("raised"), m.signal("both", input=True)
     rule(m, "r", free, emits=(raised, both), detached=True)
@@ -77,21 +77,21 @@ def test_inputs_are_what_no_rule_raises_or_what_is_declared_so() -> None:
     assert [policy.signal_of[f"m:{name}"].input for name in ("free", "raised", "both")] == [True, False, True]
 
 
-def test_coherence_joins_what_may_come_of_one_cause() -> None:
+def test_coherence_joins_needs_with_a_common_cause() -> None:
     m = rs.Module("m")
     heard, seen = m.signal("heard"), m.signal("seen")
     question, about = m.signal("question"), m.signal("about")
     rule(m, "q", heard, emits=question)
     rule(m, "a", heard, emits=about)
     rule(m, "both", question & about & seen & heard.detached())
-    (clause,) = rs.compile(m).clauses("m:both")
+    (clause,) = rs.compile(m).rule_plan("m:both").clauses
     assert [need.kin for need in clause.needs] == [0b011, 0b011, 0b100, 0b1000]
 
 
 # ---------------------------------------------------------------------------------------- unknown names
 
 
-def test_a_module_that_is_not_required_is_named() -> None:
+def test_the_message_names_a_module_that_is_not_required() -> None:
     elsewhere = rs.Module("elsewhere")
     word, note = elsewhere.signal("word", input=True), elsewhere.slot("note")
     m = rs.Module("m")
@@ -108,24 +108,24 @@ def test_a_module_that_is_not_required_is_named() -> None:
     assert rs.compile(m, elsewhere).rules["m:r"].when is word
 
 
-def test_a_signal_of_another_edition_of_a_module_is_told_apart() -> None:
+def test_a_signal_of_another_module_of_that_name_is_refused() -> None:
     first, second = rs.Module("twin"), rs.Module("twin")
     word = first.signal("word")
     second.signal("word")
     m = rs.Module("m", requires=[second])
     rule(m, "r", word)
     (text,) = faults(m)
-    assert "another signal of that name is in the policy: two modules are named 'twin'" in text
+    assert "the policy has another signal of that name: two modules are named 'twin'" in text
 
 
-def test_a_signal_that_the_module_does_not_hold_is_met_by_the_nearest() -> None:
+def test_an_unknown_signal_gets_the_nearest_as_a_hint() -> None:
     m = rs.Module("m")
     word = m.signal("wrod")
     m.signals.remove(word)
     m.signal("word")
     rule(m, "r", word)
     (text,) = faults(m)
-    assert text.endswith("module m does not hold it; did you mean 'm:word'?")
+    assert text.endswith("module m has no such signal; did you mean 'm:word'?")
 
 
 # ---------------------------------------------------------------------------------------- names used twice
@@ -142,7 +142,7 @@ def test_two_modules_of_one_name() -> None:
     assert not any("two signals" in text or "two slots" in text or "two rules" in text for text in found)
 
 
-def test_nobody_else_is_named_core() -> None:
+def test_no_other_module_may_be_named_core() -> None:
     assert "two modules are named 'core'" in faults(rs.Module("core"))[0]
 
 
@@ -162,17 +162,17 @@ def test_two_signals_slots_and_rules_of_one_name() -> None:
 # ---------------------------------------------------------------------------------------- requires
 
 
-def test_a_cycle_of_requires_is_shown() -> None:
+def test_the_message_shows_a_cycle_of_requires() -> None:
     a, b, c = rs.Module("a"), rs.Module("b"), rs.Module("c")
     a.requires, b.requires, c.requires = [b], [c], [a]
     (text,) = faults(a)
-    assert text.startswith("modules require each other in a cycle: a -> b -> c -> a; take one `requires` out")
+    assert text.startswith("modules require each other in a cycle: a -> b -> c -> a; remove one `requires`")
     a.requires = [a]
     assert faults(a)[0].startswith("modules require each other in a cycle: a -> a;")
 
 
 @pytest.mark.parametrize("value", ["rawio", None, 3, rs.compile()])
-def test_what_is_no_module_is_refused(value: object) -> None:
+def test_compile_needs_modules(value: object) -> None:
     (text,) = faults(value)
     assert text == f"expected an rs.Module (or a Python module that holds one), not {value!r}"
 
@@ -188,10 +188,10 @@ def only_fault(build: Callable[[rs.Module, rs.Signal[None]], object], **options:
     return text
 
 
-def test_an_age_above_the_default_limit_wants_a_limit_of_its_own() -> None:
+def test_an_age_above_the_default_max_age_needs_its_own() -> None:
     text = only_fault(lambda m, go: rule(m, "r", go.min_age(10)))
     assert "m:go can never be at least 10 s and at most 5 s old" in text
-    assert "write .min_age(10).max_age(None) (max_age is 5 s unless you say otherwise)" in text
+    assert "write .min_age(10).max_age(None) (max_age is 5 s by default)" in text
 
 
 def test_ages_that_exclude_each_other() -> None:
@@ -234,13 +234,13 @@ def test_the_edges_of_the_ranges_are_allowed() -> None:
     assert (need.min_age, need.max_age) == (5.0, 5.0)
 
 
-def test_a_predicate_alone_waits_for_nothing() -> None:
+def test_a_predicate_needs_a_signal_beside_it() -> None:
     m = rs.Module("m")
     mood = m.slot("mood")
     rule(m, "r", mood.holds(bool) | m.signal("go"))
     (text,) = faults(m)
     assert (
-        "'m:mood.holds(bool)' waits for no signal; a predicate on a slot only gates: write mood.changed & ..."
+        "'m:mood.holds(bool)' waits for no signal, and a predicate on a slot only gates: write mood.changed & ..."
         in text
     )
 
@@ -258,10 +258,10 @@ def test_too_many_clauses() -> None:
     ("least", "most"),
     [(0, 0), (0, None), (0, 1e-9), (3, 3), (5, 5), (1e9, None), (4.5, 5), (rs.setting("after"), 2), (2, rs.setting("after"))],
 )  # fmt: skip
-def test_ages_that_some_moment_fulfils(least: Any, most: Any) -> None:
+def test_possible_ages(least: Any, most: Any) -> None:
     m = rs.Module("m", settings=Late)
     rule(m, "r", m.signal("go").min_age(least).max_age(most))
-    (need,) = rs.compile(m).clauses("m:r")[0].needs
+    (need,) = rs.compile(m).rule_plan("m:r").clauses[0].needs
     assert need.min_age <= need.max_age
 
 
@@ -275,7 +275,7 @@ def test_ages_that_some_moment_fulfils(least: Any, most: Any) -> None:
         (2.5, rs.setting("after"), "at least 2.5 s and at most 2 s old"),
     ],
 )
-def test_ages_that_no_moment_fulfils(least: Any, most: Any, text: str) -> None:
+def test_impossible_ages(least: Any, most: Any, text: str) -> None:
     assert text in only_fault(lambda m, go: rule(m, "r", go.min_age(least).max_age(most)), settings=Late)
     assert text in only_fault(  # also where nobody else cares
         lambda m, go: rule(m, "r", m.signal("other") | go.detached().min_age(least).max_age(most)),
@@ -283,7 +283,7 @@ def test_ages_that_no_moment_fulfils(least: Any, most: Any, text: str) -> None:
     )
 
 
-def test_the_ages_of_until_are_looked_at_too() -> None:
+def test_the_ages_of_until_are_checked_too() -> None:
     text = only_fault(lambda m, go: rule(m, "r", go, until=go.min_age(1).max_age(0)))
     assert "until: m:go can never be at least 1 s and at most 0 s old" in text
 
@@ -300,7 +300,7 @@ def test_a_spike_of_no_age_is_still_there_when_it_is_born() -> None:
 # ---------------------------------------------------------------------------------------- size
 
 
-def test_modules_that_require_each_other_in_a_row_of_any_length() -> None:
+def test_a_chain_of_requires_of_any_length() -> None:
     module = rs.Module("m0")
     for number in range(1, 3000):
         module = rs.Module(f"m{number}", requires=[module])
@@ -336,7 +336,7 @@ def test_a_setting_must_be_there_and_be_a_number(ref: Any, text: str) -> None:
     assert text in only_fault(lambda m, go: rule(m, "r", go, cooldown=ref), settings=Late)
 
 
-def test_a_module_without_settings_is_told_to_declare_some() -> None:
+def test_a_reference_needs_a_module_with_settings() -> None:
     text = only_fault(lambda m, go: rule(m, "r", go, cooldown=rs.setting("after")))
     assert "module m has no settings: write rs.Module('m', settings=Settings) with a field after" in text
 
@@ -352,7 +352,7 @@ def test_a_setting_out_of_range_shows_name_and_value() -> None:
 # ---------------------------------------------------------------------------------------- unreachable, all at once
 
 
-def test_rules_that_wait_for_each_other_only_are_unreachable() -> None:
+def test_rules_that_wait_only_for_each_other_are_unreachable() -> None:
     m = rs.Module("m")
     a, b = m.signal("a"), m.signal("b")
     rule(m, "first", b, emits=a)
@@ -360,7 +360,7 @@ def test_rules_that_wait_for_each_other_only_are_unreachable() -> None:
     found = faults(m)
     assert len(found) == 2
     assert re.match(
-        rf"rule m:first \({HERE}:\d+\) is unreachable: it waits for m:b, raised only by m:second", found[0]
+        rf"rule m:first \({HERE}:\d+\) is unreachable: it waits for m:b; only m:second may raise it", found[0]
     )
     assert found[0].endswith("if it comes from outside, declare it with input=True")
 

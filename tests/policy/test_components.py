@@ -1,4 +1,4 @@
-"""Strongly connected components: which nodes lead to each other, and in which order."""
+"""Strongly connected components: nodes that lead to each other, in order."""
 
 from hypothesis import given
 from hypothesis import strategies as st
@@ -6,13 +6,13 @@ from hypothesis import strategies as st
 from ravestate.policy.components import components
 
 
-def test_a_component_stands_behind_what_it_leads_to() -> None:
+def test_a_component_comes_after_those_it_leads_to() -> None:
     found = components([[1], [2], [1, 3], []])
     assert [sorted(members) for members in found.members] == [[3], [1, 2], [0]]
     assert found.of == [2, 1, 1, 0]
 
 
-def test_nothing_has_no_components() -> None:
+def test_an_empty_graph_has_no_components() -> None:
     assert components([]).members == []
 
 

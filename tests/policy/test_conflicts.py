@@ -1,4 +1,4 @@
-"""Conflicts (L10): who excludes whom, for which cause, who wins, by how much."""
+"""Conflicts (L10): the rules that exclude each other, the cause, the winner and its lead."""
 
 import math
 
@@ -36,7 +36,7 @@ def test_rules_of_different_slots_or_causes_do_not_conflict() -> None:
     assert rs.compile(m).conflicts() == ()
 
 
-def test_a_rule_that_writes_nothing_conflicts_with_nobody() -> None:
+def test_a_rule_that_writes_nothing_has_no_conflict() -> None:
     m, heard, *_ = talk()
     m.rule(when=heard, name="a")(nothing)
     m.rule(when=heard, name="b")(nothing)
@@ -67,7 +67,7 @@ def test_a_weight_decides_also_where_there_is_no_information() -> None:
     assert (conflict.winner, conflict.tie) == ("m:b", False)
 
 
-def test_all_pairs_stand_in_declaration_order() -> None:
+def test_pairs_keep_the_order_of_declaration() -> None:
     m, heard, _, out, _ = talk()
     for name in "abc":
         m.rule(when=heard, writes=out, name=name)(nothing)
@@ -75,7 +75,7 @@ def test_all_pairs_stand_in_declaration_order() -> None:
 
 
 def test_a_cause_counts_although_the_rule_looks_at_it_as_well() -> None:
-    """The spike of `question` is in the group of `heard`: what the rule looks at beside it changes nothing."""
+    """The spike of `question` is in the group of `heard`: the detached constraint beside it changes nothing."""
     m, heard, question, out, _ = talk()
     m.rule(when=heard, emits=question, name="classify")(nothing)
     m.rule(when=heard, writes=out, name="chat")(nothing)
@@ -84,7 +84,7 @@ def test_a_cause_counts_although_the_rule_looks_at_it_as_well() -> None:
     assert (conflict.rules, conflict.causes) == (("m:chat", "m:answer"), ("m:heard",))
 
 
-def test_causes_are_all_that_lies_on_a_pathway_of_both_however_many_there_are() -> None:
+def test_causes_are_all_common_signals_of_the_pathways() -> None:
     m, heard, _, out, _ = talk()
     sources = [m.signal(f"s{number}") for number in range(400)]
     for source in sources:

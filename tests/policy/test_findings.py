@@ -1,10 +1,13 @@
-"""Findings: what compiles but is probably not meant."""
+"""Findings: declarations that compile, but are probably a mistake."""
 
+import inspect
 from typing import Any
 
 import pytest
 
 import ravestate as rs
+from ravestate import modules
+from ravestate.modules import BUILT_IN
 
 
 async def nothing(ctx: rs.RuleContext) -> None:
@@ -16,14 +19,14 @@ class Scene:
 
     def __init__(self) -> None:
         self.module = rs.Module("m")
-        self.heard = self.module.signal("heard")
+        self.heard = self.module.signal("heard", input=True)
         self.out = self.module.slot("out", "")
 
     def rule(self, name: str, when: rs.Condition, **options: Any) -> None:
         self.module.rule(when=when, name=name, **options)(nothing)
 
-    def findings(self) -> dict[tuple[str, str], str]:
-        return {(f.kind, f.subject): str(f) for f in rs.compile(self.module).findings()}
+    def findings(self, source: Any = None) -> dict[tuple[str, str], str]:
+        return {(f.kind, f.subject): str(f) for f in rs.compile(self.module).findings(source)}
 
 
 @pytest.fixture
@@ -39,19 +42,19 @@ def test_a_policy_without_surprises_has_no_findings(scene: Scene) -> None:
     assert scene.findings() == {}
 
 
-def test_a_rule_that_only_writing_from_outside_can_start(scene: Scene) -> None:
+def test_a_rule_that_only_a_write_from_outside_can_start(scene: Scene) -> None:
     mood = scene.module.slot("mood")
     scene.rule("loop", mood.changed, writes=mood, detached=True)
     scene.rule("fine", scene.heard, writes=scene.out)
     found = scene.findings()
-    assert list(found) == [("unreachable", "m:loop")]
+    assert list(found) == [("unreachable", "m:loop"), ("loop", "m:loop")]
     text = found["unreachable", "m:loop"]
     assert text.startswith("unreachable: rule m:loop runs only if m:mood:changed comes from outside")
-    assert text.endswith("declare it with input=True if it does")
+    assert text.endswith("if it does come from outside, declare it with input=True")
     scene.module.slots.remove(mood)
 
 
-def test_a_rule_that_waits_for_who_takes_its_slot(scene: Scene) -> None:
+def test_a_rule_that_waits_for_a_rule_with_its_slot(scene: Scene) -> None:
     said = scene.module.signal("said")
     scene.rule("say", scene.heard, writes=scene.out, emits=said)
     scene.rule("again", said, writes=scene.out)
@@ -73,7 +76,7 @@ def test_a_rule_that_can_never_win(scene: Scene) -> None:
     scene.rule("second", scene.heard, writes=scene.out)
     text = scene.findings()["never-wins", "m:second"]
     assert "rule m:second runs only when m:first resigns" in text
-    assert "give it a further signal, a weight, or the other a cooldown" in text
+    assert "give it one more signal, a greater weight, or give the other rule a cooldown" in text
 
 
 @pytest.mark.parametrize(
@@ -87,7 +90,7 @@ def test_a_rule_that_can_never_win(scene: Scene) -> None:
         {"weight": 0.5},
     ],
 )
-def test_what_lets_the_other_win_after_all(scene: Scene, first: dict[str, Any]) -> None:
+def test_ways_for_the_other_to_win(scene: Scene, first: dict[str, Any]) -> None:
     ways = {
         "where": scene.heard.where(bool),
         "holds": scene.heard & scene.out.holds(bool),
@@ -107,73 +110,76 @@ def test_one_clause_that_may_win_is_enough(scene: Scene) -> None:
     assert ("never-wins", "m:second") not in scene.findings()
 
 
-def test_ties_are_found_and_say_who_goes_first(scene: Scene) -> None:
-    a, b = scene.module.signal("a"), scene.module.signal("b")
+def test_a_tie_names_the_rule_that_goes_first(scene: Scene) -> None:
+    a, b = scene.module.signal("a", input=True), scene.module.signal("b", input=True)
     scene.rule("left", scene.heard & a, writes=scene.out)
     scene.rule("right", scene.heard & b, writes=scene.out)
     found = scene.findings()
     assert list(found) == [("tie", "m:right")]
     assert found["tie", "m:right"].endswith(
-        "have the same utility for m:out: m:left goes first because it is declared first; a weight would say so"
+        "have the same utility for m:out: m:left goes first because its declaration comes first; write a weight to decide"
     )
 
 
-def test_a_weight_says_so_also_where_there_is_no_information(scene: Scene) -> None:
+def test_a_weight_decides_a_tie_without_information(scene: Scene) -> None:
     scene.rule("left", scene.heard, writes=scene.out, cooldown=1.0)
     scene.rule("right", scene.heard, writes=scene.out, weight=1.2, cooldown=1.0)
     assert scene.findings() == {}
 
 
-def test_a_cooldown_without_a_rival_holds_nothing_back(scene: Scene) -> None:
-    bored = scene.module.signal("bored")
+def test_a_cooldown_without_a_rival(scene: Scene) -> None:
+    bored = scene.module.signal("bored", input=True)
     scene.rule("chat", scene.heard, writes=scene.out)
     scene.rule("nag", bored, writes=scene.out, cooldown=300.0)
     scene.rule("blink", bored, cooldown=1.0)
     found = scene.findings()
     assert list(found) == [("cooldown", "m:nag"), ("cooldown", "m:blink")]
     assert (
-        "rule m:nag has a cooldown of 300 s, and no rival: a cooldown lets others go first"
+        "rule m:nag has a cooldown of 300 s, but no rival: a cooldown lets other rules go first"
         in found["cooldown", "m:nag"]
     )
     scene.rule("sing", bored, writes=scene.out, weight=1.2, cooldown=300.0)
     assert list(scene.findings()) == [("cooldown", "m:blink")]
 
 
-def test_signals_that_nobody_hears(scene: Scene) -> None:
+def test_signals_that_no_rule_hears(scene: Scene) -> None:
     lost, watched, free = (scene.module.signal(name) for name in ("lost", "watched", "free"))
     scene.rule("emit", scene.heard, emits=(lost, watched))
     scene.rule("watch", scene.heard, writes=scene.out, until=watched)
     found = scene.findings()
     assert list(found) == [("unheard", "m:lost")]  # nobody raises `free`, and slots may be read
-    assert found["unheard", "m:lost"] == "unheard: signal m:lost is raised by m:emit, and no rule hears it"
+    assert (
+        found["unheard", "m:lost"]
+        == "unheard: no rule hears signal m:lost, which m:emit may raise; remove it, or write a rule that hears it"
+    )
     assert free.name == "m:free"
 
 
-def test_findings_come_in_order_of_weight(scene: Scene) -> None:
+def test_the_order_of_findings(scene: Scene) -> None:
     lost, mood = scene.module.signal("lost"), scene.module.slot("mood")
     scene.rule("emit", scene.heard, writes=scene.out, emits=lost)
     scene.rule("same", scene.heard, writes=scene.out)
     scene.rule("loop", mood.changed, writes=mood, detached=True)
     kinds = [kind for kind, _ in scene.findings()]
-    assert kinds == ["unreachable", "never-wins", "tie", "unheard"]
+    assert kinds == ["unreachable", "loop", "never-wins", "tie", "unheard"]
 
 
-def test_of_two_rules_at_startup_one_would_only_run_if_the_other_resigned(scene: Scene) -> None:
-    """Startup comes once: neither a further signal nor a cooldown would help the second rule."""
+def test_two_rules_at_startup_on_one_slot(scene: Scene) -> None:
+    """Startup comes once: neither one more signal nor a cooldown would help the second rule."""
     scene.rule("listen", rs.startup, writes=scene.out, cooldown=5.0)
     scene.rule("serve", rs.startup, writes=scene.out)
     text = scene.findings()["never-wins", "m:serve"]
     assert text.startswith("never-wins: rule m:serve runs only when m:listen resigns")
-    assert text.endswith("core:startup comes once only: write rs.startup.detached() if both are to run")
+    assert text.endswith("core:startup comes only once: if both should run, write rs.startup.detached()")
 
 
-def test_who_looks_at_startup_detached_competes_with_nobody(scene: Scene) -> None:
+def test_rules_on_detached_startup_do_not_compete(scene: Scene) -> None:
     scene.rule("listen", rs.startup.detached(), writes=scene.out)
     scene.rule("serve", rs.startup.detached(), writes=scene.out)
     assert scene.findings() == {}
 
 
-def test_a_rule_has_one_tie_at_most_and_it_is_with_the_first(scene: Scene) -> None:
+def test_a_rule_has_at_most_one_tie_and_that_with_the_first(scene: Scene) -> None:
     for number in range(300):
         scene.rule(f"r{number}", scene.heard, writes=scene.out)
     ties = [text for (kind, _), text in scene.findings().items() if kind == "tie"]
@@ -181,7 +187,7 @@ def test_a_rule_has_one_tie_at_most_and_it_is_with_the_first(scene: Scene) -> No
     assert all("rules m:r0 and" in text for text in ties)
 
 
-def test_rules_that_payloads_tell_apart_hide_no_tie_behind_them(scene: Scene) -> None:
+def test_predicates_on_payloads_hide_no_tie(scene: Scene) -> None:
     def one(payload: object) -> bool:
         return payload == 1
 
@@ -201,13 +207,116 @@ def test_long_lists_of_names_are_cut(scene: Scene) -> None:
     for number in range(50):
         scene.rule(f"r{number}", scene.heard, emits=lost)
     text = scene.findings()["unheard", "m:lost"]
-    assert (
-        "raised by m:r0, m:r1, m:r2, m:r3, m:r4, m:r5, m:r6, m:r7 and 42 more, and no rule hears it" in text
-    )
+    assert "which m:r0, m:r1, m:r2, m:r3, m:r4, m:r5, m:r6, m:r7 and 42 more may raise" in text
 
 
-def test_the_winner_that_is_named_is_the_best(scene: Scene) -> None:
+def test_the_message_names_the_best_winner(scene: Scene) -> None:
     scene.rule("first", scene.heard, writes=scene.out, weight=2)
     scene.rule("best", scene.heard, writes=scene.out, weight=3)
     scene.rule("last", scene.heard, writes=scene.out)
     assert "runs only when m:best resigns" in scene.findings()["never-wins", "m:last"]
+
+
+def test_signals_that_no_rule_raises(scene: Scene) -> None:
+    """A plain signal that comes from outside says so with input=True; a slot may be written from outside."""
+    question, stop = scene.module.signal("question"), scene.module.signal("stop")
+    scene.rule("answer", question | scene.out.changed, until=stop)
+    found = scene.findings()
+    assert list(found) == [("unraised", "m:question"), ("unraised", "m:stop")]
+    assert found["unraised", "m:question"] == (
+        "unraised: signal m:question has listeners (m:answer), and no rule raises it; if it comes from outside, "
+        "declare it with input=True"
+    )
+
+
+# ---------------------------------------------------------------------------------------- loops (L23)
+
+
+def test_detached_rules_that_set_each_other_off(scene: Scene) -> None:
+    one, other = scene.module.signal("one"), scene.module.signal("other")
+    scene.rule("start", scene.heard, emits=one)
+    scene.rule("ping", one, emits=other, detached=True)
+    scene.rule("pong", other, emits=one, detached=True)
+    found = scene.findings()
+    assert list(found) == [("loop", "m:ping")]
+    assert found["loop", "m:ping"] == (
+        "loop: rules m:ping, m:pong set each other off by m:other, m:one, without end and without time passing (L23): "
+        "write .min_age(seconds) behind one of these signals"
+    )
+
+
+def test_a_detached_constraint_makes_a_loop_too(scene: Scene) -> None:
+    tick = scene.module.signal("tick")
+    scene.rule("again", tick.detached() | scene.heard, emits=tick)
+    text = scene.findings()["loop", "m:again"]
+    assert text.startswith("loop: rule m:again sets itself off by m:tick, without end")
+
+
+@pytest.mark.parametrize("end", ["group", "min_age", "input", "where", "holds"])
+def test_loops_that_end_or_take_time(scene: Scene, end: str) -> None:
+    one, other = scene.module.signal("one"), scene.module.signal("other")
+    wanted: dict[str, rs.Condition] = {
+        "group": one,
+        "min_age": one.min_age(1),
+        "input": one & scene.heard,
+        "where": one.where(bool),
+        "holds": one & scene.out.holds(bool),
+    }
+    scene.rule("start", scene.heard, emits=one)
+    scene.rule("ping", wanted[end], emits=other, detached=end != "group")
+    scene.rule("pong", other, emits=one)
+    assert scene.findings() == {}
+
+
+@pytest.mark.parametrize("kind", ["async", "plain"])
+def test_a_rule_of_a_loop_that_awaits_takes_time(scene: Scene, kind: str) -> None:
+    tick = scene.module.signal("tick")
+
+    async def wait(ctx: rs.RuleContext) -> None:
+        await ctx.sleep(1)
+        ctx.emit(tick)
+
+    def work(ctx: Any) -> None:
+        ctx.sleep(1)
+        ctx.emit(tick)
+
+    function: Any = wait if kind == "async" else work
+    scene.module.rule(when=scene.heard | tick, emits=tick, detached=True)(function)
+    assert scene.findings() == {}
+
+
+# ---------------------------------------------------------------------------------------- source
+
+
+def test_source_is_examined_on_demand_only(scene: Scene) -> None:
+    @scene.module.rule(when=scene.heard)
+    async def say(ctx: rs.RuleContext) -> None:
+        ctx[scene_out] = "hello"
+
+    scene_out = scene.out
+    assert scene.findings() == {}
+    ((kind, subject), text), *others = scene.findings(inspect.getsource).items()
+    assert (kind, subject, others) == ("undeclared", "m:say", [])
+    line = say.function.__code__.co_firstlineno + 2
+    assert text == (
+        f"undeclared: rule m:say ({say.origin}) writes m:out (line {line}) without declaring it: write writes=out"
+    )
+
+
+def test_a_forgotten_await(scene: Scene) -> None:
+    @scene.module.rule(when=scene.heard, name="later")
+    async def later(ctx: rs.RuleContext) -> None:
+        ctx.sleep(1)  # type: ignore[unused-coroutine]
+
+    @scene.module.rule(when=scene.heard, name="plain")
+    def plain(ctx: rs.RuleContext) -> None:
+        ctx.sleep(1)  # type: ignore[unused-coroutine]
+
+    found = scene.findings(inspect.getsource)
+    assert found["await", "m:later"].endswith("without effect: write await ctx.sleep(...)")
+    assert found["await", "m:plain"].endswith("without effect: write await ctx.sleep(...) in an async def")
+
+
+def test_the_built_in_modules_together_have_no_false_finding() -> None:
+    policy = rs.compile(*(getattr(modules, name) for name in BUILT_IN))
+    assert {finding.kind for finding in policy.findings(inspect.getsource)} <= {"unheard"}

@@ -1,4 +1,4 @@
-"""The least pathway: exact against every union, and found at once where policies are large."""
+"""The least pathway: exact against every union, and quick on large policies."""
 
 from __future__ import annotations
 
@@ -83,7 +83,7 @@ def test_a_chain_of_any_length() -> None:
 
 
 def test_two_causes_at_each_step_of_a_chain() -> None:
-    """There are 2^60 pathways. Of each pair the first is on one rule more, so that the first ones are the least."""
+    """There are 2^60 pathways. The first of each pair is on one rule more, so the first ones are the least."""
     m = rs.Module("m")
     firsts, seconds = signals(m, "a", 60), signals(m, "b", 60)
     for number in range(59):
@@ -105,7 +105,7 @@ def test_two_causes_at_each_step_of_a_chain() -> None:
 
 
 def _counts(policy: rs.Policy) -> dict[str, int]:
-    """How many rules have each signal on a pathway, by walking from the rules."""
+    """Count the rules with each signal on a pathway, by a walk from the rules."""
     raisers: dict[str, list[str]] = {}
     for name, rule in policy.rules.items():
         for signal in rule.emits:
@@ -113,7 +113,9 @@ def _counts(policy: rs.Policy) -> dict[str, int]:
     found: dict[str, int] = {}
     for name in policy.rules:
         seen: set[str] = set()
-        stack = [(need.signal.name, need.detached) for c in policy.clauses(name) for need in c.needs]
+        stack = [
+            (need.signal.name, need.detached) for c in policy.rule_plan(name).clauses for need in c.needs
+        ]
         while stack:
             signal, detached = stack.pop()
             if signal in seen:
@@ -123,7 +125,7 @@ def _counts(policy: rs.Policy) -> dict[str, int]:
                 stack.extend(
                     (need.signal.name, need.detached)
                     for raiser in raisers.get(signal, ())
-                    for c in policy.clauses(raiser)
+                    for c in policy.rule_plan(raiser).clauses
                     for need in c.needs
                 )
         for signal in seen:
@@ -131,7 +133,7 @@ def _counts(policy: rs.Policy) -> dict[str, int]:
     return found
 
 
-def test_choices_that_have_nothing_to_do_with_each_other_do_not_multiply() -> None:
+def test_independent_choices_do_not_multiply() -> None:
     m = rs.Module("m")
     wanted = signals(m, "x", 40)
     cheap: list[rs.Signal[None]] = []
@@ -147,8 +149,8 @@ def test_choices_that_have_nothing_to_do_with_each_other_do_not_multiply() -> No
     assert len(clause.pathways) == MAX_PATHWAYS  # of 3^40
 
 
-def test_what_is_entangled_beyond_measure_ends_all_the_same() -> None:
-    """A torus: rings through rings. No input leads in but one."""
+def test_a_torus_has_an_end() -> None:
+    """A torus: rings through rings, with one input."""
     m = rs.Module("m")
     side = 12
     entry, nodes = m.signal("entry"), signals(m, "s", side * side)
@@ -172,7 +174,7 @@ def test_what_is_entangled_beyond_measure_ends_all_the_same() -> None:
 
 
 @given(st.integers(0, 10_000))
-def test_the_least_union_of_causes_that_have_causes_in_common(seed: int) -> None:
+def test_the_least_union_of_causes_with_common_causes(seed: int) -> None:
     """Set cover: seven signals, each with three causes, over six inputs."""
     dice = random.Random(seed)
     m = rs.Module("m")

@@ -1,4 +1,4 @@
-"""Utilities: the paper's worked example to six decimals, and L8/L9 recomputed from their wording on random policies."""
+"""Utilities: the paper's worked example to six decimals, and L8 and L9 computed again on random policies."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ def test_the_worked_example_to_six_decimals(rule: str, utility: float) -> None:
         ("Nice weather.", ["Wildtalk"], ""),
     ],
 )
-def test_who_speaks_in_the_worked_example(text: str, said: list[str], face: str) -> None:
+def test_the_speaker_in_the_worked_example(text: str, said: list[str], face: str) -> None:
     m = worked_example()
     with simulate(m) as sim:
         sim.say(text)
@@ -101,7 +101,7 @@ Pathway = frozenset[str]
 
 
 def completions(signal: str, way: Pathway, rules: list[Sketch], inputs: set[str]) -> set[Pathway]:
-    """The signal and, recursively, its causes: one completion for each way in which it may be caused (L8).
+    """The signal and, recursively, its causes: one completion for each way to cause it (L8).
 
     `way` is what leads from the clause here; a signal that stands there already closes a cycle, which is cut.
     """
@@ -131,7 +131,7 @@ def pathways(clause: list[Constraint], way: Pathway, rules: list[Sketch], inputs
 
 
 def utilities(rules: list[Sketch], inputs: set[str]) -> list[list[tuple[set[Pathway], float]]]:
-    """For each clause of each rule its pathways and its utility (L9)."""
+    """Return the pathways and the utility of each clause of each rule (L9)."""
     found = [[pathways(clause, frozenset(), rules, inputs) for clause in rule.clauses] for rule in rules]
 
     def information(signal: str) -> float:
@@ -152,7 +152,7 @@ def utilities(rules: list[Sketch], inputs: set[str]) -> list[list[tuple[set[Path
 
 
 class World:
-    """A random policy and the sketch of it."""
+    """Draw a random policy and its sketch."""
 
     def __init__(self, data: st.DataObject) -> None:
         draw = data.draw

@@ -1,4 +1,4 @@
-"""The policy: immutable, shared, asked by name."""
+"""The policy: immutable, shared, with its parts by name."""
 
 from collections.abc import Callable
 from typing import Any
@@ -31,7 +31,7 @@ async def late(ctx: rs.RuleContext) -> None:
 policy = rs.compile(demo)
 
 
-def test_what_is_in_it_is_asked_by_name_and_cannot_be_changed() -> None:
+def test_its_parts_have_names_and_cannot_change() -> None:
     assert policy.rules["demo:add"] is add and list(policy.rules) == ["demo:add", "demo:late"]
     assert policy.signals["demo:go"] is go and policy.signals["demo:count:changed"] is count.changed
     assert policy.slots["demo:count"] is count
@@ -41,18 +41,18 @@ def test_what_is_in_it_is_asked_by_name_and_cannot_be_changed() -> None:
     assert repr(policy) == "<policy of 2 rules in 2 modules>"
 
 
-def test_a_rule_is_named_by_itself_or_by_its_name() -> None:
+def test_a_rule_or_its_name_is_an_argument() -> None:
     assert policy.utility(add) == policy.utility("demo:add")
     assert policy.clauses(late) == policy.clauses("demo:late")
 
 
 @pytest.mark.parametrize("ask", ["utility", "clauses", "rule_plan"])
-def test_an_unknown_rule_is_met_by_the_nearest(ask: str) -> None:
+def test_an_unknown_rule_gets_a_hint(ask: str) -> None:
     with pytest.raises(rs.DeclarationError, match="no rule 'demo:ad'; did you mean 'demo:add'"):
         getattr(policy, ask)("demo:ad")
 
 
-def test_what_is_declared_later_is_in_the_next_policy_only() -> None:
+def test_later_declarations_are_in_the_next_policy_only() -> None:
     m = rs.Module("m")
     s = m.signal("s")
     before = rs.compile(m)
@@ -124,7 +124,7 @@ def test_one_more_rule_makes_another_policy() -> None:
     )  # of three rules, only one stands on `stop`
 
 
-def test_a_rule_may_name_a_setting_also_where_no_other_does() -> None:
+def test_a_new_rule_may_refer_to_a_setting() -> None:
     plain = rs.Module("plain", settings=Late)
     plain.signal("x")
     base = rs.compile(plain)

@@ -1,4 +1,4 @@
-"""What must be true of every play, judged from what can be observed of the engine, and not by its own bookkeeping."""
+"""Assertions about every play, from the observable behaviour and tables of the engine."""
 
 from __future__ import annotations
 
@@ -10,12 +10,21 @@ from ravestate.engine.activation import NEVER, State
 from ravestate.engine.consent import ask
 from ravestate.engine.effects import Effect, Ended, Run
 
-__all__ = ["Exclusion", "bounded", "consistent", "empty", "pressed_in_time", "still", "waits_for_a_reason"]
+__all__ = [
+    "Exclusion",
+    "bounded",
+    "consistent",
+    "empty",
+    "joined",
+    "pressed_in_time",
+    "still",
+    "waits_for_a_reason",
+]
 
 
 @dataclass
 class Started:
-    """A run, as it was when it started."""
+    """A run at its start."""
 
     run: int
     rule: str
@@ -27,12 +36,12 @@ class Started:
 
     @property
     def counts(self) -> bool:
-        """Whether it still excludes others: it runs, or it has fired."""
+        """Return whether it still excludes others: it runs, or it has fired."""
         return self.fired or not self.over
 
 
 class Exclusion:
-    """Whoever starts excludes nobody, and is excluded by nobody, who runs or has fired (L10, L15, L18)."""
+    """No two runs that exclude each other both run or fire (L10, L15, L18)."""
 
     def __init__(self) -> None:
         self.runs: dict[int, Started] = {}
@@ -99,7 +108,7 @@ class Exclusion:
 
 
 def waits_for_a_reason(play: Play) -> None:
-    """No ready rule waits without a viable rival or a taken slot, and nobody waits for ever (L15, L16)."""
+    """Assert that each wait has a reason, a viable rival or a taken slot, and an end (L15, L16)."""
     engine = play.engine
     due = engine.next_deadline()
     if engine.waiting and not engine.running:
@@ -113,7 +122,7 @@ def waits_for_a_reason(play: Play) -> None:
         assert waiter.state is State.WAITING
         if not rule.slots:
             claimed = engine._claimed(waiter)
-            assert claimed is not None, f"{waiter} waits, and nobody runs on its spikes"
+            assert claimed is not None, f"{waiter} waits, and no run is on its spikes"
             moving.add(waiter)
             continue
         refusal = asked[waiter] = ask(engine, waiter)
@@ -138,12 +147,33 @@ def waits_for_a_reason(play: Play) -> None:
                     moving.add(waiter)
                     grew = True
     stuck = [waiter for waiter in engine.waiting if waiter not in moving]
-    # What rests on a live spike alone has no blocker: whoever holds it must be at work, or about to be.
+    # A wait for a live spike alone has no blocker: a holder of that spike must be at work, or soon be.
     assert not stuck or engine.running or due is not None, f"{stuck} wait for nothing that moves"
 
 
+def joined(play: Play) -> None:
+    """Assert that no activation lacks a live spike that is younger, fits, and is of the right group (L12)."""
+    engine = play.engine
+    for activation in play.active():
+        if activation.state is not State.GATHERING:
+            continue
+        for need in activation.clause.needs:
+            if not need.bit & activation.missing or need.detached:
+                continue
+            held = [
+                spike.group.root()
+                for other, spike in zip(activation.clause.needs, activation.spikes, strict=True)
+                if spike is not None and other.bit & need.kin
+            ]
+            for spike in engine.live.get(need.signal.index, ()):
+                apart = any(group is not spike.group.root() for group in held)
+                assert apart or activation.id > spike.before or not engine._fits(need, spike), (
+                    f"{activation} lacks {need.signal}, and does not take {spike}"
+                )
+
+
 def pressed_in_time(play: Play) -> None:
-    """Nobody is under pressure past its patience (L16)."""
+    """Assert that no rival is under pressure past its patience (L16)."""
     engine = play.engine
     groups: dict[Any, None] = {}
     for activation in play.active():
@@ -156,7 +186,7 @@ def pressed_in_time(play: Play) -> None:
 
 
 def still(play: Play) -> dict[str, Any]:
-    """A snapshot without what time alone changes."""
+    """Return a snapshot without the parts that time alone changes."""
     from ravestate.engine.snapshot import snapshot
 
     found = snapshot(play.engine)
@@ -170,7 +200,7 @@ def still(play: Play) -> dict[str, Any]:
 
 
 def consistent(engine: Any) -> None:
-    """The indices of the engine agree with one another."""
+    """Assert that the tables of the engine agree with one another."""
     activations = [a for rule in engine.active.values() for a in rule]
     assert all(engine.active.values()), "an empty set of activations is kept"
     for activation in activations:
@@ -207,7 +237,7 @@ def consistent(engine: Any) -> None:
             for slot, holders in group.taken.items():
                 assert holders is None or (holders and all(h.state >= State.RUNNING for h in holders)), slot
     known = set(activations)
-    for where in (engine.waiting, engine.gated, engine.benches, engine.running.values()):
+    for where in (engine.waiting, engine.gated, engine.alternatives, engine.running.values()):
         assert known.issuperset(where)
     for need, lacking in engine.lacking.items():
         assert lacking, f"an empty set of those who lack {need} is kept"
@@ -218,17 +248,18 @@ def consistent(engine: Any) -> None:
             assert known.issuperset(spike.holders), f"{spike} is held by {list(spike.holders)}"
             signal = spike.signal
             assert spike.holders or (signal.retain >= 0 and spike.born + signal.retain >= engine.now), (
-                f"{spike} is kept for nobody"
+                f"{spike} is kept without a holder"
             )
         assert len(spikes) <= engine.policy.signal_plans[index].limit
     assert engine._busy == sum(not (a.clause.rule.background or a.clause.reflexive) for a in activations)
 
 
 def bounded(play: Play) -> None:
-    """All that must be true whenever the engine is quiet."""
+    """Assert all that holds whenever the engine is quiet."""
     play.engine.look()
-    assert not play.engine._out, "looking has made somebody run"
+    assert not play.engine._out, "looking has started a run"
     consistent(play.engine)
+    joined(play)
     pressed_in_time(play)
     waits_for_a_reason(play)
     engine = play.engine
@@ -251,10 +282,20 @@ def _holds(engine: Any, slot: Any, guard: Any) -> bool:
 
 
 def empty(play: Play) -> None:
-    """Nothing is left (L23)."""
+    """Assert that nothing is left (L23)."""
     engine = play.engine
     assert not engine.running, f"{engine.running} run"
-    for name in ("active", "live", "lacking", "gated", "waiting", "benches", "_free", "_asking", "_dirty"):
+    for name in (
+        "active",
+        "live",
+        "lacking",
+        "gated",
+        "waiting",
+        "alternatives",
+        "_free",
+        "_asking",
+        "_dirty",
+    ):
         assert not getattr(engine, name), f"{name}: {getattr(engine, name)}"
     for name in ("_watches", "_errors", "_out"):
         assert not getattr(engine, name), f"{name}: {getattr(engine, name)}"

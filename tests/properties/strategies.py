@@ -1,4 +1,4 @@
-"""Random worlds: small policies in which much collides, and inputs in which much happens at once."""
+"""Random worlds: small policies full of collisions, with many inputs at once."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ SLOTS = st.builds(
 
 
 def own_signals(slots: tuple[SlotOf, ...]) -> list[str]:
-    """The names of the signals of slots."""
+    """Return the names of the signals of slots."""
     kinds = {
         "value": ("changed",),
         "flag": ("changed", "true", "false"),
@@ -42,7 +42,7 @@ def own_signals(slots: tuple[SlotOf, ...]) -> list[str]:
 
 
 def writes(slots: tuple[SlotOf, ...], names: list[str]) -> list[st.SearchStrategy[Op]]:
-    """Ways to write the slots of these names."""
+    """Return ways to write the slots of these names."""
     found: list[st.SearchStrategy[Op]] = []
     for name in names:
         kind = slots[int(name[1:])].kind
@@ -122,7 +122,7 @@ def rules(
     if core and draw(st.sampled_from([False, False, False, True])):
         flags = ["core:activity:true", "core:activity:false", "core:pressure:true", "core:pressure:false"]
         heard = [*signals, *flags, "core:error", "core:startup"]
-        background = True  # or its own holding of the flag's spike would change the flag
+        background = True  # otherwise its own hold on the flag's spike would change the flag
     names = [f"v{n}" for n in range(len(world.slots))]
     written = draw(st.lists(st.sampled_from(names), unique=True, max_size=2)) if names else []
     emits = draw(st.lists(st.sampled_from(emitted), unique=True, max_size=2)) if emitted else []
@@ -151,12 +151,12 @@ def rules(
 
 @st.composite
 def worlds(draw: st.DrawFn, *, ageless: bool = True, core: bool = True, adds: bool = False) -> World:
-    """Worlds that compile.
+    """Generate worlds that compile.
 
     Args:
         ageless: Whether constraints may wait for ever (``max_age(None)``).
         core: Whether rules may hear the built-in signals.
-        adds: Whether rules may be added on the way.
+        adds: Whether the inputs may add rules.
     """
     world = World(
         tuple(draw(st.lists(SIGNALS, min_size=1, max_size=3))),

@@ -18,7 +18,7 @@ KINDS = (Activation, Group, Spike, Watch)
 
 
 def count() -> dict[str, int]:
-    """The live objects of the engine, by type."""
+    """Count the live objects of the engine, by type."""
     gc.collect()
     found = {kind.__name__: 0 for kind in KINDS}
     for thing in gc.get_objects():
@@ -28,7 +28,7 @@ def count() -> dict[str, int]:
 
 
 def forget(play: Play) -> None:
-    """Drop what the play itself has written down."""
+    """Clear the records of the play itself."""
     for kept in (play.heard, play.journal, play.taken, play.trace):
         kept.clear()  # type: ignore[attr-defined]  # all are lists
 

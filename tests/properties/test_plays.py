@@ -10,14 +10,14 @@ from properties.worlds import Play, World
 
 
 @given(worlds(adds=True))
-def test_who_excludes_each_other_never_both_finish_for_one_cause(world: World) -> None:
-    """And nobody runs too early, twice on the same spikes, or before somebody who is ready and worth more."""
+def test_rules_that_exclude_each_other_never_both_finish_for_one_cause(world: World) -> None:
+    """Nor does a rule run too early, twice on the same spikes, or before a ready rule that is worth more."""
     Play(world, started=Exclusion()).play()
 
 
 @given(worlds(adds=True))
-def test_whoever_waits_has_a_reason_and_an_end(world: World) -> None:
-    """A taken slot or a viable rival; and a rival that only patience bounds ends within it."""
+def test_every_wait_has_a_reason_and_an_end(world: World) -> None:
+    """The reason is a taken slot or a viable rival; a rival that only patience bounds ends within it."""
     play = Play(world, before=bounded).play()
     bounded(play)
 
@@ -30,12 +30,10 @@ def test_with_time_nothing_is_left(world: World) -> None:
 
 
 @given(worlds())
-def test_when_all_is_wiped_nothing_is_left(world: World) -> None:
-    """Also of what would have been held for ever."""
+def test_after_a_wipe_of_everything_nothing_is_left(world: World) -> None:
+    """Not even a spike without a greatest age."""
     play = Play(world).play()
-    for _ in range(
-        50
-    ):  # the end of activity is an input to others, and so is what a run does when it is cancelled
+    for _ in range(50):  # the end of activity, or a cancelled run, may raise signals again
         play.wipe_all()
         play.settle(1000.0)
         if not play.engine.active and not play.engine.live:

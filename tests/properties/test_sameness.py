@@ -1,4 +1,4 @@
-"""Random worlds: what must make no difference makes none (L24, L25)."""
+"""Random worlds: observers, repetitions and idle calls change nothing (L24, L25)."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ def test_a_journal_fed_to_a_fresh_engine_gives_the_same_effects(world: World) ->
 
 @given(worlds(), st.integers(0, 3))
 def test_a_rule_that_hears_nothing_changes_nothing(world: World, steps: int) -> None:
-    """Added to a live engine; apart from utilities, which count rules (L9): those of before are kept here."""
+    """The rule is added to a live engine. Utilities count rules (L9), so the test keeps the earlier ones."""
     plain = Play(world)
     changed = Play(world)
     for _ in range(steps):
@@ -126,4 +126,4 @@ def test_the_same_effects_under_any_seed_of_hashes() -> None:
 
 
 def void(_: object) -> None:
-    """Forget what was looked at."""
+    """Ignore a value."""

@@ -1,8 +1,8 @@
-"""Worlds: a policy, what its rules do, and what happens to it, as plain data that prints as the code that makes it.
+"""Worlds: a policy, the work of its rules, and its inputs, as plain data that prints as the code that makes it.
 
-`compiled` makes the policy, `Play` plays the world on a bare engine in virtual time, as the runtime would: a rule
-function's first steps are done at once, later ones when their time has come. No Hypothesis in here: a subprocess
-imports this file too.
+`compiled` makes the policy. `Play` plays the world on a bare engine in virtual time, like the runtime: the first steps
+of a rule function are performed at once, later ones at their time. A subprocess imports this file, so it does without
+Hypothesis.
 """
 
 from __future__ import annotations
@@ -40,24 +40,24 @@ BUDGET = 8
 """Runs after which a rule retires, so that every loop ends."""
 
 BIRTHS = 2_000
-"""Spikes that one instant may see before it counts as endless."""
+"""Spikes in one instant after which it counts as endless."""
 
 STEPS = 5_000
-"""Moments that a whole play may have before it counts as endless."""
+"""Moments of a play after which it counts as endless."""
 
 
 def odd(value: Any) -> bool:
-    """True of odd numbers, and of items that are."""
+    """Return whether a number or an item is odd."""
     return bool(getattr(value, "item", value) in (1, 3, True))
 
 
 def never(_: Any) -> bool:
-    """Always false."""
+    """Return false."""
     return False
 
 
 def fussy(value: Any) -> bool:
-    """Fails on 2."""
+    """Return true; raise on 2."""
     if value == 2:
         raise ValueError("two")
     return True
@@ -71,7 +71,7 @@ Op = tuple[Any, ...]
 
 
 class Brief:
-    """Prints as the call that makes it, without what is as always."""
+    """A record that prints as the call that makes it, without defaults."""
 
     def __repr__(self) -> str:
         told: list[str] = []
@@ -106,21 +106,21 @@ Clause = tuple[Want | Gate, ...]
 
 @dataclass(frozen=True, repr=False)
 class Act(Brief):
-    """What a rule's function does when called: steps, each after some seconds; then it ends."""
+    """The work of a rule's function: steps, each after some seconds, then an end."""
 
     steps: tuple[tuple[float, Op], ...] = ()
     seconds: float = 0.0
     end: str = "done"
     cleanup: float = 0.0
     last: tuple[Op, ...] = ()
-    """What it does while it cleans up after having been cancelled."""
+    """The steps of its cleaning up after a cancellation."""
     cancelled: str = "done"
-    """How it ends then."""
+    """The outcome after a cancellation."""
 
 
 @dataclass(frozen=True, repr=False)
 class RuleOf(Brief):
-    """A rule, and what its function does at the first call, the second, ..."""
+    """A rule, and the work of its function at the first call, the second, ..."""
 
     when: tuple[Clause, ...]
     writes: tuple[str, ...] = ()
@@ -166,7 +166,7 @@ class World(Brief):
     inputs: tuple[tuple[float, Op], ...] = ()
     patience: float = 1.0
     together: bool = False
-    """Whether what happens at one moment is told before the effects are taken."""
+    """Whether the engine receives all events of one moment before its effects are taken."""
 
 
 class Names:
@@ -238,7 +238,7 @@ def rule_of(names: Names, spec: RuleOf, name: str) -> rs.Rule[Any, Any]:
 
 
 def compiled(world: World) -> tuple[Names, Policy]:
-    """Compile a world's module; ``names`` allows to declare more rules later."""
+    """Compile a world's module; with the returned `Names` more rules can be declared later."""
     names = Names(world)
     for number, rule in enumerate(world.rules):
         rule_of(names, rule, f"r{number}")
@@ -246,7 +246,7 @@ def compiled(world: World) -> tuple[Names, Policy]:
 
 
 class Endless(AssertionError):
-    """The engine would not come to rest within one instant."""
+    """The engine does not come to rest within one instant."""
 
 
 class Counted(Engine):
@@ -276,9 +276,9 @@ class Play:
     names: Names | None = None
     traced: bool = False
     before: Callable[[Play], None] | None = None
-    """Called before time passes: `self.engine` is quiet, and nothing happens until `self.next_time()`."""
+    """A callback before time passes: `self.engine` is quiet, and nothing happens until `self.next_time()`."""
     started: Callable[[Play, Effect], None] | None = None
-    """Called with each effect, all those of one batch before the first is performed."""
+    """A callback with each effect of a batch, before the first of them is performed."""
     budget: int = BUDGET
     """Calls of a rule after which it retires."""
     now: float = 0.0
@@ -306,14 +306,14 @@ class Play:
     # -------------------------------------------------------------------------------- time
 
     def play(self) -> Play:
-        """From the first input until nothing is left to happen."""
+        """Play from the first input until nothing is left to happen."""
         for _ in range(STEPS + len(self.todo)):
             if not self.step():
                 return self
         raise Endless(f"there is no end to it at {self.now} s")
 
     def next_time(self) -> float | None:
-        """When something happens next (seconds)."""
+        """Return when something happens next (seconds)."""
         times = [self.todo[0][0]] if self.todo else []
         due = self.engine.next_deadline()
         if due is not None:
@@ -321,7 +321,7 @@ class Play:
         return min(times, default=None)
 
     def step(self) -> bool:
-        """Let happen what happens next; False when nothing does."""
+        """Play the next moment; return False if there is none."""
         time = self.next_time()
         if time is None:
             return False
@@ -340,7 +340,7 @@ class Play:
         return True
 
     def settle(self, seconds: float) -> None:
-        """Let time pass, with nothing from outside."""
+        """Let time pass without inputs."""
         end = self.now + seconds
         for _ in range(STEPS):
             time = self.next_time()
@@ -354,7 +354,7 @@ class Play:
         self.pump()
 
     def tell(self, *ops: Op) -> None:
-        """Something happens now."""
+        """Perform operations from outside, now."""
         for op in ops:
             self.do(0, op)
             self.pump()
@@ -432,7 +432,7 @@ class Play:
                     assert not isinstance(effect, Ended) or effect.run not in self.acts
 
     def take(self) -> list[Effect]:
-        """Ask for effects, as the journal will tell."""
+        """Take the effects, and note that in the journal."""
         self.journal.append((self.now, Taken()))
         effects = self.engine.effects()
         self.taken.append(effects)
@@ -475,13 +475,13 @@ class Play:
         self.plan(self.now + act.cleanup, effect.run, ("finish", act.cancelled, effect.reason))
 
     def wipe_all(self) -> None:
-        """Withdraw everything, and let what runs come to its end."""
+        """Wipe every signal."""
         for signal in list(self.engine.policy.signals):
             self.engine.births = 0
             self.receive(events.Wipe(signal))
             self.pump()
 
     def active(self) -> Iterator[Any]:
-        """All activations."""
+        """Yield all activations."""
         for activations in self.engine.active.values():
             yield from activations

@@ -2,7 +2,8 @@
 
     python tests/quality/measure.py MODULE... [--misses]
 
-`MODULE` is a dotted name; each of its functions that bears the name of a set is measured on it:
+`MODULE` is a dotted name. Each of its functions that has the name of a set is measured on it. A function `results`
+returns the results of sets that the module has itself.
 
 | Function | Takes a text, gives |
 |---|---|
@@ -10,7 +11,6 @@
 | `questions`, `yesno`, `agentqa`, `emotions` | the label in the words of the set's file, `-` for none |
 | `genqa` | a `Reply`, or None for silence |
 
-A module may also have a list `MORE` of functions that each return the `Result` of a set of their own.
 """
 
 import argparse
@@ -173,7 +173,7 @@ def measure(name: str, function: Callable[[str], Any]) -> Result:
 
 
 def table(results: Iterable[Result]) -> str:
-    """The results as a table, a share a line."""
+    """Return the results as a table with one share a line."""
     lines = [f"{'set':<16} {'cases':>5}  {'':<22} {'share':>7}"]
     for result in results:
         for row, (what, share) in enumerate(result.shares.items()):
@@ -186,20 +186,18 @@ def main(argv: list[str] | None = None) -> int:
     """Measure the functions of the module that is named on the command line."""
     parser = argparse.ArgumentParser(description="Measure how well text is understood.")
     parser.add_argument(
-        "modules",
-        nargs="+",
-        metavar="MODULE",
-        help="dotted name of a module with functions named like the sets",
-    )
+        "modules", nargs="+", metavar="MODULE",
+        help="dotted name of a module with functions named like the sets, or with a function `results`",
+    )  # fmt: skip
     parser.add_argument("--misses", action="store_true", help="also print each sentence that went wrong")
     arguments = parser.parse_args(argv)
-    functions: dict[str, Any] = {}
+    results: list[Result] = []
     for module in arguments.modules:
-        functions |= vars(importlib.import_module(module))
-    results = [measure(name, functions[name]) for name in SETS if name in functions]
-    results += [make() for make in functions.get("MORE", ())]
+        functions = vars(importlib.import_module(module))
+        results += functions["results"]() if "results" in functions else []
+        results += [measure(name, functions[name]) for name in SETS if name in functions]
     if not results:
-        parser.error(f"{' '.join(arguments.modules)} has no function {', '.join(SETS)}")
+        parser.error(f"{', '.join(arguments.modules)}: no function {', '.join(SETS)}, results")
     print(table(results))
     if arguments.misses:
         for result in results:

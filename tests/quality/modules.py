@@ -1,4 +1,4 @@
-"""The modules for `measure.py`: each function has the name of a set."""
+"""The functions for `measure.py`; each has the name of a set."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from pathlib import Path
 from quality.measure import Reply, labelled
 from ravestate.modules import emotion
 from ravestate.modules import genqa as genqa_module
-from ravestate.modules.meta.nlp import QuestionWord, Settings
+from ravestate.modules.meta.nlp import QuestionWord, Settings, YesNo
 from ravestate.modules.meta.nlp.analysis import Analysis, analyse
 from ravestate.modules.meta.nlp.pipeline import pipeline
 from ravestate.modules.skill.agentqa.life import Life
@@ -41,7 +41,11 @@ def questions(text: str) -> str:
 
 def yesno(text: str) -> str:
     """By nlp."""
-    answer = _seen(text).yesno
+    return yesno_label(_seen(text).yesno)
+
+
+def yesno_label(answer: YesNo) -> str:
+    """Return the label of an answer."""
     if answer.unsure:
         return "unsure"
     if answer.yes:
@@ -60,20 +64,20 @@ NOT_ABOUT_ITSELF = ("time", "date", "privacy")
 
 
 def agentqa(text: str) -> str:
-    """By agentqa, with nlp's word on whether it is a question."""
+    """Classify with agentqa, which needs nlp's verdict whether the text is a question."""
     found = _router().route(text, question=_seen(text).question is not None)
     topic = found.topic if isinstance(found, Match) else "-"
     return {"abilities": "can_do", **dict.fromkeys(NOT_ABOUT_ITSELF, "-")}.get(topic, topic)
 
 
 def plain(text: str) -> str:
-    """Return the words of a text alone, for comparison."""
+    """The words of a text alone, for telling whether two are the same."""
     return " ".join(re.findall(r"[a-z0-9]+", text.lower().replace("'", "")))
 
 
 @cache
 def _router() -> Router:
-    """Return a router without the sentences of the set among its examples."""
+    """A router that has not learnt from any sentence of the set: everyday questions stand among its examples, too."""
     life, measured = read_life(), {plain(text) for text, _ in labelled("agentqa")}
 
     def others(examples: tuple[str, ...]) -> tuple[str, ...]:
@@ -84,7 +88,7 @@ def _router() -> Router:
 
 
 def genqa(text: str) -> Reply | None:
-    """By genqa, for questions that nlp recognises."""
+    """By genqa, which is only asked what nlp takes for a question."""
     settings = genqa_module.Settings()
     if _seen(text).question is None:
         return None

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
-from functools import partial
 
 from quality import measure
 from quality.modules import _seen
@@ -22,7 +21,7 @@ from ravestate.modules.skill.persqa.topics import Fact
 from ravestate.modules.skill.persqa.understanding import Heard, understand
 from ravestate.modules.skill.wildtalk.facts import asks_for_fact
 
-__all__ = ["FLOORS", "MORE", "SETS", "result"]
+__all__ = ["FLOORS", "SETS", "result", "results"]
 
 FLOORS = {
     "persqa_facts": 0.98,
@@ -113,4 +112,6 @@ def result(name: str) -> measure.Result:
     return measure.measure_labels(name, SETS[name], measure.labelled(name))
 
 
-MORE = [partial(result, name) for name in SETS]
+def results() -> list[measure.Result]:
+    """Measure every set of this file."""
+    return [result(name) for name in SETS]

@@ -1,4 +1,4 @@
-"""The promised quality of understanding, on sets that nobody tuned on."""
+"""The floors of language understanding, on sets that are never used for tuning."""
 
 from __future__ import annotations
 
@@ -24,6 +24,6 @@ def test_text_is_understood(name: str, share: str, least: float) -> None:
     assert result.shares[share] >= least, "\n".join(result.misses)
 
 
-def test_sure_answers_are_seldom_wrong() -> None:
+def test_what_is_said_as_sure_is_seldom_wrong() -> None:
     result = measure("genqa", modules.genqa)
     assert result.shares["wrong of the sure"] <= 0.05, "\n".join(result.misses)

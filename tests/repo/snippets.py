@@ -1,13 +1,12 @@
-"""The code blocks of a Markdown file, found and run: what stands in the documentation works.
+"""Find and run the code blocks of a Markdown file, so that the documentation works.
 
 The rules, for who writes documentation:
 
 - A ```` ```python ```` block is run. The blocks of one page share one namespace, so a story may run through
   the page; `await` and `async with` may stand at the top level.
 - A ```` ```pycon ```` block is run too, and what it shows must come out.
-- A block of any language with `title="hello.py"` is also saved under that name, in a folder of the page's own
-  in which all its blocks run: so a later block can read, import or run it. It has a namespace of its own, as for
-  the reader: later blocks import what they need of it. `title="hello.py, continued"` adds to the file.
+- A block of any language with `title="hello.py"` is also saved under that name, in the folder in which all blocks of the
+  page run. A later block can read, import or run it. Its namespace is its own: later blocks import its names. `title="hello.py, continued"` adds to the file.
 - A block whose title begins with `test_` is run by pytest too, as its reader will do; and where a block has functions
   `test_*`, it must have such a title, as else nothing would call them.
 - A block right under `<!-- not run: the reason -->` is skipped, and the reason is shown. Rarely needed.
@@ -57,7 +56,7 @@ class Block:
 
     @property
     def has_tests(self) -> bool:
-        """Whether it has functions that nobody but pytest calls."""
+        """Whether it has functions that only pytest calls."""
         return re.search(r"^(?:async )?def test_", self.code, re.MULTILINE) is not None
 
     def __str__(self) -> str:

@@ -1,4 +1,4 @@
-"""What the documentation lists is complete: how-tos, commands, extras, the packages of models."""
+"""The lists in the documentation are complete: how-tos, commands, extras, the packages of models."""
 
 import re
 import tomllib
@@ -33,8 +33,13 @@ def test_every_link_leads_somewhere() -> None:
     assert not broken, "\n".join(broken)
 
 
-def test_the_readme_names_every_command() -> None:
-    assert set(re.findall(r"`ravestate (\w+)", text_of("README.md"))) >= set(COMMANDS)
+def test_the_reference_names_every_command() -> None:
+    assert set(re.findall(r"`ravestate (\w+)", text_of("docs/reference/index.md"))) >= set(COMMANDS)
+
+
+def test_the_readme_is_a_page_long() -> None:
+    before, _, _ = text_of("README.md").partition("## Where to read on")
+    assert len(before.split()) <= 700
 
 
 def test_every_extra_is_told() -> None:

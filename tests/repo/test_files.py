@@ -12,7 +12,7 @@ SOURCE = ROOT / "src" / "ravestate"
 
 
 def kept_files() -> list[Path]:
-    """What git keeps, or would keep: tracked files and new ones that are not ignored."""
+    """The files that git tracks or would track: tracked files and new ones that are not ignored."""
     run = subprocess.run(
         ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"],
         cwd=ROOT, capture_output=True, text=True, check=False,

@@ -24,7 +24,7 @@ print(json.dumps({{
 
 
 def loaded_by(module: str) -> dict[str, object]:
-    """What importing `module` in a new interpreter (with nothing but its own start-up) does to it."""
+    """Import `module` in a new interpreter and return the side effects."""
     run = subprocess.run(
         [sys.executable, "-c", PROBE.format(module=module)], capture_output=True, text=True, check=False
     )

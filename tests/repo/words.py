@@ -118,7 +118,11 @@ def of_markdown(text: str, first: int = 1) -> Iterator[tuple[int, str]]:
             if opens:
                 fence = opens[1]
             elif bare.startswith("|"):
-                yield from ((number, cell.strip()) for cell in bare.strip("|").split("|") if cell.strip(" -:"))
+                yield from (
+                    (number, cell.strip()) for cell in bare.strip("|").split("|") if cell.strip(" -:")
+                )
+            elif bare.startswith("#"):
+                pass  # a heading is a title, not a sentence
             elif starts:
                 begin, held = number, [bare[starts.end() :]]
             continue
@@ -134,7 +138,7 @@ def of_docstring(text: str, first: int) -> Iterator[tuple[int, str]]:
     lines = text.expandtabs().splitlines()
     margin = min((len(x) - len(x.lstrip()) for x in lines[1:] if x.strip()), default=0)
     prose: list[str] = []
-    section, literal, indent = "", False, 0
+    section, literal = "", False
     for place, line in enumerate(lines):
         bare = line.strip() if place == 0 else line[margin:]
         depth = len(bare) - len(bare.lstrip())
@@ -160,7 +164,11 @@ def of_python(text: str) -> Iterator[tuple[int, str]]:
     """Yield the docstrings, the comments and the messages of Python code."""
     tree = ast.parse(text)
     for node in ast.walk(tree):
-        if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant) and isinstance(node.value.value, str):
+        if (
+            isinstance(node, ast.Expr)
+            and isinstance(node.value, ast.Constant)
+            and isinstance(node.value.value, str)
+        ):
             yield from of_docstring(node.value.value, node.lineno)
         elif isinstance(node, ast.Raise) and node.exc is not None:
             yield from _strings(node.exc)
@@ -262,7 +270,6 @@ def faults(paths: Iterable[Path] = ()) -> Iterator[Fault]:
 
 
 if __name__ == "__main__":
-    count = 0
-    for count, fault in enumerate(faults(Path(x).resolve() for x in sys.argv[1:]), 1):
-        print(fault)
-    print(f"{count} faults", file=sys.stderr)
+    found = list(faults(Path(x).resolve() for x in sys.argv[1:]))
+    print(*found, sep="\n")
+    print(f"{len(found)} faults", file=sys.stderr)

@@ -6,7 +6,7 @@ from collections.abc import Callable, Coroutine
 from typing import Any
 
 LIMIT = 20
-"""Seconds after which a test that waits for what never comes is ended; no test comes near."""
+"""Seconds after which a test that waits in vain is ended; no other test takes as long."""
 
 
 def on_loop(test: Callable[..., Coroutine[Any, Any, None]]) -> Callable[..., None]:
@@ -24,6 +24,6 @@ def on_loop(test: Callable[..., Coroutine[Any, Any, None]]) -> Callable[..., Non
 
 
 async def turns(count: int = 5) -> None:
-    """Let the loop turn a few times."""
+    """Wait for a few turns of the loop."""
     for _ in range(count):
         await asyncio.sleep(0)

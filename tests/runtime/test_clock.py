@@ -1,4 +1,4 @@
-"""The clock of a context: it can be halted, stepped, and go on, and nobody notices afterwards."""
+"""The clock of a context: it can be halted, set forward and started again, without traces."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from ravestate.testing.virtual_loop import VirtualLoop
 
 
 class Bench:
-    """A clock on a virtual loop, and who sleeps by it."""
+    """A clock on a virtual loop, and its sleepers."""
 
     def __init__(self) -> None:
         self.loop = VirtualLoop()
@@ -49,7 +49,7 @@ def test_it_follows_its_loop_from_zero(bench: Bench) -> None:
     bench.loop.close()
 
 
-def test_who_sleeps_does_not_sleep_the_time_for_which_it_stands(bench: Bench) -> None:
+def test_a_sleep_does_not_count_the_time_in_which_the_clock_is_halted(bench: Bench) -> None:
     bench.sleeper("a", 2.0)
     bench.pass_by(0.5)
     bench.clock.halt()
@@ -63,13 +63,13 @@ def test_who_sleeps_does_not_sleep_the_time_for_which_it_stands(bench: Bench) ->
     bench.loop.close()
 
 
-def test_nobody_sleeps_for_nan_seconds(bench: Bench) -> None:
+def test_sleeping_for_nan_seconds_is_refused(bench: Bench) -> None:
     with pytest.raises(ValueError, match="nan"):
         bench.loop.run_until_complete(bench.clock.sleep(math.nan))
     bench.loop.close()
 
 
-def test_it_is_set_forward_only_while_it_stands_and_never_back(bench: Bench) -> None:
+def test_the_clock_is_set_forward_only_while_it_is_halted_and_never_back(bench: Bench) -> None:
     bench.sleeper("a", 2.0)
     bench.pass_by(0.5)
     bench.clock.set(3.0)
@@ -83,7 +83,7 @@ def test_it_is_set_forward_only_while_it_stands_and_never_back(bench: Bench) -> 
     bench.loop.close()
 
 
-def test_who_is_cancelled_in_his_sleep_is_forgotten(bench: Bench) -> None:
+def test_a_cancelled_sleeper_is_forgotten(bench: Bench) -> None:
     task = bench.sleeper("a", 2.0)
     bench.pass_by(0.5)
     task.cancel()
@@ -97,7 +97,7 @@ def test_who_is_cancelled_in_his_sleep_is_forgotten(bench: Bench) -> None:
 
 
 def story() -> tuple[rs.Module, rs.Signal[None], rs.Slot[str]]:
-    """A question that is thought over for 2 s, and a fallback that waits for it."""
+    """A rule that thinks about a question for 2 s, and a fallback that waits for it."""
     m = rs.Module("m")
     asked, known, said = m.signal("asked"), m.signal("known"), m.slot("said", "", always=True)
 
@@ -117,7 +117,7 @@ def story() -> tuple[rs.Module, rs.Signal[None], rs.Slot[str]]:
     return m, asked, said
 
 
-def test_a_paused_context_takes_what_comes_and_does_nothing_about_it() -> None:
+def test_a_paused_context_takes_events_and_does_nothing_about_them() -> None:
     m, asked, said = story()
     with simulate(m) as sim:
         sim.context.pause()
@@ -151,12 +151,12 @@ def test_steps_lead_from_wave_to_wave_and_over_the_time_between() -> None:
             (2.0, "", ""),
         ]
         assert sim.read(said) == "answer at 2"
-        while sim.context.step():  # what is too old is forgotten
+        while sim.context.step():  # old spikes are forgotten
             sim.settle()
         assert not sim.context.step()
 
 
-def test_what_happens_is_the_same_whether_it_was_paused_or_not() -> None:
+def test_a_pause_changes_nothing_but_the_time() -> None:
     def tell(pauses: bool) -> list[str]:
         m, asked, _ = story()
         with simulate(m) as sim:

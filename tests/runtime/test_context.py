@@ -1,6 +1,7 @@
 """A context's life: begun once, acted on from the loop and from threads, ended in order."""
 
 import asyncio
+import contextlib
 import json
 import logging
 import threading
@@ -10,7 +11,8 @@ from typing import Any
 import pytest
 
 import ravestate as rs
-from ravestate.runtime import runner as runner_file
+from ravestate.runtime import async_rules
+from ravestate.runtime.async_rules import GRACE
 from ravestate.runtime.workers import SHARE
 from ravestate.testing import simulate
 from runtime.on_loop import on_loop, turns
@@ -66,7 +68,7 @@ async def test_a_context_runs_once() -> None:
     ],
 )
 def test_nothing_can_be_done_before_it_begins(act: Callable[[rs.Context], object]) -> None:
-    with pytest.raises(rs.EngineError, match=r"has not begun: write `async with rs\.Context"):
+    with pytest.raises(rs.EngineError, match=r"has not started: write `async with rs\.Context"):
         act(rs.Context(policy))
 
 
@@ -74,12 +76,12 @@ def test_nothing_can_be_done_before_it_begins(act: Callable[[rs.Context], object
 async def test_waiting_before_it_begins_is_refused_too() -> None:
     context = rs.Context(policy)
     for wait in (context.next(number), context.quiet(), context.until_stopped(), context.stop()):
-        with pytest.raises(rs.EngineError, match="has not begun"):
+        with pytest.raises(rs.EngineError, match="has not started"):
             await wait
 
 
 @on_loop
-async def test_after_its_end_it_can_be_looked_at_and_no_more() -> None:
+async def test_after_its_end_a_context_can_be_read_and_no_more() -> None:
     async with rs.Context(policy) as context:
         context.put(heard, "x")
         await context.quiet()
@@ -194,11 +196,10 @@ async def test_several_may_wait_for_the_same() -> None:
         await turns(1)
         context.emit(number, 0)
         assert await asyncio.gather(*waiting) == [0, 0, 0]
-        assert context._runner.futures == {} and context._runner.engine.watched == {}
 
 
 @on_loop
-async def test_next_gives_up_after_its_timeout_and_leaves_nothing_behind() -> None:
+async def test_next_gives_up_after_its_timeout() -> None:
     async with rs.Context(policy) as context:
         with pytest.raises(TimeoutError, match="no demo:number within 0 s"):
             await context.next(number, timeout=0)
@@ -209,11 +210,10 @@ async def test_next_gives_up_after_its_timeout_and_leaves_nothing_behind() -> No
         waiting.cancel()
         await turns()
         assert waiting.cancelled()
-        assert context._runner.futures == {} and context._runner.engine.watched == {}
 
 
 @on_loop
-async def test_who_waits_when_the_context_ends_is_told() -> None:
+async def test_the_end_of_the_context_fails_the_tasks_that_wait() -> None:
     async with rs.Context(policy) as context:
         waiting = asyncio.create_task(context.next(number))
         await turns(1)
@@ -253,7 +253,7 @@ async def test_quiet_waits_for_what_runs_and_ends_with_the_context() -> None:
 
 
 @on_loop
-async def test_who_waits_in_the_background_does_not_hold_up_quiet() -> None:
+async def test_a_background_rule_does_not_hold_up_quiet() -> None:
     m = rs.Module("m")
     go, done = m.signal("go"), m.slot("done", 0)
 
@@ -300,7 +300,9 @@ async def test_a_value_of_the_wrong_type_is_refused_at_once() -> None:
     ],
 )
 @on_loop
-async def test_names_that_the_context_does_not_have(act: Callable[[rs.Context], object], text: str) -> None:
+async def test_names_that_the_context_lacks_are_refused(
+    act: Callable[[rs.Context], object], text: str
+) -> None:
     async with rs.Context(policy) as context:
         with pytest.raises(rs.UndeclaredError) as caught:
             act(context)
@@ -308,7 +310,7 @@ async def test_names_that_the_context_does_not_have(act: Callable[[rs.Context], 
 
 
 @on_loop
-async def test_waiting_for_a_signal_that_is_not_there() -> None:
+async def test_waiting_for_an_unknown_signal_is_refused() -> None:
     async with rs.Context(policy) as context:
         with pytest.raises(rs.UndeclaredError, match="it is a slot"):
             await context.next(heard)
@@ -358,7 +360,7 @@ async def test_the_trace_is_kept_or_told_or_neither() -> None:
             await context.quiet()
             kept = [type(record).__name__ for record in context.trace]
             assert ("Started" in kept) == (trace is True)
-            assert ("ran" in str(context.explain(echo))) == (trace is True)
+            assert ("finished" in str(context.explain(echo))) == (trace is True)
     assert "Started" in [type(record).__name__ for record in told]
 
 
@@ -463,7 +465,7 @@ def test_an_added_rule_follows_the_context_s_settings() -> None:
 
 
 class Ending:
-    """A module whose rules note what becomes of them when the context ends."""
+    """A module whose rules note how they end with the context."""
 
     def __init__(self) -> None:
         self.module = rs.Module("m")
@@ -536,7 +538,7 @@ def test_a_farewell_is_not_cut_off_when_shutdown_interrupts_another() -> None:
     assert ending.told == ["farewell"]
 
 
-def test_a_farewell_is_not_cut_off_when_it_has_waited_longer_than_what_runs() -> None:
+def test_a_farewell_that_has_waited_for_a_long_rule_is_not_cut_off() -> None:
     ending = Ending()
     never = ending.module.signal("never")
 
@@ -555,7 +557,7 @@ def test_a_farewell_is_not_cut_off_when_it_has_waited_longer_than_what_runs() ->
     assert ending.told == ["farewell"]
 
 
-def test_the_end_waits_for_no_loop_in_the_background() -> None:
+def test_the_end_does_not_wait_for_a_background_loop() -> None:
     ending = Ending()
 
     @ending.rule(rs.startup | ending.go, emits=ending.go, detached=True, background=True)
@@ -580,7 +582,7 @@ def test_the_end_waits_for_no_loop_in_the_background() -> None:
     assert ending.told == ["farewell", "1.35 s"]
 
 
-def test_the_end_waits_for_who_waits_for_shutdown_to_grow_old_and_for_what_is_detached_from_it() -> None:
+def test_the_end_waits_for_rules_that_want_an_aged_or_detached_shutdown() -> None:
     ending = Ending()
 
     @ending.rule(rs.shutdown.min_age(0.5), emits=ending.then, detached=True)
@@ -598,7 +600,7 @@ def test_the_end_waits_for_who_waits_for_shutdown_to_grow_old_and_for_what_is_de
 
 
 @on_loop
-async def test_functions_that_hang_do_not_silence_the_others() -> None:
+async def test_hanging_functions_do_not_silence_the_other_rules() -> None:
     ending = Ending()
     release = threading.Event()
 
@@ -620,7 +622,7 @@ async def test_functions_that_hang_do_not_silence_the_others() -> None:
     assert ending.told == ["spoken"]
 
 
-def test_nothing_begins_while_the_last_clean_up(caplog: pytest.LogCaptureFixture) -> None:
+def test_no_rule_starts_while_the_last_ones_clean_up(caplog: pytest.LogCaptureFixture) -> None:
     ending = Ending()
 
     @ending.rule(ending.go, emits=ending.then)
@@ -643,8 +645,7 @@ def test_nothing_begins_while_the_last_clean_up(caplog: pytest.LogCaptureFixture
     assert not caplog.records
 
 
-@on_loop
-async def test_the_others_go_on_when_a_rule_interrupts_the_process() -> None:
+def test_the_others_go_on_when_a_rule_interrupts_the_process() -> None:
     ending = Ending()
 
     @ending.rule(ending.go)
@@ -655,36 +656,34 @@ async def test_the_others_go_on_when_a_rule_interrupts_the_process() -> None:
     async def other(ctx: rs.RuleContext) -> None:
         ending.told.append("other")
 
-    async with rs.Context(ending.module) as context:
-        await context.quiet()
-        runner = context._runner  # pyright: ignore[reportPrivateUsage]
-        assert runner is not None
+    context = rs.Context(ending.module)
+    with contextlib.closing(asyncio.new_event_loop()) as loop:
+        loop.run_until_complete(context.start())
         context.emit(ending.go)
         with pytest.raises(KeyboardInterrupt):
-            runner._pump()  # as the loop does, which ends by it
-        await context.quiet()
+            loop.run_until_complete(context.quiet())
+        loop.run_until_complete(context.quiet())
         assert ending.told == ["other"]
+        loop.run_until_complete(context.stop())
 
 
-@on_loop
-async def test_an_interruption_leaves_no_timer_behind() -> None:
+def test_a_rule_that_ends_when_it_is_interrupted_causes_no_warning_later(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
     ending = Ending()
 
     @ending.rule(ending.go, until=ending.then)
     async def long(ctx: rs.RuleContext) -> None:
         await ctx.sleep(3600)
 
-    async with rs.Context(ending.module) as context:
-        runner = context._runner  # pyright: ignore[reportPrivateUsage]
-        assert runner is not None
-        context.emit(ending.go)
-        await turns(3)
-        context.emit(ending.then)
-        await context.quiet()
-        assert not runner._patience  # pyright: ignore[reportPrivateUsage]
+    with simulate(ending.module) as sim:
+        sim.emit(ending.go)
+        sim.emit(ending.then)
+        sim.advance(2 * GRACE)
+        assert sim.fired == ["m:long"] and not caplog.records
 
 
-def test_shutdown_is_given_so_much_time_and_no_more() -> None:
+def test_shutdown_has_five_seconds_and_no_more() -> None:
     ending = Ending()
 
     @ending.rule(rs.shutdown)
@@ -712,7 +711,7 @@ async def test_a_plain_function_for_shutdown_finishes() -> None:
     assert ending.told == ["farewell"]
 
 
-def test_who_refuses_to_end_is_given_up_and_named(caplog: pytest.LogCaptureFixture) -> None:
+def test_a_rule_that_refuses_to_end_is_abandoned_and_named(caplog: pytest.LogCaptureFixture) -> None:
     ending = Ending()
 
     @ending.rule(ending.go)
@@ -734,7 +733,7 @@ def test_who_refuses_to_end_is_given_up_and_named(caplog: pytest.LogCaptureFixtu
 
 
 @on_loop
-async def test_nobody_who_refuses_keeps_the_process() -> None:
+async def test_a_rule_that_refuses_to_end_does_not_keep_the_process_alive() -> None:
     ending = Ending()
 
     @ending.rule(ending.go)
@@ -746,7 +745,7 @@ async def test_nobody_who_refuses_keeps_the_process() -> None:
                 ending.told.append("no")
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(runner_file, "GRACE", 0.001)
+        patch.setattr(async_rules, "GRACE", 0.001)
         async with rs.Context(ending.module) as context:
             context.emit(ending.go)
             await turns()
@@ -778,7 +777,7 @@ async def test_cancelling_the_end_breaks_off() -> None:
 
 
 @on_loop
-async def test_the_last_acts_are_still_seen() -> None:
+async def test_writes_at_the_end_are_still_recorded() -> None:
     ending = Ending()
     goodbye = ending.module.slot("goodbye", "")
 
@@ -794,7 +793,7 @@ async def test_the_last_acts_are_still_seen() -> None:
 
 @pytest.mark.parametrize("who", ["rule", "plain rule", "outside", "thread"])
 @on_loop
-async def test_everybody_may_ask_to_stop(who: str) -> None:
+async def test_rules_and_threads_may_ask_to_stop(who: str) -> None:
     ending = Ending()
 
     @ending.rule(ending.go)

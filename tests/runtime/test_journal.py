@@ -45,7 +45,7 @@ def remember(ctx: rs.RuleContext) -> None:
 
 
 async def conversation(context: rs.Context) -> None:
-    """Inputs alone and together, waited for and not, and a rule that comes later."""
+    """Put single and several inputs, with and without waiting, and add a rule."""
     context.put(heard, "hello")
     await context.quiet()
     context.put(heard, "why?")

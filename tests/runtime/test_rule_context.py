@@ -1,4 +1,4 @@
-"""What a rule function is given: views, acts, and refusals that say what to write."""
+"""The rule context: reads, acts, and error messages that say what to write."""
 
 import contextlib
 import re
@@ -31,7 +31,7 @@ class Scene:
     def run(
         self, act: Callable[[rs.RuleContext], object], when: rs.Condition | None = None, **options: Any
     ) -> None:
-        """Let a rule do something, once, and keep what it returns or fails with."""
+        """Make a rule that does something once, and keep its result or its error."""
 
         async def doer(ctx: rs.RuleContext) -> None:
             self.found.append(act(ctx))
@@ -66,7 +66,7 @@ def test_slots_that_are_read_or_written_can_be_read(scene: Scene) -> None:
     assert scene.outcome() == ("calm", "")
 
 
-def test_its_own_writes_are_seen_and_those_of_others_are_not(scene: Scene) -> None:
+def test_a_rule_sees_its_own_writes_and_not_those_of_others(scene: Scene) -> None:
     seen: list[str] = []
 
     @scene.module.rule(when=scene.go, reads=scene.mood, writes=scene.note)
@@ -98,7 +98,7 @@ def test_an_undeclared_read_names_the_line_to_add(scene: Scene, slot: str, text:
 
 
 @pytest.mark.parametrize("key", ["mood", None, 3])
-def test_what_is_no_slot_is_told_so(scene: Scene, key: Any) -> None:
+def test_a_value_that_is_no_slot_is_named(scene: Scene, key: Any) -> None:
     scene.run(lambda ctx: ctx[key], reads=scene.mood)
     assert f"read {key!r}, which is no slot: write ctx[slot]" in str(scene.outcome())
 
@@ -111,14 +111,14 @@ def test_a_signal_in_place_of_its_slot(scene: Scene) -> None:
 # ---------------------------------------------------------------------------------------- writing
 
 
-def test_reading_is_no_leave_to_write(scene: Scene) -> None:
+def test_a_slot_declared_to_be_read_cannot_be_written(scene: Scene) -> None:
     scene.run(write(scene.mood, "x"), reads=scene.mood, writes=scene.note)
     text = str(scene.outcome())
     assert "wrote m:mood without declaring it: write writes=(note, mood) in @m.rule(...)" in text
 
 
 @pytest.mark.parametrize("value", [42, None, b"x", ["x"] * 100])
-def test_a_value_of_the_wrong_type_is_told_to_whoever_writes_it(scene: Scene, value: Any) -> None:
+def test_a_value_of_the_wrong_type_is_an_error_of_its_writer(scene: Scene, value: Any) -> None:
     said = scene.module.slot("said", "", type=str)
     scene.run(write(said, value), writes=said)
     text = str(scene.outcome())
@@ -143,7 +143,7 @@ def test_a_slot_of_another_module_is_named_with_it(scene: Scene) -> None:
     assert "write writes=(note, lamp.light) in @m.rule(...)" in str(scene.outcome())
 
 
-def test_a_misspelt_slot_is_met_by_the_nearest(scene: Scene) -> None:
+def test_the_message_about_a_misspelt_slot_names_the_nearest(scene: Scene) -> None:
     other = scene.module.slot("notes", "")
     scene.run(write(other, "x"), writes=scene.note)
     assert str(scene.outcome()).endswith("; did you mean 'm:note'?")
@@ -203,7 +203,7 @@ def test_collections_are_mappings_with_add_and_remove(scene: Scene) -> None:
     ]  # fmt: skip
 
 
-def test_a_view_of_a_collection_does_not_forget_what_another_wrote(scene: Scene) -> None:
+def test_a_view_of_a_collection_keeps_the_writes_of_another_view(scene: Scene) -> None:
     def act(ctx: rs.RuleContext) -> object:
         one, other = ctx[scene.people], ctx[scene.people]
         one.add("a", 1)
@@ -214,7 +214,7 @@ def test_a_view_of_a_collection_does_not_forget_what_another_wrote(scene: Scene)
     assert scene.outcome() == {"a": 1, "b": 2}
 
 
-def test_a_collection_may_be_changed_while_one_goes_through_it(scene: Scene) -> None:
+def test_a_collection_may_be_changed_during_an_iteration(scene: Scene) -> None:
     def act(ctx: rs.RuleContext) -> Any:
         people = ctx[scene.people]
         for key in "abc":
@@ -230,7 +230,7 @@ def test_a_collection_may_be_changed_while_one_goes_through_it(scene: Scene) -> 
     assert scene.outcome() == (["A", "B", "C"], ["a", "b", "aa", "bb", "cc"], ["A", "B", "A", "B", "C"], 5)
 
 
-def test_who_has_read_a_collection_does_not_see_what_is_changed_later(scene: Scene) -> None:
+def test_a_rule_does_not_see_later_changes_of_a_collection_by_others(scene: Scene) -> None:
     seen: list[Any] = []
 
     @scene.module.rule(when=scene.people.added, reads=scene.people)
@@ -292,7 +292,7 @@ def test_a_collection_is_not_written_like_a_value(scene: Scene, value: object) -
 
 
 @pytest.mark.parametrize("payload", [7, 0, "", None, False])
-def test_payloads_come_through_also_falsy_ones(scene: Scene, payload: Any) -> None:
+def test_falsy_payloads_come_through_as_they_are(scene: Scene, payload: Any) -> None:
     scene.run(lambda ctx: ctx.payload(scene.go))
     assert scene.outcome(payload) is payload or scene.outcome(payload) == payload
 
@@ -374,7 +374,7 @@ def test_wiping_withdraws_and_unknown_signals_are_refused(scene: Scene) -> None:
 # ---------------------------------------------------------------------------------------- the rest of what it offers
 
 
-def test_what_else_a_rule_is_given(scene: Scene) -> None:
+def test_a_rule_context_has_settings_log_time_and_random_numbers(scene: Scene) -> None:
     @scene.module.rule(when=scene.go)
     async def look(ctx: rs.RuleContext) -> None:
         scene.found.append((ctx.now, ctx.settings.word, ctx.log.name, ctx.rule.name))
@@ -437,7 +437,7 @@ def test_a_rule_may_write_while_it_cleans_up(scene: Scene) -> None:
         try:
             await ctx.sleep(60)
         finally:
-            ctx[scene.note] = ctx.told
+            ctx[scene.note] = ctx.cancelled
 
     with simulate(scene.module) as sim:
         sim.emit(scene.go)
@@ -446,7 +446,7 @@ def test_a_rule_may_write_while_it_cleans_up(scene: Scene) -> None:
 
 
 @pytest.mark.parametrize("act", ["write", "emit", "wipe", "add"])
-def test_a_context_that_is_kept_does_nothing_after_the_run(scene: Scene, act: str) -> None:
+def test_a_rule_context_does_nothing_after_its_run(scene: Scene, act: str) -> None:
     kept: list[rs.RuleContext] = []
     scene.run(kept.append, writes=(scene.note, scene.people), emits=scene.out)
     with simulate(scene.module) as sim:

@@ -1,12 +1,14 @@
-"""Running until told to end: by a rule, by one Ctrl-C in order, by a second at once."""
+"""Running until a rule or Ctrl-C ends the agent in order, or a second Ctrl-C at once."""
 
 import asyncio
+import gc
 import os
 import signal
 import subprocess
 import sys
 import textwrap
 import threading
+import warnings
 from pathlib import Path
 
 import pytest
@@ -14,7 +16,8 @@ import pytest
 import ravestate as rs
 from ravestate.modules import rawio
 from ravestate.runtime.agent import Agent
-from ravestate.runtime.run import run_context
+from ravestate.runtime.run import run_context, run_servers
+from runtime.on_loop import on_loop, turns
 
 LIMIT = 20
 
@@ -55,7 +58,7 @@ def test_options_are_those_of_a_context() -> None:
     assert told[:2] == told[2:] and told[0] == "b"
 
 
-def test_a_platform_that_serves_many_users_is_given_the_agent_and_makes_the_contexts() -> None:
+def test_a_platform_with_many_users_gets_the_agent_and_makes_the_contexts() -> None:
     told: list[object] = []
 
     async def serve(agent: Agent) -> None:
@@ -112,7 +115,7 @@ def test_an_interrupt_ends_a_server_in_order() -> None:
     assert ends == ["stay"]
 
 
-def test_a_rule_may_say_that_it_cannot_go_on() -> None:
+def test_a_rule_may_end_the_agent_with_a_failure() -> None:
     m = rs.Module("m")
     told: list[str] = []
 
@@ -140,13 +143,13 @@ def leaver(*requires: rs.Module) -> rs.Module:
     return m
 
 
-def test_an_agent_that_nobody_can_talk_to_says_so(caplog: pytest.LogCaptureFixture) -> None:
+def test_a_warning_says_that_no_user_can_talk_to_the_agent(caplog: pytest.LogCaptureFixture) -> None:
     rs.run(leaver(rawio.module))
     (record,) = caplog.records
     assert "no rule writes rawio:input; name a platform too, e.g. conio" in record.getMessage()
 
 
-def test_an_agent_with_a_platform_or_without_talk_says_nothing(caplog: pytest.LogCaptureFixture) -> None:
+def test_an_agent_with_a_platform_or_without_talk_causes_no_warning(caplog: pytest.LogCaptureFixture) -> None:
     rs.run(leaver())
     platform = leaver(rawio.module)
 
@@ -194,12 +197,52 @@ def test_signal_handlers_are_there_while_it_runs_and_gone_after_it(number: signa
     assert signal.getsignal(number) is before
 
 
+@on_loop
+async def test_a_cancellation_from_outside_is_not_swallowed() -> None:
+    ends: list[str] = []
+    m = rs.Module("m")
+
+    @m.rule(when=rs.shutdown)
+    async def end(ctx: rs.RuleContext) -> None:
+        ends.append("farewell")
+
+    running = asyncio.create_task(run_context(rs.Context(m)))
+    await turns()
+    running.cancel()
+    with pytest.raises(asyncio.CancelledError):
+        await running
+    assert running.cancelled() and ends == ["farewell"]
+
+
+@on_loop
+async def test_a_timeout_around_a_context_or_a_server_is_a_timeout() -> None:
+    ends: list[str] = []
+
+    async def stay(_: Agent) -> None:
+        try:
+            await asyncio.get_running_loop().create_future()
+        finally:
+            ends.append("stay")
+
+    for running in (run_context(rs.Context(rs.Module("m"))), run_servers(Agent(rs.Module("m")), [stay])):
+        with pytest.raises(TimeoutError):
+            async with asyncio.timeout(0.001):
+                await running
+    assert ends == ["stay"]
+
+
+@on_loop
+async def test_run_in_a_running_loop_is_refused_and_leaves_no_coroutine() -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        with pytest.raises(rs.EngineError, match=r"rs.run starts an event loop.*async with rs.Context"):
+            rs.run(rs.Module("m"))
+        gc.collect()  # a coroutine that nobody awaits complains when it is deleted
+
+
 AGENT = """
     import asyncio, sys
     import ravestate as rs
-    from ravestate.runtime import runner
-
-    runner.BLOCKING = float("inf")  # how loaded the machine is does not matter here
     m = rs.Module("m")
 
     def tell(text):

@@ -1,4 +1,4 @@
-"""The runner: what rules do well or badly, on a real loop; the conversation goes on."""
+"""The runner on a real loop: rules fail, hang or block, and the conversation goes on."""
 
 import asyncio
 import functools
@@ -12,8 +12,8 @@ import pytest
 import ravestate as rs
 from ravestate.engine.engine import Engine
 from ravestate.engine.trace import Settled
-from ravestate.runtime import nest as nest_file
 from ravestate.runtime import runner as runner_file
+from ravestate.runtime.async_rules import GRACE
 from ravestate.testing import simulate
 from runtime.on_loop import on_loop, turns
 
@@ -22,7 +22,7 @@ LIMIT = 20.0
 
 
 class Talk:
-    """A module in which a rule under test stands before one that answers in its place."""
+    """A module in which a fallback answers if the rule under test does not."""
 
     def __init__(self) -> None:
         self.module = rs.Module("m")
@@ -74,7 +74,7 @@ class Strange(BaseException):
 
 
 def raising(error: BaseException, where: str) -> Any:
-    """A rule function that raises: at once, after it has waited, or in a thread."""
+    """Return a rule function that raises at once, after waiting, or in a thread."""
 
     async def at_once(ctx: rs.RuleContext) -> None:
         raise error
@@ -114,7 +114,7 @@ async def test_a_rule_that_raises_is_logged_once_and_the_next_best_answers(
             assert await talk.ask(context) == "fallback"  # and the conversation goes on
 
 
-def test_the_trace_tells_where_in_its_file_a_rule_failed() -> None:
+def test_the_trace_has_the_line_in_which_a_rule_failed() -> None:
     module = rs.Module("m")
     go, slow = module.signal("go"), module.signal("slow")
 
@@ -127,7 +127,7 @@ def test_the_trace_tells_where_in_its_file_a_rule_failed() -> None:
 
     @module.rule(when=slow)
     def parse(ctx: rs.RuleContext) -> None:
-        int("twelve")  # raised by code that is nobody's file
+        int("twelve")  # raised by built-in code, which has no file
 
     with simulate(module) as sim:
         sim.emit(go)
@@ -140,7 +140,7 @@ def test_the_trace_tells_where_in_its_file_a_rule_failed() -> None:
 
 
 @on_loop
-async def test_when_the_world_fails_the_message_says_all() -> None:
+async def test_a_platform_error_is_logged_without_a_traceback() -> None:
     talk = Talk()
     talk.rule(raising(rs.PlatformError("no microphone: plug one in"), "at once"), name="hears")
     with Records() as log:
@@ -152,7 +152,7 @@ async def test_when_the_world_fails_the_message_says_all() -> None:
 
 
 class Records(logging.Handler):
-    """What is logged for ravestate while it is entered."""
+    """The records that ravestate logs while this is entered."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -207,7 +207,7 @@ def test_a_keyboard_interrupt_ends_what_runs() -> None:
 
 @pytest.mark.parametrize("nonsense", ["an answer", 0, False, (), rs.Module("x")])
 @on_loop
-async def test_a_rule_that_returns_nonsense_is_told_to_write(nonsense: object) -> None:
+async def test_the_message_about_a_returned_value_says_what_to_write(nonsense: object) -> None:
     talk = Talk()
 
     async def answers(ctx: rs.RuleContext) -> object:
@@ -225,7 +225,7 @@ async def test_a_rule_that_returns_nonsense_is_told_to_write(nonsense: object) -
 
 
 @on_loop
-async def test_huge_nonsense_is_shortened() -> None:
+async def test_the_message_about_a_huge_returned_value_is_short() -> None:
     talk = Talk()
 
     async def answers(ctx: rs.RuleContext) -> str:
@@ -238,7 +238,7 @@ async def test_huge_nonsense_is_shortened() -> None:
 
 
 @on_loop
-async def test_a_plain_wrapper_of_an_async_rule_is_told_so() -> None:
+async def test_the_message_about_a_plain_wrapper_of_an_async_rule_says_what_to_write() -> None:
     talk = Talk()
 
     async def answer(ctx: rs.RuleContext) -> None:
@@ -268,7 +268,7 @@ async def test_a_rule_that_takes_too_many_arguments_fails_like_any_other() -> No
 
 
 @on_loop
-async def test_who_fails_after_writing_is_not_followed_by_another() -> None:
+async def test_after_a_rule_that_fails_after_writing_no_other_rule_answers() -> None:
     talk = Talk()
 
     async def halfway(ctx: rs.RuleContext) -> None:
@@ -333,7 +333,7 @@ UNDECLARED = {
 @pytest.mark.parametrize("did", list(UNDECLARED))
 @pytest.mark.parametrize("thread", [False, True])
 @on_loop
-async def test_what_is_not_declared_is_refused_with_the_line_to_add(did: str, thread: bool) -> None:
+async def test_the_message_about_an_undeclared_act_has_the_line_to_add(did: str, thread: bool) -> None:
     talk = Talk()
     act, text = UNDECLARED[did]
 
@@ -356,7 +356,7 @@ async def test_what_is_not_declared_is_refused_with_the_line_to_add(did: str, th
 # ---------------------------------------------------------------------------------------- cancelled rules
 
 
-def test_what_a_cancelled_rule_writes_at_once_comes_before_what_cancelled_it() -> None:
+def test_the_last_writes_of_a_cancelled_rule_come_before_those_of_its_successor() -> None:
     m = rs.Module("m")
     go, face = m.signal("go"), m.slot("face", "calm")
     faces: list[str] = []
@@ -365,9 +365,7 @@ def test_what_a_cancelled_rule_writes_at_once_comes_before_what_cancelled_it() -
     async def smile(ctx: rs.RuleContext) -> None:
         ctx[face] = "happy"
         try:
-            await asyncio.wait_for(
-                ctx.sleep(3.0), 60.0
-            )  # in which a cancellation takes some turns of the loop
+            await asyncio.wait_for(ctx.sleep(3.0), 60.0)  # here a cancellation takes some turns of the loop
         finally:
             ctx[face] = "calm"
 
@@ -386,7 +384,7 @@ def test_what_a_cancelled_rule_writes_at_once_comes_before_what_cancelled_it() -
         assert faces == ["happy", "calm", "happy", "calm"]
 
 
-def test_a_cancelled_rule_that_waits_holds_nobody_up() -> None:
+def test_a_cancelled_rule_that_waits_delays_no_other_rule() -> None:
     m = rs.Module("m")
     go, stop, note = m.signal("go"), m.signal("stop"), m.slot("note", "")
 
@@ -467,23 +465,86 @@ async def test_a_plain_function_may_resign(how: str) -> None:
         assert talk.failures == []
 
 
+class Greeter:
+    async def __call__(self, ctx: rs.RuleContext) -> None:
+        await self.greet(ctx)
+
+    async def greet(self, ctx: rs.RuleContext) -> None:
+        await asyncio.sleep(0)
+        ctx[ctx.rule.writes[0]] = threading.current_thread().name
+
+
+class Heir(Greeter):
+    """A class that inherits its call."""
+
+
+class Caller:
+    def __call__(self, ctx: rs.RuleContext) -> None:
+        ctx[ctx.rule.writes[0]] = threading.current_thread().name
+
+
+async def with_more(word: str, ctx: rs.RuleContext) -> None:
+    await Greeter().greet(ctx)
+
+
+def plain_with_more(word: str, ctx: rs.RuleContext) -> None:
+    Caller()(ctx)
+
+
+@pytest.mark.parametrize(
+    "function",
+    [
+        functools.partial(with_more, "word"),
+        functools.partial(functools.partial(with_more), "word"),
+        functools.partial(Greeter()),
+        Greeter(),
+        Heir(),
+        Greeter().greet,
+    ],
+)
 @on_loop
-async def test_partials_and_objects_may_be_rules() -> None:
+async def test_a_partial_an_object_or_a_method_may_be_an_async_rule(function: Any) -> None:
     talk = Talk()
-
-    class Greeter:
-        async def __call__(self, ctx: rs.RuleContext) -> None:
-            ctx[talk.said] = "object"
-
-    async def with_more(word: str, ctx: rs.RuleContext) -> None:
-        ctx[talk.note] = word
-
-    talk.rule(Greeter(), name="greeter")
-    talk.rule(functools.partial(with_more, "partial"), name="partial", writes=talk.note)
+    rule = talk.rule(function, name="greets")
+    assert rule.is_async
     async with rs.Context(talk.module) as context:
-        assert await talk.ask(context) == "object"
-        assert context.read(talk.note) == "partial"
+        assert await talk.ask(context) == threading.main_thread().name
         assert talk.failures == []
+
+
+@pytest.mark.parametrize(
+    "function", [functools.partial(plain_with_more, "word"), Caller(), Caller().__call__]
+)
+@on_loop
+async def test_a_partial_an_object_or_a_method_may_be_a_plain_rule(function: Any) -> None:
+    talk = Talk()
+    rule = talk.rule(function, name="calls")
+    assert not rule.is_async
+    async with rs.Context(talk.module) as context:
+        assert (await talk.ask(context)).startswith("ravestate-")
+        assert talk.failures == []
+
+
+@on_loop
+async def test_wiping_the_signal_of_a_plain_partial_does_not_end_it() -> None:
+    """A thread cannot be stopped, so the run goes on: the declaration says that the rule is a plain one."""
+    talk = Talk()
+    begun, release = threading.Event(), threading.Event()
+
+    def slow(word: str, ctx: rs.RuleContext) -> None:
+        begun.set()
+        release.wait(LIMIT)
+        ctx[talk.said] = word
+
+    talk.rule(functools.partial(slow, "done"), name="slow")
+    async with rs.Context(talk.module) as context:
+        answer = asyncio.create_task(context.next(talk.said.changed))
+        context.put(talk.heard, "hello")
+        await asyncio.to_thread(begun.wait)
+        context.wipe(talk.heard.changed)
+        await turns()
+        release.set()
+        assert await answer == "done"
 
 
 @on_loop
@@ -518,7 +579,7 @@ async def test_a_plain_function_that_hangs_is_abandoned_and_may_not_act_later() 
 
 
 @on_loop
-async def test_a_plain_function_is_let_go_when_it_is_interrupted() -> None:
+async def test_an_interrupted_plain_function_is_abandoned() -> None:
     talk = Talk()
     release, begun = threading.Event(), asyncio.Event()
     loop = asyncio.get_running_loop()
@@ -561,7 +622,7 @@ async def test_the_end_does_not_wait_for_a_plain_function_that_hangs() -> None:
 
 
 @on_loop
-async def test_what_a_thread_asks_wrongly_is_logged_not_lost() -> None:
+async def test_a_refused_act_of_a_thread_is_logged() -> None:
     talk = Talk()
     foreign = rs.Module("far").signal("far")
 
@@ -621,7 +682,7 @@ def test_a_rule_that_refuses_to_end_is_given_up() -> None:
     with Records() as log, simulate(talk.module) as sim:
         sim.put(talk.heard, "hello")
         sim.emit(talk.stop)
-        sim.advance(runner_file.GRACE - 0.1)
+        sim.advance(GRACE - 0.1)
         assert log.messages == []
         sim.advance(0.2)
         assert re.match(
@@ -633,41 +694,12 @@ def test_a_rule_that_refuses_to_end_is_given_up() -> None:
         assert told == ["rule m:stubborn acted after its run was over (it did not end in time)"]
 
 
-@pytest.mark.parametrize("waits", [False, True])
-@on_loop
-async def test_a_rule_that_blocks_the_loop_is_named(waits: bool) -> None:
-    talk = Talk()
-    clock = [0.0]
-
-    async def heavy(ctx: rs.RuleContext) -> None:
-        if waits:
-            await asyncio.sleep(0)
-        clock[0] += 0.25
-        ctx[talk.said] = "heavy"
-
-    async def light(ctx: rs.RuleContext) -> None:
-        clock[0] += 0.05
-
-    talk.rule(heavy)
-    talk.rule(light, writes=talk.note)
-    with pytest.MonkeyPatch.context() as patch, Records() as log:
-        patch.setattr(runner_file, "BLOCKING", 0.1)
-        patch.setattr(runner_file, "perf_counter", lambda: clock[0])
-        patch.setattr(nest_file, "perf_counter", lambda: clock[0])
-        async with rs.Context(talk.module) as context:
-            assert await talk.ask(context) == "heavy"
-    (text,) = log.messages
-    assert re.match(
-        rf"rule m:heavy \({HERE}:\d+\) blocked the loop for 250 ms: make it a plain function", text
-    )
-
-
 # ---------------------------------------------------------------------------------------- much, large
 
 
 @pytest.mark.parametrize("thread", [False, True])
 @on_loop
-async def test_a_payload_of_ten_megabytes_is_handed_over_as_it_is(thread: bool) -> None:
+async def test_a_payload_of_ten_megabytes_is_not_copied(thread: bool) -> None:
     talk = Talk()
     huge = "x" * 10_000_000
     seen: list[object] = []
@@ -691,8 +723,8 @@ async def test_a_payload_of_ten_megabytes_is_handed_over_as_it_is(thread: bool) 
 
 
 @on_loop
-async def test_a_loop_of_rules_lets_the_loop_turn() -> None:
-    """A detached rule that causes itself for ever starves neither timers nor input."""
+async def test_a_rule_that_causes_itself_leaves_the_event_loop_its_turns() -> None:
+    """A detached rule that causes itself for ever delays neither timers nor input."""
     m = rs.Module("m")
     tick, enough = m.signal("tick", keep="latest"), m.signal("enough")
     count = [0]
@@ -714,8 +746,80 @@ async def test_a_loop_of_rules_lets_the_loop_turn() -> None:
         await context.until_stopped()
 
 
+@pytest.mark.parametrize("thread", [False, True])
 @on_loop
-async def test_a_fault_of_the_engine_ends_the_context_and_is_told(
+async def test_two_detached_rules_that_raise_each_other_silence_neither_input_nor_timers(
+    thread: bool,
+) -> None:
+    m = rs.Module("m")
+    ping, pong, ask = m.signal("ping"), m.signal("pong"), m.signal("ask", payload=int)
+    answer, later = m.slot("answer", 0), m.signal("later")
+    count, spinning = [0], asyncio.Event()
+
+    @m.rule(when=ping, emits=pong, detached=True)
+    async def hit(ctx: rs.RuleContext) -> None:
+        count[0] += 1
+        if count[0] == 1500:
+            spinning.set()
+        ctx.emit(pong)
+
+    @m.rule(when=pong, emits=ping, detached=True)
+    async def hit_back(ctx: rs.RuleContext) -> None:
+        ctx.emit(ping)
+
+    @m.rule(when=ask, writes=answer)
+    async def reply(ctx: rs.RuleContext) -> None:
+        ctx[answer] = ctx.payload(ask)
+
+    @m.rule(when=ask.min_age(0.01).detached(), emits=later)
+    async def reply_later(ctx: rs.RuleContext) -> None:
+        ctx.emit(later)
+
+    with Records() as log:
+        async with rs.Context(m) as context:
+            context.emit(ping)
+            await spinning.wait()
+            for number in range(1, 4):
+                answers = asyncio.create_task(context.next(answer.changed))
+                timers = asyncio.create_task(context.next(later))
+                await turns(1)
+                if thread:
+                    await asyncio.to_thread(context.emit, ask, number)
+                else:
+                    context.emit(ask, number)
+                assert await answers == number
+                await timers
+            await context.stop(grace=0)
+    assert [
+        message for message in log.messages if "a loop without an end: m:hit, m:hit_back" in message
+    ] == log.messages
+    assert len(log.messages) == 1
+
+
+@on_loop
+async def test_slow_rules_in_a_loop_leave_the_loop_its_turns() -> None:
+    """The event loop gets a turn after some time, even if the rules ran few times."""
+    m = rs.Module("m")
+    tick, count = m.signal("tick", keep="latest"), [0]
+
+    @m.rule(when=tick, emits=tick, detached=True)
+    async def slow(ctx: rs.RuleContext) -> None:
+        count[0] += 1
+        clock[0] += 0.01
+        ctx.emit(tick)
+
+    clock = [0.0]
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(runner_file, "perf_counter", lambda: clock[0])
+        async with rs.Context(m) as context:
+            context.emit(tick)
+            await turns(2)
+            assert 0 < count[0] <= 6
+            await context.stop(grace=0)
+
+
+@on_loop
+async def test_a_fault_of_the_engine_ends_the_context_with_an_error(
     talk: Talk, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     async with rs.Context(talk.module) as context:

@@ -1,4 +1,4 @@
-"""Worker threads: as many as are busy at once, kept, never waited for at the end."""
+"""Worker threads: started on demand, kept for a while, and no obstacle to the end of the process."""
 
 import functools
 import subprocess
@@ -10,20 +10,20 @@ from unittest.mock import Mock
 
 import pytest
 
-from ravestate.runtime.workers import SHARE, Crew, Workers
+from ravestate.runtime.workers import SHARE, JobQueue, ThreadPool
 
 LIMIT = 20.0
 
 
-def finished(workers: Workers, job: Callable[[], None] = lambda: None) -> threading.Thread:
-    """Have a job done and return the thread that did it."""
+def finished(jobs: JobQueue, job: Callable[[], None] = lambda: None) -> threading.Thread:
+    """Do a job, and return the thread that did it."""
     done: SimpleQueue[threading.Thread] = SimpleQueue()
 
     def work() -> None:
         job()
         done.put(threading.current_thread())
 
-    workers.submit(work)
+    jobs.submit(work)
     return done.get(timeout=LIMIT)
 
 
@@ -32,18 +32,18 @@ def ended(thread: threading.Thread) -> bool:
     return not thread.is_alive()
 
 
-def test_jobs_run_in_daemon_threads_that_say_whose_they_are() -> None:
-    workers = Workers(Crew())
-    thread = finished(workers)
+def test_jobs_run_in_daemon_threads_with_a_name() -> None:
+    jobs = JobQueue(ThreadPool())
+    thread = finished(jobs)
     assert thread is not threading.current_thread()
     assert thread.daemon and thread.name == "ravestate-1"
-    workers.close()
+    jobs.close()
     assert ended(thread)
 
 
-def test_busy_threads_are_joined_by_new_ones() -> None:
-    workers = Workers(Crew())
-    together = threading.Barrier(4)  # which nobody passes alone
+def test_the_pool_starts_a_thread_when_all_are_busy() -> None:
+    jobs = JobQueue(ThreadPool())
+    together = threading.Barrier(4)  # no thread passes it alone
     done: SimpleQueue[str] = SimpleQueue()
 
     def meet() -> None:
@@ -51,14 +51,14 @@ def test_busy_threads_are_joined_by_new_ones() -> None:
         done.put(threading.current_thread().name)
 
     for _ in range(3):
-        workers.submit(meet)
+        jobs.submit(meet)
     together.wait(LIMIT)
     assert {done.get(timeout=LIMIT) for _ in range(3)} == {"ravestate-1", "ravestate-2", "ravestate-3"}
-    workers.close()
+    jobs.close()
 
 
-def test_a_thread_that_hangs_holds_up_nobody() -> None:
-    workers = Workers(Crew())
+def test_a_hanging_thread_delays_no_other_job() -> None:
+    jobs = JobQueue(ThreadPool())
     release = threading.Event()
     begun = threading.Event()
 
@@ -66,20 +66,20 @@ def test_a_thread_that_hangs_holds_up_nobody() -> None:
         begun.set()
         release.wait(LIMIT)
 
-    workers.submit(hang)
+    jobs.submit(hang)
     assert begun.wait(LIMIT)
-    thread = finished(workers)
+    thread = finished(jobs)
     assert thread.name == "ravestate-2"
-    workers.close()
+    jobs.close()
     assert ended(thread)
     release.set()
 
 
 def test_an_idle_thread_is_used_again_also_by_another_context() -> None:
-    crew = Crew()
-    several = [Workers(crew), Workers(crew)]
+    pool = ThreadPool()
+    several = [JobQueue(pool), JobQueue(pool)]
     seen = {finished(several[number % 2]) for number in range(200)}
-    assert len(seen) <= 2  # a thread may be met in the instant between its work and its rest
+    assert len(seen) <= 2  # one thread may not be idle yet when the next job comes
     several[0].close()
     seen.add(finished(several[1]))
     several[1].close()
@@ -87,8 +87,8 @@ def test_an_idle_thread_is_used_again_also_by_another_context() -> None:
 
 
 def test_no_context_takes_more_than_its_share() -> None:
-    crew = Crew()
-    greedy, modest = Workers(crew), Workers(crew)
+    pool = ThreadPool()
+    greedy, modest = JobQueue(pool), JobQueue(pool)
     release = threading.Event()
     begun: SimpleQueue[threading.Thread] = SimpleQueue()
 
@@ -108,8 +108,8 @@ def test_no_context_takes_more_than_its_share() -> None:
     modest.close()
 
 
-def test_what_hangs_and_is_waited_for_no_more_leaves_its_place_to_others() -> None:
-    workers = Workers(Crew())
+def test_an_abandoned_job_leaves_its_place_to_the_next() -> None:
+    jobs = JobQueue(ThreadPool())
     release = threading.Event()
     done: SimpleQueue[str] = SimpleQueue()
 
@@ -117,35 +117,35 @@ def test_what_hangs_and_is_waited_for_no_more_leaves_its_place_to_others() -> No
         release.wait(LIMIT)
         done.put("hung")
 
-    hanging = [workers.submit(hang) for _ in range(SHARE + 2)]
-    workers.submit(lambda: done.put("late"))
-    workers.let_go(hanging[-1])  # which has not begun
-    workers.let_go(hanging[0])  # whose place the next one takes
-    workers.let_go(hanging[1])
+    hanging = [jobs.submit(hang) for _ in range(SHARE + 2)]
+    jobs.submit(lambda: done.put("late"))
+    jobs.abandon(hanging[-1])  # which has not begun
+    jobs.abandon(hanging[0])  # whose place the next one takes
+    jobs.abandon(hanging[1])
     assert done.get(timeout=LIMIT) == "late"
-    finished(workers)
+    finished(jobs)
     release.set()
     assert [done.get(timeout=LIMIT) for _ in range(SHARE + 1)] == ["hung"] * (SHARE + 1)
     for _ in range(3 * SHARE):
-        finished(workers)  # the share is as large as before
-    workers.close()
+        finished(jobs)  # the share is as large as before
+    jobs.close()
 
 
 def test_a_forked_process_has_threads_of_its_own() -> None:
     program = """
 import os, threading
 from queue import SimpleQueue
-from ravestate.runtime.workers import Workers
+from ravestate.runtime.workers import JobQueue
 
-def do(workers):
+def do(jobs):
     done = SimpleQueue()
-    workers.submit(lambda: done.put(1))
+    jobs.submit(lambda: done.put(1))
     return done.get(timeout=20)
 
-do(Workers())
+do(JobQueue())
 child = os.fork()
 if child == 0:
-    os._exit(7 * do(Workers()))
+    os._exit(7 * do(JobQueue()))
 print(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]))
 """
     process = subprocess.run(
@@ -154,8 +154,8 @@ print(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]))
     assert process.stdout == "7\n"
 
 
-def test_what_has_not_begun_when_a_context_ends_is_not_done() -> None:
-    workers = Workers(Crew())
+def test_jobs_that_have_not_begun_are_dropped_when_their_context_ends() -> None:
+    jobs = JobQueue(ThreadPool())
     release = threading.Event()
     done: SimpleQueue[int] = SimpleQueue()
 
@@ -164,35 +164,35 @@ def test_what_has_not_begun_when_a_context_ends_is_not_done() -> None:
         done.put(number)
 
     for number in range(SHARE + 10):
-        workers.submit(functools.partial(work, number))
-    workers.close()
+        jobs.submit(functools.partial(work, number))
+    jobs.close()
     release.set()
     assert sorted(done.get(timeout=LIMIT) for _ in range(SHARE)) == list(range(SHARE))
     assert done.empty()
 
 
-def test_a_system_without_threads_is_told_of_and_what_can_wait_waits(monkeypatch: pytest.MonkeyPatch) -> None:
-    workers = Workers(Crew())
+def test_without_a_new_thread_a_job_waits_for_an_old_one_or_fails(monkeypatch: pytest.MonkeyPatch) -> None:
+    jobs = JobQueue(ThreadPool())
     with monkeypatch.context() as patch:
         patch.setattr(threading.Thread, "start", Mock(side_effect=RuntimeError("can't start new thread")))
         with pytest.raises(RuntimeError, match="can't start"):
-            workers.submit(lambda: None)
+            jobs.submit(lambda: None)
     release = threading.Event()
 
     def hold() -> None:
         release.wait(LIMIT)
 
-    workers.submit(hold)
+    jobs.submit(hold)
     done: SimpleQueue[str] = SimpleQueue()
     with monkeypatch.context() as patch:
         patch.setattr(threading.Thread, "start", Mock(side_effect=RuntimeError("can't start new thread")))
-        workers.submit(lambda: done.put("late"))
+        jobs.submit(lambda: done.put("late"))
     release.set()
     assert done.get(timeout=LIMIT) == "late"
-    workers.close()
+    jobs.close()
 
 
-def test_the_end_of_the_process_waits_for_a_function_at_work_but_not_for_one_that_hangs() -> None:
+def test_the_end_of_the_process_waits_a_while_for_functions_at_work() -> None:
     program = """
 import threading
 from ravestate.runtime import workers
@@ -205,7 +205,7 @@ def work():
     threading.Event().wait({seconds})
     print("done", flush=True)
 
-workers.Workers().submit(work)
+workers.JobQueue().submit(work)
 at_work.wait()
 """
     for seconds, expected in ((0.2, "done\n"), (3600, "")):

@@ -1,4 +1,4 @@
-"""The ten behaviours that a reader should be able to check, each told once; who plays them is given.
+"""The ten behaviours that a reader should be able to check, once each, for any player.
 
 `play` begins a story: `Driver` plays on the bare engine, `simulate` on the runtime.
 """
@@ -22,7 +22,7 @@ Play = Callable[..., Any]
 
 
 def talker(m: rs.Module, name: str, when: rs.Condition, *, hears: bool = True, **options: Any) -> None:
-    """A rule that says its own name, and, if it hears the user, to what."""
+    """Declare a rule that says its own name and, if it hears the user, the input."""
 
     @m.rule(when=when, writes=rawio.output, name=name, **options)
     async def talk(ctx: Any) -> None:
@@ -32,7 +32,7 @@ def talker(m: rs.Module, name: str, when: rs.Condition, *, hears: bool = True, *
 def classifier(
     m: rs.Module, signal: rs.Signal[str], word: str, *, takes: Callable[[str], float] = lambda text: 0.0
 ) -> None:
-    """A rule that raises a signal for an utterance in which a word occurs, after some seconds."""
+    """Declare a rule that, after some seconds, raises a signal for an utterance with a certain word."""
 
     @m.rule(when=rawio.input.changed, emits=signal, name=f"Find{signal.name.split(':')[1].title()}")
     async def classify(ctx: Any) -> None:
@@ -54,7 +54,7 @@ def dialogue(takes: float = 0.0) -> tuple[rs.Module, rs.Signal[str]]:
 
 
 def runs_of(sim: Any, rule: str) -> list[float]:
-    """When (seconds) a rule began to run."""
+    """Return when a rule began to run (seconds)."""
     return [round(r.time, 6) for r in sim.trace if isinstance(r, Started) and r.rule == f"m:{rule}"]
 
 
@@ -181,7 +181,7 @@ def prompt_loop(play: Play) -> None:
         sim.say("Well...")
         sim.advance(100.0)
         assert sim.said == ["Prompt"] + ["PromptAgain"] * 4 + ["Answered: Well..."]
-    for moment in (9.0, 10.5):  # the second: when the next prompt is due, and has patience
+    for moment in (9.0, 10.5):  # the second: the next prompt is due, and has patience
         with play(m) as sim:
             sim.advance(moment)
             sim.say("Fine.")
@@ -213,7 +213,7 @@ def two_inputs_at_once(play: Play) -> None:
 
 
 def answers(texts: tuple[str, ...]) -> list[str]:
-    """What is answered, in order: questions by `Qa`, others by `Wildtalk`."""
+    """Return the answers, in order: to questions by `Qa`, to others by `Wildtalk`."""
     return [f"{'Qa' if text.endswith('?') else 'Wildtalk'}: {text}" for text in texts]
 
 
@@ -252,7 +252,7 @@ def burst(play: Play) -> None:
 
 
 def live_objects() -> int:
-    """How many spikes, activations and groups there are."""
+    """Count the live spikes, activations and groups."""
     gc.collect()
     return sum(
         type(one) in (Spike, Activation, Group) for one in gc.get_objects()

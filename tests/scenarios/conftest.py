@@ -1,4 +1,4 @@
-"""Assertions in the shared stories tell what they compared."""
+"""Rewrite the assertions of the shared stories, so that they show the compared values."""
 
 import pytest
 

@@ -1,8 +1,7 @@
-"""A small synchronous shell around a bare engine: it performs what the engine asks for, in virtual time.
+"""A small synchronous shell around a bare engine: it performs the effects, in virtual time.
 
-It has no loop and no thread: the coroutine of an ``async`` rule is stepped by hand, and whoever sleeps is
-woken when virtual time gets there. Its face is that of `ravestate.testing.Simulation`, so that one story can
-be told to both.
+It has no loop and no thread: it steps the coroutine of an ``async`` rule by hand, and wakes a sleeping rule when
+virtual time gets there. Its interface is that of `ravestate.testing.Simulation`, so both can play one story.
 """
 
 from __future__ import annotations
@@ -32,12 +31,12 @@ class Driver:
     Attributes:
         engine: The bare engine.
         now: Virtual time (seconds).
-        log: All that was done to the engine, in order: the verb, the event if there was one, and the time.
-        effects: All that the engine has asked for.
-        trace: All that was observed.
+        log: All calls of the engine, in order: the verb, the event if there was one, and the time.
+        effects: All effects of the engine.
+        trace: All records of the trace.
         fired: The rules that ran and did not resign, in the order in which they finished.
-        failures: What rules failed with: (name of the rule, exception).
-        said: What was written to ``rawio.output``, in order.
+        failures: The failures of rules: (name of the rule, exception).
+        said: The values written to ``rawio.output``, in order.
     """
 
     def __init__(self, *modules: rs.Module | rs.Policy, patience: float = 1.0, trace: bool = True) -> None:
@@ -70,7 +69,7 @@ class Driver:
             coroutine.close()
 
     def say(self, text: str) -> None:
-        """The user says something."""
+        """Write ``rawio.input`` from outside."""
         self.put(rawio.input, text)
 
     def put(self, slot: rs.Slot[Any], value: Any) -> None:
@@ -117,12 +116,12 @@ class Driver:
         return snapshot(self.engine)
 
     def receive(self, event: Event) -> None:
-        """Give the engine an event, and do nothing yet."""
+        """Give the engine an event, and perform no effect yet."""
         self.log.append(("receive", event, self.now))
         self.engine.receive(event, self.now)
 
     def _due(self) -> list[Effect]:
-        """Let the next thing happen whose time has come: the engine's deadlines first, then sleepers."""
+        """Handle the next thing that is due: the engine's deadlines first, then sleeping rules."""
         effects: list[Effect] = []
         while not effects and self._next() <= self.now:
             deadline = self.engine.next_deadline()
@@ -151,7 +150,7 @@ class Driver:
             self._begin(effect)
         elif isinstance(effect, Cancel):
             if effect.run not in self._runs:
-                return  # it has reported its end meanwhile
+                return  # the run has reported its end meanwhile
             self._sleepers = [nap for nap in self._sleepers if nap[2] != effect.run]
             self._step(effect.run, asyncio.CancelledError())
         elif isinstance(effect, Spiked):
@@ -180,7 +179,7 @@ class Driver:
         except StopIteration as end:
             result = end.value
         except asyncio.CancelledError:
-            result = None  # it was told to end
+            result = None  # the engine has cancelled it
         except Exception as raised:
             result = raised
         else:
@@ -203,7 +202,7 @@ class Driver:
 
 
 class View:
-    """What a rule function is given: the part of `rs.RuleContext` that a bare engine can serve."""
+    """The argument of a rule function: the part of `rs.RuleContext` that a bare engine can serve."""
 
     def __init__(self, driver: Driver, effect: Run) -> None:
         self._driver = driver
@@ -224,7 +223,7 @@ class View:
         self._values[slot.name] = value
 
     def payload(self, signal: rs.Signal[Any]) -> Any:
-        clauses = self._driver.engine.policy.clauses(self._rule)
+        clauses = self._driver.engine.policy.rule_plan(self._rule).clauses
         if all(signal not in clause.signals for clause in clauses):
             raise rs.UndeclaredError(f"the condition of {self._rule} does not name {signal}")
         return self._payloads.get(signal.name)
@@ -240,7 +239,7 @@ class View:
 
 
 class Nap:
-    """Awaited by a rule that sleeps: tells the driver for how long."""
+    """The awaitable of a rule that sleeps: it gives the driver the seconds."""
 
     def __init__(self, seconds: float) -> None:
         self.seconds = seconds

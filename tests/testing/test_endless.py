@@ -1,4 +1,4 @@
-"""What would never end is noticed, bounded, or does not happen."""
+"""Endless loops: the simulation names them, bounds them, or prevents them."""
 
 import asyncio
 import threading
@@ -9,7 +9,7 @@ import ravestate as rs
 from ravestate.testing import simulate
 
 
-def test_a_loop_without_an_age_is_named_instead_of_standing_still() -> None:
+def test_the_error_names_a_loop_without_an_age() -> None:
     m = rs.Module("m")
     a = m.signal("a")
 
@@ -61,7 +61,7 @@ def test_an_apology_that_fails_is_not_apologised_for() -> None:
         assert [rule for rule, _ in sim.failures] == ["m:fail", "m:speak"]
 
 
-def test_an_interruption_that_wants_an_age_is_not_put_off_by_more_of_the_same() -> None:
+def test_more_spikes_do_not_delay_an_interruption_with_an_age() -> None:
     m = rs.Module("m")
     go, tick = m.signal("go"), m.signal("tick")
 

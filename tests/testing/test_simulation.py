@@ -1,4 +1,4 @@
-"""Simulated contexts: the real runtime, in virtual time."""
+"""Simulated contexts: the real runtime in virtual time."""
 
 import asyncio
 from asyncio import sleep  # in here it costs no real time
@@ -17,7 +17,7 @@ class Options(rs.Settings):
 
 
 def talk() -> rs.Module:
-    """A module that greets, answers, and is bored by nobody."""
+    """A module that greets, answers and says goodbye."""
     module = rs.Module("talk", requires=[rawio], settings=Options)
 
     @module.rule(when=rs.startup, writes=rawio.output)
@@ -40,7 +40,7 @@ def talk() -> rs.Module:
 
 
 def clock() -> tuple[rs.Module, rs.Signal[Any], list[float]]:
-    """A module with one signal, and a list for the times at which its rule gets somewhere."""
+    """A module with one signal, and an empty list of times for its rule."""
     module = rs.Module("clock")
     return module, module.signal("go"), []
 
@@ -48,7 +48,7 @@ def clock() -> tuple[rs.Module, rs.Signal[Any], list[float]]:
 # ---------------------------------------------------------------------------------------- what is told
 
 
-def test_what_is_said_is_kept_from_startup_to_the_end() -> None:
+def test_said_has_every_output_from_startup_to_the_end() -> None:
     with simulate(talk()) as sim:
         assert sim.said == ["hello"]
         sim.say("you")
@@ -58,7 +58,7 @@ def test_what_is_said_is_kept_from_startup_to_the_end() -> None:
     assert sim.said == ["hello", "YOU", "bye"]
 
 
-def test_what_fired_did_not_resign_and_stands_in_order_of_finishing() -> None:
+def test_fired_has_the_rules_that_did_not_resign_in_order_of_finishing() -> None:
     module, go, _ = clock()
 
     @module.rule(when=go)
@@ -80,7 +80,7 @@ def test_what_fired_did_not_resign_and_stands_in_order_of_finishing() -> None:
         assert sim.fired == ["clock:quick", "clock:slow"]
 
 
-def test_failures_are_kept_with_the_rule_s_name(caplog: pytest.LogCaptureFixture) -> None:
+def test_failures_have_the_names_of_their_rules(caplog: pytest.LogCaptureFixture) -> None:
     module, go, _ = clock()
 
     @module.rule(when=rs.startup)
@@ -100,7 +100,7 @@ def test_failures_are_kept_with_the_rule_s_name(caplog: pytest.LogCaptureFixture
     assert [record.levelname for record in caplog.records] == ["ERROR", "ERROR"]
 
 
-def test_the_trace_is_kept_unless_it_is_not_wanted() -> None:
+def test_the_trace_can_be_switched_off() -> None:
     with simulate(talk()) as sim:
         assert [record.rule for record in sim.trace if isinstance(record, Started)] == ["talk:greet"]
         assert "talk:greet at 0.000 s" in str(sim.explain("talk:greet"))
@@ -109,7 +109,7 @@ def test_the_trace_is_kept_unless_it_is_not_wanted() -> None:
         assert list(sim.trace) == []
 
 
-def test_short_cuts_to_the_context() -> None:
+def test_shortcuts_to_the_context() -> None:
     module, go, _ = clock()
     value = module.slot("value", 0)
 
@@ -148,7 +148,7 @@ def test_settings_seed_and_patience_are_passed_on() -> None:
     assert found[0] == found[1] != found[2]
 
 
-def test_patience_is_waited_for_in_virtual_time() -> None:
+def test_patience_passes_in_virtual_time() -> None:
     module, go, found = clock()
     point, out = module.signal("point"), module.slot("out", "")
 
@@ -175,7 +175,7 @@ async def nested(depth: int) -> None:
         await nested(depth - 1)
 
 
-def test_everything_that_waits_waits_in_virtual_time() -> None:
+def test_every_wait_is_in_virtual_time() -> None:
     module, go, at = clock()
 
     @module.rule(when=go)
@@ -252,7 +252,7 @@ def test_plain_functions_take_turns_so_that_runs_repeat() -> None:
         assert order == list("abcdef") and sim.failures == []
 
 
-def test_a_plain_function_that_keeps_time_waiting_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_error_names_a_plain_function_that_blocks_time(monkeypatch: pytest.MonkeyPatch) -> None:
     import threading
 
     from ravestate.testing import virtual_loop
@@ -316,7 +316,7 @@ def test_advance_in_parts_is_advance_at_once() -> None:
     assert times([7.0]) == times([0.5] * 14) == times([3.25, 3.75]) != []
 
 
-def test_settle_does_what_can_be_done_now() -> None:
+def test_settle_does_everything_that_is_due_now() -> None:
     module, go, at = clock()
 
     @module.rule(when=go)
@@ -356,7 +356,7 @@ def test_it_is_refused_inside_a_running_loop() -> None:
 def test_it_is_a_context_manager_and_runs_once() -> None:
     sim = simulate()
     for act in (lambda: sim.advance(1), sim.settle, lambda: sim.now):
-        with pytest.raises(rs.EngineError, match="has not begun: write"):
+        with pytest.raises(rs.EngineError, match="has not started: write"):
             act()
     with sim:
         pass
@@ -364,7 +364,7 @@ def test_it_is_a_context_manager_and_runs_once() -> None:
         sim.__enter__()
 
 
-def test_saying_wants_rawio() -> None:
+def test_saying_needs_rawio() -> None:
     with (
         simulate() as sim,
         pytest.raises(rs.UndeclaredError, match="no slot rawio:input; add module rawio to the context"),
@@ -372,14 +372,14 @@ def test_saying_wants_rawio() -> None:
         sim.say("hello")
 
 
-def test_faults_are_raised_before_it_begins() -> None:
+def test_faults_are_raised_before_it_starts() -> None:
     with pytest.raises(rs.DeclarationErrors):
         simulate(rs.Module("a"), rs.Module("a"))
     with pytest.raises(rs.DeclarationErrors):
         simulate(talk(), settings={"talk": {"greting": "x"}})
 
 
-def test_an_exception_in_the_block_comes_through_and_everything_is_closed() -> None:
+def test_an_exception_in_the_block_passes_and_everything_is_closed() -> None:
     module, go, _ = clock()
     told: list[str] = []
 
@@ -402,7 +402,7 @@ def test_an_exception_in_the_block_comes_through_and_everything_is_closed() -> N
     assert sim._loop is not None and sim._loop.is_closed()
 
 
-def test_simulations_may_stand_side_by_side() -> None:
+def test_two_simulations_can_run_side_by_side() -> None:
     policy = rs.compile(talk())
     with simulate(policy) as one, simulate(policy) as other:
         one.say("x")

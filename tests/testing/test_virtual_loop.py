@@ -1,4 +1,4 @@
-"""The loop whose time jumps."""
+"""The loop in virtual time."""
 
 import asyncio
 import threading
@@ -28,7 +28,7 @@ def test_it_jumps_from_timer_to_timer(loop: VirtualLoop) -> None:
     assert seen == [("a", 2.0), ("b", 5.0), ("c", 5.0)] and loop.time() == 5.0
 
 
-def test_what_is_ready_is_done_before_time_passes(loop: VirtualLoop) -> None:
+def test_ready_callbacks_run_before_time_passes(loop: VirtualLoop) -> None:
     seen: list[float] = []
 
     async def steps() -> None:
@@ -53,7 +53,7 @@ def test_running_to_the_past_changes_nothing(loop: VirtualLoop) -> None:
     assert loop.time() == 3.0
 
 
-def test_it_runs_a_coroutine_to_its_end_as_any_loop(loop: VirtualLoop) -> None:
+def test_it_runs_a_coroutine_to_its_end(loop: VirtualLoop) -> None:
     async def work() -> float:
         await sleep(3600)
         return loop.time()
@@ -61,19 +61,19 @@ def test_it_runs_a_coroutine_to_its_end_as_any_loop(loop: VirtualLoop) -> None:
     assert loop.run_until_complete(work()) == 3600.0
 
 
-def test_waiting_for_what_never_comes_is_told(loop: VirtualLoop) -> None:
+def test_waiting_for_an_event_that_never_comes_is_an_error(loop: VirtualLoop) -> None:
     async def wait() -> None:
         await loop.create_future()
 
     task = loop.create_task(wait())
-    with pytest.raises(RuntimeError, match="everything waits for something that will never happen"):
+    with pytest.raises(RuntimeError, match="every task waits for something that never happens"):
         loop.run_until_complete(task)
     task.cancel()
     with pytest.raises(asyncio.CancelledError):
         loop.run_until_complete(task)
 
 
-def test_threads_that_are_busy_are_waited_for_without_virtual_time(loop: VirtualLoop) -> None:
+def test_busy_threads_take_no_virtual_time(loop: VirtualLoop) -> None:
     busy = ["work"]
     seen: list[float] = []
     go = threading.Event()
@@ -92,7 +92,7 @@ def test_threads_that_are_busy_are_waited_for_without_virtual_time(loop: Virtual
     assert seen == [0.0, 1.0]
 
 
-def test_threads_are_not_waited_for_for_ever_nor_twice(
+def test_waiting_for_threads_has_a_limit_and_happens_once(
     loop: VirtualLoop, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(virtual_loop, "REAL_LIMIT", 0.001)
@@ -105,7 +105,7 @@ def test_threads_are_not_waited_for_for_ever_nor_twice(
     assert loop.time() == 1.0
 
 
-def test_what_asyncio_runs_in_threads_takes_no_virtual_time(
+def test_functions_of_asyncio_to_thread_take_no_virtual_time(
     loop: VirtualLoop, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     meet = threading.Barrier(2)

@@ -1,51 +1,66 @@
 import { type Address, Link, type Status } from "./link";
-import type { Command, Diagram, Explained, Policy, ServerFrame, Shown, TraceRecord, Why } from "./protocol";
+import type {
+  Answer,
+  ClientFrame,
+  Conversation,
+  Description,
+  Drawing,
+  Explained,
+  Rendered,
+  ServerFrame,
+  Settled,
+  TraceRecord,
+} from "./protocol";
 import { type Spike, Trace } from "./trace";
 import { View } from "./view";
 
-export interface Conversation {
-  visitor: string;
-  name: string | null;
-  /** Milliseconds since 1970. */
-  began: number;
-  /** The visitor's last words. */
-  said: string | null;
+const RECENT = 60; // causes in the list
+
+/** A command that the server refused, the user's text, and the reason. */
+interface Refused {
+  command: ClientFrame;
+  typed: string;
+  text: string;
 }
 
-const RECENT = 60; // causes that may be chosen from
+const EMPTY: Description = {
+  modules: [],
+  rules: [],
+  signals: [],
+  slots: [],
+  diagram: { nodes: [], edges: [] },
+};
 
-const EMPTY: Policy = { modules: [], rules: [], signals: [], slots: [], diagram: null };
-
-/** All that the page knows: the policy, the trace, what is selected, and the connection. */
+/** The state of the page: the policy, the trace, the selection and the connection. */
 export class Board {
   status: Status = $state("connecting");
   title = $state("Ravestate");
   live = $state(true);
   visitor: string | null = $state(null);
   conversations: Conversation[] = $state.raw([]);
-  /** How many more there are. */
+  /** How many conversations the list leaves out. */
   unlisted = $state(0);
-  /** The file of the recording that is looked at. */
+  /** The file name of the shown recording. */
   recording: string | null = $state(null);
-  policy: Policy = $state.raw(EMPTY);
+  policy: Description = $state.raw(EMPTY);
   paused = $state(false);
-  /** Records and spikes that were not seen. */
+  /** How many records and spikes the board has missed. */
   missed = $state(0);
-  /** Records that are still to come, of the past. */
+  /** How many past records are still to come. */
   behind = $state(0);
   whole = $state(true);
   trouble = $state("");
-  /** What was to be done and was refused, until somebody takes it up to mend it. */
-  refused: { command: Command; typed: string } | null = $state.raw(null);
+  /** The command that the server refused, until its form takes it back. */
+  refused: Refused | null = $state.raw(null);
   ending = $state("");
-  /** Counts the batches of records: whoever shows something of the trace looks at it. */
+  /** Counts frames: a view of the trace depends on it. */
   version = $state(0);
   rule: string | null = $state(null);
   spike: number | null = $state(null);
-  why: Why | null = $state.raw(null);
+  why: Answer | null = $state.raw(null);
   asking = $state(false);
   explained: Explained | null = $state.raw(null);
-  diagram: Diagram | null = $state.raw(null);
+  diagram: Drawing | null = $state.raw(null);
   search = $state("");
   #found = $derived.by(() => {
     const words = this.search.toLowerCase().split(/\s+/).filter(Boolean);
@@ -70,7 +85,7 @@ export class Board {
     const same = inputs.findIndex(({ group }) => group === pointed.group);
     return same >= 0 && pointed.outside ? inputs.with(same, pointed) : [pointed, ...inputs];
   });
-  /** The signals that background rules hear, and nobody else. */
+  /** The signals that only background rules hear. */
   #aside = $derived.by(() => {
     const background = new Set(this.policy.rules.filter((rule) => rule.background).map(({ name }) => name));
     const heard = this.policy.signals.filter(({ hearers }) => hearers.length > 0);
@@ -81,19 +96,19 @@ export class Board {
   view = new View();
   follows = $state(true);
   trace = new Trace();
-  #asked: number | null = null; // the spike that "why not" was asked of last
-  #sent: { command: Command; typed: string } | null = null; // what was to be done last
-  #lent = false; // whether the cause was the newest when a rule was looked at for it
-  #before: Address = {}; // what was looked at before a recording
+  #asked: number | null = null; // the spike of the last "why not"
+  #sent: { command: ClientFrame; typed: string } | null = null; // the last command
+  #lent = false; // whether closing the rule returns to the newest cause
+  #before: Address = {}; // the address before a recording
   #address: Address;
   #link: Link;
   #now = 0;
   #at = 0;
 
   /**
-   * @param address what is looked at first
-   * @param keep is told what is looked at, so that it can be found again after a reload
-   * @param open makes the connection
+   * @param address the first conversation or recording
+   * @param keep stores the address, for a reload
+   * @param open opens the connection
    */
   constructor(
     address: Address,
@@ -106,6 +121,8 @@ export class Board {
       onframe: (frame) => this.take(frame),
       onstatus: (status) => {
         this.status = status;
+        const { session, chosen } = this.#address;
+        if (status === "gone" && session !== undefined && !chosen) this.turnTo({}); // it was this browser's last one
       },
       ...(open === undefined ? {} : { open }),
     });
@@ -119,7 +136,7 @@ export class Board {
     this.#link.stop();
   }
 
-  /** Look at something else. */
+  /** Show another conversation or recording. */
   turnTo(address: Address): void {
     const { token } = this.#address;
     this.#address = { ...(token === undefined ? {} : { token }), ...address };
@@ -131,14 +148,22 @@ export class Board {
     this.start();
   }
 
-  /** Look at a recording, from a file of some name. */
+  /** Show a conversation that began in this browser, unless the user has chosen another one. */
+  meet(session: string): void {
+    const address = this.recording === null ? this.#address : this.#before;
+    if (address.chosen || address.session === session) return;
+    if (this.recording === null) this.turnTo({ session });
+    else this.#before = { session };
+  }
+
+  /** Show a recording from a file. */
   play(recording: string, file: string): void {
     if (this.recording === null) this.#before = this.#address;
     this.turnTo({ recording });
     this.recording = file;
   }
 
-  /** Look at what was looked at before the recording. */
+  /** Return from a recording to the conversation before it. */
   back(): void {
     this.turnTo(this.#before);
   }
@@ -153,18 +178,27 @@ export class Board {
   }
 
   /**
-   * Send a command; whether it went out.
-   * @param typed what somebody typed for it, to be mended if it is refused
+   * Send a command; return whether there is a connection.
+   * @param typed the user's text for it, which comes back if the server refuses the command
    */
-  send(command: Command, typed = ""): boolean {
+  send(command: ClientFrame, typed = ""): boolean {
     const sent = this.#link.send(command);
     this.refused = null;
     this.#sent = sent ? { command, typed } : null;
-    this.trouble = sent ? "" : "There is no connection to the agent.";
+    this.trouble = sent ? "" : "The board is not connected to the agent.";
     return sent;
   }
 
-  /** Whether there is an agent that could do something. */
+  /** Take back a refused command of a type, for the form that sent it. */
+  takeBack<T extends ClientFrame["type"]>(type: T): (Refused & { command: { type: T } }) | null {
+    const { refused } = this;
+    if (refused?.command.type !== type) return null;
+    this.refused = null;
+    this.trouble = ""; // the form shows it
+    return refused as Refused & { command: { type: T } };
+  }
+
+  /** Whether a running agent takes commands. */
   get acts(): boolean {
     return this.live && this.status === "open";
   }
@@ -183,14 +217,14 @@ export class Board {
     this.explain();
   }
 
-  /** Ask about the cause of a spike from now on; without one, about whichever is the newest. */
+  /** Ask about the cause of a spike from now on; null: about the newest cause. */
   point(spike: number | null): void {
     this.#lent = false;
     this.spike = spike;
     this.#ask();
   }
 
-  /** Look at what a rule made of a cause. */
+  /** Show how a rule handled a cause. */
   enter(rule: string, spike: number): void {
     const lent = this.#lent || this.spike === null;
     this.select(rule);
@@ -198,13 +232,13 @@ export class Board {
     this.#lent = lent;
   }
 
-  /** Look at no rule any more; and at the newest cause, unless somebody has chosen one. */
+  /** Close the rule, and return to the newest cause unless the user chose another one. */
   leave(): void {
     this.select(null);
     if (this.#lent) this.point(null);
   }
 
-  /** Ask about a cause from now on, and see what came of it: of its runs, or else of whatever took it. */
+  /** Ask about a cause from now on, and show its time: its runs, or else the activations that took it. */
   visit(spike: Spike): void {
     this.point(spike.id);
     const bars = this.trace.made(spike);
@@ -215,7 +249,7 @@ export class Board {
     this.follow(false);
   }
 
-  /** Whatever is the newest cause is asked about from now on. */
+  /** Ask about the newest cause from now on. */
   visitNewest(): void {
     this.point(null);
     if (this.live) this.follow(true);
@@ -225,7 +259,7 @@ export class Board {
     }
   }
 
-  /** Ask again, of what has happened since. */
+  /** Ask again. */
   again(): void {
     this.#ask();
   }
@@ -244,7 +278,19 @@ export class Board {
     this.view.follows = this.follows = follows;
   }
 
-  /** The trace as a file that the board opens. */
+  /** The name of the conversation's file: the agent, the visitor, and the time of its start. */
+  get fileName(): string {
+    const known = this.conversations.find(({ visitor }) => visitor === this.visitor);
+    const parts = [this.title, known?.name ?? this.visitor ?? this.recording?.replace(/\.json$/, "") ?? ""];
+    if (known !== undefined) {
+      const began = new Date(known.began - new Date(known.began).getTimezoneOffset() * 60_000);
+      parts.push(began.toISOString().slice(0, 16));
+    }
+    const name = parts.filter(Boolean).join("-").toLowerCase();
+    return `${name.replace(/[^\p{L}\p{N}]+/gu, "-").replace(/-trace$/, "")}-trace.json`;
+  }
+
+  /** The trace as text, for a file that the board opens. */
   export(): string {
     return JSON.stringify({
       format: "ravestate-trace",
@@ -256,20 +302,26 @@ export class Board {
     });
   }
 
-  /** The rules that the search finds; null while nothing is searched for. */
+  /** The runs that failed. */
+  get failures(): readonly Settled[] {
+    void this.version;
+    return this.trace.failures;
+  }
+
+  /** The rules that the search finds; null without a search. */
   get found(): ReadonlySet<string> | null {
     return this.#found;
   }
 
   /**
-   * What one may ask about: what came from outside, the newest first; before it the spike that was pointed at. Of what only
-   * background rules hear, such as that somebody is writing, the newest of each signal.
+   * The causes that a user may ask about: input from outside, newest first, with the chosen spike before it. A signal
+   * that only background rules hear, such as typing, appears once, with its newest spike.
    */
   get causes(): readonly Spike[] {
     return this.#causes;
   }
 
-  /** What is asked about: the spike that was pointed at, or else the newest cause that not only background rules hear. */
+  /** The cause of the question: the chosen spike, or else the newest cause that a foreground rule hears. */
   get cause(): Spike | undefined {
     const causes = this.#causes;
     return (
@@ -283,7 +335,7 @@ export class Board {
     return this.trace.siblings(spike).every(({ signal }) => this.#aside.has(signal));
   }
 
-  value(slot: string): Shown | undefined {
+  value(slot: string): Rendered | undefined {
     return this.trace.slots.get(slot)?.shown;
   }
 
@@ -360,7 +412,9 @@ export class Board {
         break;
       case "error":
         this.trouble = frame.text;
-        if (frame.of !== undefined && frame.of === this.#sent?.command.type) this.refused = this.#sent;
+        if (this.#sent !== null && frame.of === this.#sent.command.type) {
+          this.refused = { ...this.#sent, text: frame.text };
+        }
         this.asking = false;
         break;
     }
@@ -368,22 +422,23 @@ export class Board {
     if (frame.type === "records" && this.behind === 0 && this.cause?.id !== this.#asked) this.#ask();
   }
 
-  /** Whose conversation it is, is known now: after a lost connection, or a recording, it is that one again. */
+  /** Keep the address of the conversation, for the next connection. */
   #settle(visitor: string | null): void {
     if (visitor === null) return;
-    const { session, token } = this.#address;
+    const { session, token, chosen } = this.#address;
     this.#address = { ...(session === undefined ? { visitor } : { session }) };
     if (token !== undefined) this.#address.token = token;
+    if (chosen) this.#address.chosen = true;
     this.keep(this.#address);
   }
 
-  #know(policy: Policy): void {
+  #know(policy: Description): void {
     this.policy = policy;
   }
 }
 
 function gaps(records: TraceRecord[]): number {
   let spikes = 0;
-  for (const record of records) if (record.kind === "gap") spikes += Math.max(0, record.spikes);
+  for (const record of records) if (record.kind === "gap") spikes += Math.max(0, record.spikes ?? 0);
   return spikes;
 }

@@ -1,14 +1,16 @@
 import { Backoff } from "../lib/backoff";
-import { CLOSED, type Command, type ServerFrame, VERSION } from "./protocol";
+import { CLOSING_CODES, type ClientFrame, type ServerFrame, VERSION } from "./protocol";
 
 export type Status = "connecting" | "open" | "lost" | "ended" | "token" | "refused" | "gone";
 
-/** What is looked at, and with which token. */
+/** The conversation or recording to show, and the server's token. */
 export interface Address {
   session?: string;
   visitor?: string;
   recording?: string;
   token?: string;
+  /** Whether the user chose it on the board, so that it stays. */
+  chosen?: boolean;
 }
 
 interface Options {
@@ -19,13 +21,13 @@ interface Options {
 }
 
 const FINAL: Record<number, Status> = {
-  [CLOSED.ended]: "ended",
-  [CLOSED.token]: "token",
-  [CLOSED.notUnderstood]: "refused",
-  [CLOSED.gone]: "gone",
+  [CLOSING_CODES.ended]: "ended",
+  [CLOSING_CODES.token]: "token",
+  [CLOSING_CODES.malformed]: "refused",
+  [CLOSING_CODES.gone]: "gone",
 };
 
-/** The connection to the board's server; it comes back by itself. */
+/** The connection to the board's server. It reconnects by itself. */
 export class Link {
   #socket: WebSocket | null = null;
   #retry: ReturnType<typeof setTimeout> | undefined;
@@ -40,14 +42,15 @@ export class Link {
     const socket = (this.options.open ?? openHere)();
     this.#socket = socket;
     socket.onopen = () => {
-      socket.send(JSON.stringify({ type: "hello", v: VERSION, ...this.options.address() }));
+      const { chosen: _, ...address } = this.options.address();
+      socket.send(JSON.stringify({ type: "hello", v: VERSION, ...address }));
     };
     socket.onmessage = (event) => this.#receive(event.data);
     socket.onclose = (event) => this.#closed(event.code);
   }
 
-  /** Send a command, if there is a connection; whether there was. */
-  send(command: Command): boolean {
+  /** Send a command; return whether there is a connection. */
+  send(command: ClientFrame): boolean {
     if (!this.#open) return false;
     this.#socket?.send(JSON.stringify(command));
     return true;

@@ -5,7 +5,7 @@ import { label, step, type View } from "./view";
 export const LANE = 26;
 export const AXIS = 26;
 
-/** Colours of the theme, as the style sheet has them. */
+/** The colours of the theme, from the style sheet. */
 export interface Colours {
   paper: string;
   raised: string;
@@ -18,6 +18,7 @@ export interface Colours {
   waiting: string;
   running: string;
   done: string;
+  interrupted: string;
   resigned: string;
   failed: string;
   dark: boolean;
@@ -40,13 +41,14 @@ export function colours(element: Element): Colours {
     waiting: of("waiting"),
     running: of("running"),
     done: of("done"),
+    interrupted: of("interrupted"),
     resigned: of("resigned"),
     failed: of("failed"),
     dark,
   };
 }
 
-/** The colour of a causal group: neighbours are far apart. */
+/** Return the colour of a causal group. Neighbouring numbers have distant hues. */
 export function groupColour(group: number, dark: boolean): string {
   const hue = (group * 137.508 + 20) % 360;
   return dark ? `hsl(${hue.toFixed(0)} 62% 66%)` : `hsl(${hue.toFixed(0)} 62% 40%)`;
@@ -57,13 +59,13 @@ export interface Scene {
   view: View;
   now: number;
   lanes: readonly string[];
-  /** Pixels by which the lanes are scrolled. */
+  /** The scroll offset of the lanes (pixels). */
   scroll: number;
   width: number;
   height: number;
   colours: Colours;
   rule: string | null;
-  /** Spikes that are emphasised: the kin of the one that is pointed at. */
+  /** The emphasised spikes: the ancestors and descendants of the chosen one. */
   kin: ReadonlySet<number>;
   spike: number | null;
 }
@@ -71,12 +73,12 @@ export interface Scene {
 const OUTSIDE = "";
 const FONT = '11px "Inter", system-ui, sans-serif';
 
-/** In which lane a spike is drawn: that of the rule that raised it; the first one, if it came from outside. */
+/** Return the lane of a spike: its rule's, or the first one for a spike from outside. */
 function laneOf(spike: Spike): string {
   return spike.rule;
 }
 
-/** Whether the context itself raised it (its pressure, its activity): it is small, and below what came from outside. */
+/** Whether the context itself raised a spike (pressure, activity). It is drawn small, below the input from outside. */
 function isOwn(spike: Spike): boolean {
   return spike.rule === OUTSIDE && spike.signal.startsWith("core:") && spike.signal !== "core:startup";
 }
@@ -163,7 +165,7 @@ function paintLane(context: CanvasRenderingContext2D, scene: Scene, lane: Lane, 
     if (bar.from > view.right) break;
     if (bar.to === null || bar.to < view.left) continue;
     const x = Math.round(view.x(bar.to, scene.width));
-    // Of many that end within one pixel, one stands for all.
+    // One bar represents all that end within one pixel.
     if (drawn[bar.row] === x && view.x(bar.from, scene.width) > x - 1) continue;
     drawn[bar.row] = x;
     paintBar(context, scene, bar, top + 3 + bar.row * height, height);
@@ -260,7 +262,7 @@ function paintPhase(
   }
 }
 
-/** The end of a bar, by its outcome: each has a shape as well as a colour. */
+/** Draw the end of a bar. Each outcome has its own shape and colour. */
 function paintEnd(
   context: CanvasRenderingContext2D,
   c: Colours,
@@ -273,11 +275,17 @@ function paintEnd(
   const middle = y + height / 2;
   switch (bar.outcome) {
     case "done":
-    case "interrupted":
     case "retired":
-    case "wiped":
       context.fillStyle = c.done;
       context.fillRect(x, y, width, height);
+      break;
+    case "interrupted":
+    case "wiped": // an open frame: it did not reach its end
+      context.fillStyle = c.paper;
+      context.fillRect(x, y, width, height);
+      context.strokeStyle = c.interrupted;
+      context.lineWidth = 1.5;
+      context.strokeRect(x + 0.75, y + 0.75, width - 1.5, height - 1.5);
       break;
     case "failed":
       context.fillStyle = c.failed;
@@ -328,7 +336,7 @@ function paintSpikes(context: CanvasRenderingContext2D, scene: Scene, places: Ma
     const own = isOwn(spike);
     const label = labels.get(lane);
     if (own) {
-      // it leaves room for what was said
+      // leave room for the text of an input
     } else if (label === undefined || x > label.x) {
       if (label !== undefined) ready.push([label, x - 10]);
       labels.set(lane, { spike, x, y });
@@ -403,9 +411,9 @@ function paintAncestry(context: CanvasRenderingContext2D, scene: Scene, places: 
   context.globalAlpha = 1;
 }
 
-const CROWD = 6; // spikes of one signal because of another, such as the pieces of an answer: of more, not each has a line
+const CROWD = 6; // children of one signal, such as the parts of an answer; with more, only the first and the last have a line
 
-/** Of crowds of spikes all but the first and the last. */
+/** Return the spikes of each crowd but for the first and the last. */
 function crowds(trace: Trace, kin: ReadonlySet<number>): Set<number> {
   const found = new Set<number>();
   for (const id of kin) {
@@ -430,7 +438,7 @@ interface Label {
   y: number;
 }
 
-/** What was said, beside its dot, where nothing else is in the way. */
+/** Draw the text of a spike beside its dot, where there is room. */
 function paintLabel(context: CanvasRenderingContext2D, scene: Scene, label: Label, end: number): void {
   const { spike, x, y } = label;
   const left = x + 8;
@@ -451,12 +459,12 @@ function paintLabel(context: CanvasRenderingContext2D, scene: Scene, label: Labe
   context.strokeStyle = laneOf(spike) === scene.rule ? scene.colours.selected : scene.colours.paper;
   context.lineWidth = 3;
   context.lineJoin = "round";
-  context.strokeText(text, left, y + 0.5); // it stands out from lines
+  context.strokeText(text, left, y + 0.5); // an outline, against lines behind it
   context.fillStyle = laneOf(spike) === OUTSIDE ? scene.colours.ink : scene.colours.quiet;
   context.fillText(text, left, y + 0.5);
 }
 
-/** A text that is written as JSON, as people write it. It may have been cut, and is no JSON then. */
+/** Return a JSON string in quotation marks. A cut text is no valid JSON. */
 function spoken(json: string): string {
   try {
     return `“${String(JSON.parse(json))}”`;
@@ -465,7 +473,7 @@ function spoken(json: string): string {
   }
 }
 
-/** As much of a text as fits. */
+/** Shorten a text to a width. */
 function shortened(context: CanvasRenderingContext2D, text: string, room: number): string {
   const line = text.replace(/\s+/g, " ").slice(0, 200);
   const whole = context.measureText(line).width;
@@ -484,7 +492,7 @@ function paintGaps(context: CanvasRenderingContext2D, scene: Scene): void {
   }
 }
 
-/** What is at a place: the spike, or else the bar. */
+/** Return the spike at a place, or else the bar. */
 export function at(scene: Scene, x: number, y: number): { spike?: Spike; bar?: Bar } {
   const index = Math.floor((y - AXIS + scene.scroll) / LANE);
   const name = scene.lanes[index];
@@ -493,7 +501,7 @@ export function at(scene: Scene, x: number, y: number): { spike?: Spike; bar?: B
   const reach = (7 / width) * view.span;
   const time = view.time(x, width);
   const middle = AXIS + index * LANE - scene.scroll + LANE / 2;
-  // The dots of the context itself are drawn below the others.
+  // The context's own dots are below the others.
   const below = name === OUTSIDE && y > middle + OWN / 2;
   const away = (spike: Spike) => Math.abs(spike.time - time) + (isOwn(spike) === below ? 0 : reach);
   let best: Spike | undefined;

@@ -1,45 +1,269 @@
-// What the board's server and this page say to each other, version 1: see docs/reference/board-protocol.md.
+// Written by tools/protocol.py from ravestate.board.protocol: change that file, and run the tool.
 
 export const VERSION = 1;
 
-/** A value as text; `json` is false where it is no JSON, or not the whole. */
-export interface Shown {
-  text: string;
-  json?: boolean;
-  cut?: boolean;
-}
+export const CLOSING_CODES = {
+  ended: 1000,
+  closing: 1001,
+  "too-large": 1009,
+  full: 1013,
+  malformed: 4400,
+  token: 4401,
+  gone: 4404,
+  silent: 4408,
+  behind: 4409,
+};
 
-export interface Term {
+/** Why an activation gave up a spike: the phrase for each reason. */
+export const LOSSES = {
+  age: "the spike was too old",
+  consumed: "another rule answered it",
+  resigned: "the rule resigned",
+  eliminated: "its patience ran out while others waited",
+  withdrawn: "the spike was withdrawn",
+  retired: "the rule retired",
+};
+
+/** The title and the tone of each verdict. */
+export const VERDICTS = {
+  fired: {
+    title: "It fired",
+    tone: "good",
+  },
+  running: {
+    title: "It is running",
+    tone: "busy",
+  },
+  waiting: {
+    title: "It is ready and waiting",
+    tone: "busy",
+  },
+  outrun: {
+    title: "It was ready, but another rule answered",
+    tone: "plain",
+  },
+  failed: {
+    title: "It failed",
+    tone: "bad",
+  },
+  resigned: {
+    title: "It resigned",
+    tone: "plain",
+  },
+  gated: {
+    title: "A slot predicate was false",
+    tone: "plain",
+  },
+  young: {
+    title: "A spike was too young",
+    tone: "plain",
+  },
+  eliminated: {
+    title: "Its patience ran out",
+    tone: "plain",
+  },
+  withdrawn: {
+    title: "A spike was withdrawn",
+    tone: "plain",
+  },
+  lacked: {
+    title: "It lacked a signal",
+    tone: "plain",
+  },
+  passed: {
+    title: "It did not take the spike",
+    tone: "plain",
+  },
+  untouched: {
+    title: "Nothing it hears occurred",
+    tone: "plain",
+  },
+  retired: {
+    title: "It had retired",
+    tone: "plain",
+  },
+};
+
+/** A spike was born; `source` is the run that raised it, 0 from outside. */
+export interface Born {
+  kind: "born";
+  time: number;
+  spike: number;
   signal: string;
-  rules: number;
-  nats: number;
+  group: number;
+  parents: number[];
+  source: number;
+  payload: Rendered;
 }
 
-export interface Clause {
+/** A clause, and the parts of its utility (nats). */
+export interface ClauseView {
+  /** Its source text. */
   condition: string;
-  constraints: {
-    signal: string;
-    min_age: number;
-    max_age: number | null;
-    detached: boolean;
-    predicates: string[];
-  }[];
-  gates: { slot: string; text: string }[];
+  constraints: ConstraintView[];
+  gates: GateView[];
+  /** The addends of the pathway with the least utility, which decides. */
   terms: Term[];
+  /** The number of pathways. */
   pathways: number;
+  /** The number of predicates, which add ln 2 each. */
   predicates: number;
+  /** The sum of all addends (L9). */
   utility: number;
+  /** Utility × weight: the effective utility without a cooldown. */
   base: number;
 }
 
-export interface Rule {
+/** A signal in a clause; ages in seconds (`max_age=None`: any), predicates by their names. */
+export interface ConstraintView {
+  signal: string;
+  min_age: number;
+  max_age: number | null;
+  detached: boolean;
+  predicates: string[];
+}
+
+/** Nodes and edges in declaration order. */
+export interface Diagram {
+  nodes: Node[];
+  edges: Edge[];
+}
+
+/** A spike was withdrawn: by overflow, a wipe, or a later one (L20, L23). */
+export interface Dropped {
+  kind: "dropped";
+  time: number;
+  spike: number;
+  signal: string;
+  reason: string;
+}
+
+/** An arrow from `source` to `target`, both ids of nodes, with a few words beside it or none. */
+export interface Edge {
+  source: string;
+  target: string;
+  kind: "reads" | "writes" | "emits" | "emits_detached" | "condition" | "condition_detached";
+  label?: string;
+}
+
+/** A gap in the records. */
+export interface Gap {
+  kind: "gap";
+  /** Its start (seconds). */
+  time: number;
+  /** How many spikes the recorder missed; -1 while that is unknown. */
+  spikes?: number;
+}
+
+/** A slot predicate of a clause, and its source text. */
+export interface GateView {
+  slot: string;
+  text: string;
+}
+
+/** An activation gave a spike up: `age`, `consumed`, `resigned`, `eliminated`, `withdrawn`, `retired`. */
+export interface GaveUp {
+  kind: "gaveup";
+  time: number;
+  activation: number;
+  rule: string;
+  spike: number;
+  signal: string;
+  reason: string;
+  by?: string;
+  run?: number;
+}
+
+/** An activation acquired a spike (L12). */
+export interface Held {
+  kind: "held";
+  time: number;
+  activation: number;
+  rule: string;
+  clause: number;
+  spike: number;
+  signal: string;
+  lacks: string[];
+}
+
+/** One causal group became part of another (L11). */
+export interface Merged {
+  kind: "merged";
+  time: number;
+  group: number;
+  into: number;
+}
+
+/** A signal that the rule lacked, and the rules that may raise it. */
+export interface Missing {
+  signal: string;
+  words: string;
+  raisers: Raiser[];
+}
+
+/** Something that happened to the rule for this cause; `rules` are the other rules involved. */
+export interface Moment {
+  time: number;
+  words: string;
+  rules?: string[];
+}
+
+/** A slot, a signal, a rule, a folded module, or the junction of a conjunction or disjunction. */
+export interface Node {
+  /** Its unique name within the diagram. */
+  id: string;
+  /** Its kind. */
+  kind: "slot" | "signal" | "rule" | "module" | "and" | "or";
+  /** The text in it; empty for a junction. */
+  label?: string;
+  /** The module that declares it; empty for a junction and for a module. */
+  module?: string;
+  /** Options such as a weight, or the number of rules of a module; may be empty. */
+  note?: string;
+}
+
+/** A spike passed a rule by: its `payload` did not fit, its cause was `consumed`, or the rule had `caused` it. */
+export interface Passed {
+  kind: "passed";
+  time: number;
+  rule: string;
+  clause: number;
+  spike: number;
+  signal: string;
+  reason: string;
+  by?: string;
+  run?: number;
+}
+
+/** A rival is under pressure until its patience runs out (L16). */
+export interface Pressed {
+  kind: "pressed";
+  time: number;
+  rule: string;
+  by: string;
+  lacks: string[];
+  until: number;
+}
+
+/** A rule that may raise a missing signal, and how that ended in this causal group. */
+export interface Raiser {
+  rule: string;
+  /** The outcome of its run, `running`, or `not run`. */
+  outcome: string;
+  time: number | null;
+  /** The same as text. */
+  words: string;
+}
+
+/** A rule as declared. `raises` has all signals that it may raise, with those of its slots. */
+export interface RuleView {
   name: string;
   module: string;
   doc: string;
   origin: string;
   when: string;
   until: string;
-  clauses: Clause[];
+  clauses: ClauseView[];
   reads: string[];
   writes: string[];
   emits: string[];
@@ -52,7 +276,29 @@ export interface Rule {
   background: boolean;
 }
 
-export interface Signal {
+/** A slot got a value. */
+export interface Set {
+  kind: "set";
+  time: number;
+  slot: string;
+  value: Rendered;
+  run: number;
+}
+
+/** A run has ended (L18): `done`, `resigned`, `failed`, `retired`, `interrupted`, `wiped`. */
+export interface Settled {
+  kind: "settled";
+  time: number;
+  run: number;
+  rule: string;
+  outcome: string;
+  reason: string;
+  fired: boolean;
+  error?: string;
+}
+
+/** A signal: its module, slot and payload, whether it is an input, and the rules that hear and raise it. */
+export interface SignalView {
   name: string;
   module: string;
   slot: string | null;
@@ -62,57 +308,226 @@ export interface Signal {
   raisers: string[];
 }
 
-export interface Slot {
+/** A slot: its kind (`value`, `flag` or `collection`), type and signals, and the rules that use it. */
+export interface SlotView {
   name: string;
   module: string;
-  kind: "value" | "flag" | "collection";
+  kind: string;
   type: string;
   signals: string[];
   readers: string[];
   writers: string[];
 }
 
-export interface Policy {
-  modules: string[];
-  rules: Rule[];
-  signals: Signal[];
-  slots: Slot[];
-  diagram: unknown;
-}
-
-interface OfRule {
+/** A rule function runs (L17). */
+export interface Started {
+  kind: "started";
   time: number;
+  run: number;
   rule: string;
+  clause: number;
+  spikes: number[];
 }
 
-interface OfSpike {
-  spike: number;
+/** One addend of a utility: −ln(rules / |Λ|) nats, where `rules` have the signal on their pathways (L9). */
+export interface Term {
   signal: string;
+  rules: number;
+  nats: number;
+}
+
+/** A run was told to end: `interrupted`, `timeout`, `wiped`. */
+export interface Told {
+  kind: "told";
+  time: number;
+  run: number;
+  rule: string;
+  reason: string;
 }
 
 export type TraceRecord =
-  | ({
-      kind: "born";
-      time: number;
-      group: number;
-      parents: number[];
-      source: number;
-      payload: Shown;
-    } & OfSpike)
-  | ({ kind: "dropped"; time: number; reason: string } & OfSpike)
-  | { kind: "merged"; time: number; group: number; into: number }
-  | { kind: "set"; time: number; slot: string; value: Shown; run: number }
-  | ({ kind: "held"; activation: number; clause: number; lacks: string[] } & OfRule & OfSpike)
-  | ({ kind: "gaveup"; activation: number; reason: string; by: string; run?: number } & OfRule & OfSpike)
-  | ({ kind: "passed"; clause: number; reason: string } & OfRule & OfSpike)
-  | ({ kind: "waits"; activation: number; for: string[]; until: number | null } & OfRule)
-  | ({ kind: "pressed"; by: string; lacks: string[]; until: number } & OfRule)
-  | ({ kind: "started"; run: number; clause: number; spikes: number[] } & OfRule)
-  | ({ kind: "told"; run: number; reason: string } & OfRule)
-  | ({ kind: "settled"; run: number; outcome: string; reason: string; fired: boolean } & OfRule)
-  | { kind: "gap"; time: number; spikes: number };
+  | Born
+  | Dropped
+  | Merged
+  | Set
+  | Held
+  | GaveUp
+  | Passed
+  | Waits
+  | Pressed
+  | Started
+  | Told
+  | Settled
+  | Gap;
 
-export interface Activation {
+/** A ready activation is kept waiting, for rivals or for holders of a slot (L15). */
+export interface Waits {
+  kind: "waits";
+  time: number;
+  activation: number;
+  rule: string;
+  for: string[];
+  until: number | null;
+}
+
+/** A value as text. */
+export interface Rendered {
+  /** JSON, or a `repr`. */
+  text: string;
+  /** Whether the text is JSON for the whole value, which a user may edit and write back. */
+  json?: boolean;
+  /** Whether the text is only a part. */
+  cut?: boolean;
+}
+
+/** An activation: the spikes that it holds, the signals that it lacks, and the rules that it waits for. */
+export interface ActivationState {
+  id: number;
+  /** `gathering`, `ripening`, `gated`, `ready`, `waiting`, `running` or `cancelling`. */
+  state: string;
+  condition: string;
+  /** Signal and age (seconds) of each spike. */
+  holds: [string, number][];
+  /** The signals that are missing. */
+  lacks: string[];
+  /** The rules that it waits for, and by how many nats each is ahead (0: a taken slot, or a tie). */
+  waits_for: [string, number][];
+  /** The latest time at which it runs or gives up (seconds); None without a bound. */
+  until: number | null;
+}
+
+/**
+ * The first frame: it says what to show.
+ *
+ * Without `session`, `visitor` and `recording`, the server shows the recording that it was started with, or else the newest conversation. It begins a conversation if there is none.
+ */
+export interface Hello {
+  type: "hello";
+  /** The version of the protocol. */
+  v: number;
+  /** The secret of a conversation, which its visitor's page has. */
+  session?: string;
+  /** The name of a conversation, as in `Conversations`. */
+  visitor?: string;
+  /** The name of an uploaded recording. */
+  recording?: string;
+  /** The server's token, if the server asks for one. */
+  token?: string;
+}
+
+/** Stop the context's clock. */
+export interface Pause {
+  type: "pause";
+}
+
+/** Do the next thing that is due, on a stopped clock. */
+export interface Step {
+  type: "step";
+}
+
+/** Start the context's clock again. */
+export interface Resume {
+  type: "resume";
+}
+
+/** Write a slot. */
+export interface Put {
+  type: "put";
+  slot: string;
+  value?: unknown;
+}
+
+/** How far a rule came for an input, from the furthest to the least far. */
+export type Verdict =
+  | "fired"
+  | "running"
+  | "waiting"
+  | "outrun"
+  | "failed"
+  | "resigned"
+  | "gated"
+  | "young"
+  | "eliminated"
+  | "withdrawn"
+  | "lacked"
+  | "passed"
+  | "untouched"
+  | "retired";
+
+/** Raise a signal. */
+export interface Emit {
+  type: "emit";
+  signal: string;
+  payload?: unknown;
+}
+
+/** Say something as the visitor. */
+export interface Say {
+  type: "say";
+  text: string;
+}
+
+/** A question for a `State`. */
+export interface Look {
+  type: "look";
+}
+
+/** A question for an `Explained`: what a rule holds, lacks and waits for now. */
+export interface Explain {
+  type: "explain";
+  rule: string;
+}
+
+/** A question for an `Answer`: why a rule did not fire for the cause of a spike. */
+export interface Why {
+  type: "why";
+  rule: string;
+  spike: number;
+}
+
+/** A question for a `Drawing` with some modules unfolded. */
+export interface Unfold {
+  type: "diagram";
+  unfolded: string[];
+}
+
+/** A policy. |Λ| is the number of its rules. */
+export interface Description {
+  modules: string[];
+  rules: RuleView[];
+  signals: SignalView[];
+  slots: SlotView[];
+  diagram: Diagram;
+}
+
+/** A question for a `Pong`. */
+export interface Ping {
+  type: "ping";
+}
+
+/** The answer to `Hello`. */
+export interface Welcome {
+  type: "welcome";
+  /** The version of the protocol. */
+  v: number;
+  /** The agent's name. */
+  title: string;
+  /** Whether this is a running conversation, not a recording. */
+  live: boolean;
+  /** The name of the conversation. */
+  visitor: string | null;
+  /** Whether the records that follow reach back to the start. */
+  whole: boolean;
+  /** The policy. */
+  policy: Description;
+  /** Seconds since the context began. */
+  now: number;
+  /** Whether the context's clock is stopped. */
+  paused: boolean;
+}
+
+/** A live activation, and its rule. */
+export interface Alive {
   id: number;
   state: string;
   condition: string;
@@ -120,31 +535,96 @@ export interface Activation {
   lacks: string[];
   waits_for: [string, number][];
   until: number | null;
+  rule: string;
 }
 
-export interface Why {
+/** The values of all slots, and the live activations. */
+export interface State {
+  type: "state";
+  slots: Record<string, Rendered>;
+  activations: Alive[];
+  now: number;
+  paused: boolean;
+}
+
+/** The next records, in order. */
+export interface Records {
+  type: "records";
+  /** The records. */
+  records: TraceRecord[];
+  /** How many records before these are left out. */
+  missed: number;
+  /** How many records are still to come. */
+  behind: number;
+  now: number;
+  paused: boolean;
+}
+
+/** The agent's new name. */
+export interface Renamed {
+  type: "renamed";
+  title: string;
+}
+
+/** The new policy, after a rule was added. */
+export interface Changed {
+  type: "policy";
+  policy: Description;
+}
+
+/** A conversation in a list. */
+export interface Conversation {
+  /** Its name. */
+  visitor: string;
+  /** The visitor's own name, if it is known. */
+  name: string | null;
+  /** Milliseconds since 1970 (UTC). */
+  began: number;
+  /** The start of the visitor's last words, if there are any. */
+  said: string | null;
+}
+
+/** The newest conversations, oldest first, and how many more there are. */
+export interface Conversations {
+  type: "conversations";
+  conversations: Conversation[];
+  more: number;
+}
+
+/** A clause: its effective utility (nats), and whether each slot predicate is true. */
+export interface ExplainedClause {
+  effective: number;
+  gates: [string, boolean][];
+}
+
+/** The current state of a rule: what it holds, lacks and waits for. */
+export interface Explained {
+  type: "explained";
+  rule: string;
+  now: number;
+  retired: boolean;
+  clauses: ExplainedClause[];
+  activations: ActivationState[];
+}
+
+/** Why a rule did not fire. */
+export interface Answer {
+  type: "why";
   rule: string;
   spike: number;
   signal: string;
   time: number;
-  verdict: string;
+  verdict: Verdict;
   words: string;
   at: number | null;
   clause: number | null;
-  missing: { signal: string; words: string; raisers: { rule: string; outcome: string; words: string }[] }[];
-  moments: { time: number; words: string; rules: string[] }[];
+  missing: Missing[];
+  moments: Moment[];
   whole: boolean;
 }
 
-export interface Explained {
-  rule: string;
-  now: number;
-  retired: boolean;
-  clauses: { effective: number; gates: [string, boolean][] }[];
-  activations: Activation[];
-}
-
-export interface DiagramNode {
+/** A node of the diagram; `box` is its left, top, width and height (pixels). */
+export interface DrawnNode {
   id: string;
   kind: "slot" | "signal" | "rule" | "and" | "or" | "module";
   label: string;
@@ -153,7 +633,8 @@ export interface DiagramNode {
   box: [number, number, number, number];
 }
 
-export interface DiagramEdge {
+/** An edge of the diagram: the points of its line, and the box of its label (pixels). */
+export interface DrawnEdge {
   source: string;
   target: string;
   kind: string;
@@ -162,57 +643,62 @@ export interface DiagramEdge {
   box: [number, number, number, number] | null;
 }
 
-export interface Diagram {
+/** The diagram with some modules unfolded; lengths in pixels. */
+export interface Drawing {
+  type: "diagram";
+  unfolded: string[];
   width: number;
   height: number;
-  unfolded: string[];
-  nodes: DiagramNode[];
-  edges: DiagramEdge[];
+  nodes: DrawnNode[];
+  edges: DrawnEdge[];
 }
 
-interface Clock {
-  now: number;
-  paused: boolean;
+/** The conversation is over, and why; the server closes the connection. */
+export interface Ended {
+  type: "ended";
+  text: string;
 }
+
+/** A fault in a frame or a connection. */
+export interface Error {
+  type: "error";
+  /** One word for programs. */
+  code: string;
+  /** An explanation for people. */
+  text: string;
+  /** The type of the frame that is refused. */
+  of?: string;
+}
+
+/** The answer to `Ping`. */
+export interface Pong {
+  type: "pong";
+}
+
+export type ClientFrame =
+  | Hello
+  | Pause
+  | Step
+  | Resume
+  | Put
+  | Emit
+  | Say
+  | Look
+  | Explain
+  | Why
+  | Unfold
+  | Ping;
 
 export type ServerFrame =
-  | ({
-      type: "welcome";
-      v: number;
-      title: string;
-      live: boolean;
-      visitor: string | null;
-      whole: boolean;
-      policy: Policy;
-    } & Clock)
-  | ({
-      type: "state";
-      slots: Record<string, Shown>;
-      activations: (Activation & { rule: string })[];
-    } & Clock)
-  | ({ type: "records"; records: TraceRecord[]; missed: number; behind: number } & Clock)
-  | { type: "renamed"; title: string }
-  | { type: "policy"; policy: Policy }
-  | {
-      type: "conversations";
-      conversations: { visitor: string; name: string | null; began: number; said: string | null }[];
-      more: number;
-    }
-  | ({ type: "why" } & Why)
-  | ({ type: "explained" } & Explained)
-  | ({ type: "diagram" } & Diagram)
-  | { type: "ended"; text: string }
-  | { type: "error"; code: string; text: string; of?: string }
-  | { type: "pong" };
-
-export type Command =
-  | { type: "pause" | "step" | "resume" | "look" | "ping" }
-  | { type: "put"; slot: string; value: unknown }
-  | { type: "emit"; signal: string; payload?: unknown }
-  | { type: "say"; text: string }
-  | { type: "explain"; rule: string }
-  | { type: "why"; rule: string; spike: number }
-  | { type: "diagram"; unfolded: string[] };
-
-/** With which code the server closes a connection, where trying again is of no use. */
-export const CLOSED = { ended: 1000, notUnderstood: 4400, token: 4401, gone: 4404 } as const;
+  | Welcome
+  | State
+  | Records
+  | Renamed
+  | Changed
+  | Conversations
+  | Explained
+  | Answer
+  | Drawing
+  | Ended
+  | Error
+  | Pong;

@@ -1,12 +1,12 @@
-import type { Activation, Shown, TraceRecord } from "./protocol";
+import type { Alive, Rendered, Settled, TraceRecord } from "./protocol";
 
-/** In which state an activation is, or was, for a while. */
+/** The state of an activation. */
 export type State = "gathering" | "complete" | "waiting" | "running";
 
 export interface Phase {
   state: State;
   from: number;
-  /** Whom it waits for, and until when at the latest (seconds). */
+  /** The rules that it waits for, and the latest end of the wait (seconds). */
   waits?: string[];
   until?: number | null;
 }
@@ -17,13 +17,13 @@ export interface Bar {
   rule: string;
   clause: number;
   from: number;
-  /** When it ended (seconds); null while it lives. */
+  /** Its end (seconds); null while it is alive. */
   to: number | null;
   phases: Phase[];
-  /** Once it has ended: `done`, `resigned`, `failed`, ... or why it gave its spikes up: `age`, `consumed`, ... */
+  /** The outcome of its run (`done`, `resigned`, ...), or the reason why it gave up its spikes (`age`, `consumed`, ...). */
   outcome: string;
   reason: string;
-  /** The rule that answered instead, or resigned for it, if that is why it gave up; and the number of its run, 0 if not known. */
+  /** The rule that answered instead or resigned, and the number of its run; 0 if that is unknown. */
   by: string;
   run: number;
   holds: Set<number>;
@@ -36,10 +36,10 @@ export interface Lane {
   rule: string;
   bars: Bar[];
   open: Set<Bar>;
-  /** The longest that a bar of it has lasted (seconds). */
+  /** The length of its longest bar (seconds). */
   longest: number;
   rows: number;
-  /** When the last bar of each row ends. */
+  /** The end of the last bar in each row. */
   ends: number[];
   retired: boolean;
 }
@@ -51,11 +51,11 @@ export interface Spike {
   group: number;
   parents: number[];
   children: number[];
-  /** The rule that raised it, if it is known. */
+  /** The rule that raised it; empty if none did, or if that is unknown. */
   rule: string;
-  /** Whether it is a cause of its own: of no rule, and not of the context itself, such as its pressure. */
+  /** Whether it came from outside: neither a rule nor the context itself raised it. */
   outside: boolean;
-  payload: Shown;
+  payload: Rendered;
   dropped: string;
 }
 
@@ -66,14 +66,16 @@ export interface Gap {
 
 const MOST_ROWS = 4;
 
-/** What has happened, folded into lanes, spikes, groups and slots as the records come in. */
+/** The trace as lanes, spikes, groups and slots, updated as records arrive. */
 export class Trace {
   records: TraceRecord[] = [];
   lanes = new Map<string, Lane>();
   spikes: Spike[] = [];
-  slots = new Map<string, { shown: Shown; time: number }>();
+  slots = new Map<string, { shown: Rendered; time: number }>();
   gaps: Gap[] = [];
-  /** When each signal occurred last. */
+  /** The runs that failed. */
+  failures: Settled[] = [];
+  /** The last time of each signal (seconds). */
   occurred = new Map<string, number>();
   first = 0;
   last = 0;
@@ -81,7 +83,7 @@ export class Trace {
   #bars = new Map<number, Bar>();
   #into = new Map<number, number>();
 
-  /** @param kept how many records are kept, at least; the oldest go first. */
+  /** @param kept the least number of records to keep; the oldest go first */
   constructor(private readonly kept = 100_000) {}
 
   add(records: TraceRecord[]): void {
@@ -89,12 +91,12 @@ export class Trace {
     if (this.records.length > this.kept * 1.25) this.#forget();
   }
 
-  /** What is alive now, from the server: bars of which no end was seen are ended. */
-  reconcile(activations: (Activation & { rule: string })[], now: number): void {
+  /** Compare with the live activations on the server, and end the bars whose end was missed. */
+  reconcile(activations: Alive[], now: number): void {
     const alive = new Set(activations.map((activation) => activation.id));
     for (const lane of this.lanes.values()) {
       for (const bar of [...lane.open]) {
-        if (!alive.has(bar.id)) this.#end(bar, now, "unseen", "its end went unseen");
+        if (!alive.has(bar.id)) this.#end(bar, now, "unseen", "the board missed its end");
       }
     }
     for (const activation of activations) {
@@ -126,19 +128,19 @@ export class Trace {
     return lane;
   }
 
-  /** The causal group that one has become a part of. */
+  /** Return the group into which a causal group has merged at last. */
   group(id: number): number {
     let root = id;
     for (let into = this.#into.get(root); into !== undefined; into = this.#into.get(root)) root = into;
     for (let at = id; at !== root; ) {
       const into = this.#into.get(at) ?? root;
-      this.#into.set(at, root); // who asks again need not follow the way again
+      this.#into.set(at, root); // shorten the path for the next call
       at = into;
     }
     return root;
   }
 
-  /** The rule that raised what the run of another one took, for which a bar gave up; empty: none, or not known. */
+  /** Return the rule that raised the input of the run that answered instead; empty if none did, or if that is unknown. */
   behind(bar: Bar): string {
     const groups = new Set(bar.spikes.map((id) => this.#groupOf(id)));
     for (const id of this.#bars.get(bar.run)?.spikes ?? []) {
@@ -148,7 +150,7 @@ export class Trace {
     return "";
   }
 
-  /** A spike, all that it comes from, and all that comes from it. */
+  /** Return a spike with its ancestors and descendants. */
   kin(id: number): Set<number> {
     const found = new Set<number>();
     const follow = (start: number, next: (spike: Spike) => number[]) => {
@@ -167,8 +169,8 @@ export class Trace {
   }
 
   /**
-   * What came from outside, the newest first: what one may ask "why not" about. Writing a slot raises several signals
-   * of one causal group: the last one stands for them.
+   * Return the spikes from outside, newest first. A write of a slot raises several signals of one causal group: the last
+   * one represents them.
    */
   inputs(most: number, counts: (spike: Spike) => boolean = () => true): Spike[] {
     const found: Spike[] = [];
@@ -182,7 +184,7 @@ export class Trace {
     return found;
   }
 
-  /** What came from outside together with a spike, itself included: the signals of one write. */
+  /** Return the spikes of the same write as a spike, itself included. */
   siblings(spike: Spike): Spike[] {
     const found: Spike[] = [];
     for (let i = from(this.spikes, spike.time, ({ time }) => time); i < this.spikes.length; i++) {
@@ -193,7 +195,7 @@ export class Trace {
     return found;
   }
 
-  /** What the rules made of the causal group of a spike, in the order of their beginning. */
+  /** Return the activations on the causal group of a spike, in the order of their start. */
   made(spike: Spike): Bar[] {
     const group = this.group(spike.group);
     const ofGroup = (id: number) => {
@@ -242,7 +244,7 @@ export class Trace {
         break;
       }
       case "merged":
-        if (this.group(record.into) !== record.group) this.#into.set(record.group, record.into); // never in circles
+        if (this.group(record.into) !== record.group) this.#into.set(record.group, record.into); // a damaged file may merge groups in a circle
         break;
       case "set":
         this.slots.set(record.slot, { shown: record.value, time: record.time });
@@ -264,7 +266,7 @@ export class Trace {
           this.#phase(bar, "gathering", record.time);
           break;
         }
-        bar.by = record.by;
+        bar.by = record.by ?? "";
         bar.run = record.run ?? 0;
         this.#end(bar, record.time, record.reason, "");
         break;
@@ -283,11 +285,12 @@ export class Trace {
       case "settled": {
         const bar = this.#bars.get(record.run);
         if (bar !== undefined) this.#end(bar, record.time, record.outcome, record.reason);
+        if (record.outcome === "failed") this.failures.push(record);
         if (record.outcome === "retired") this.lane(record.rule).retired = true;
         break;
       }
       case "gap":
-        this.gaps.push({ time: record.time, spikes: record.spikes });
+        this.gaps.push({ time: record.time, spikes: record.spikes ?? -1 });
         break;
     }
   }
@@ -349,7 +352,7 @@ export class Trace {
     lane.ends[bar.row] = time;
   }
 
-  /** Forget the oldest records, and what has nothing left of it. */
+  /** Forget the oldest records, and everything that depends on them. */
   #forget(): void {
     this.records = this.records.slice(-this.kept);
     this.first = this.records[0]?.time ?? 0;
@@ -357,17 +360,24 @@ export class Trace {
     for (const spike of this.spikes) if (gone(spike.time)) this.#spikes.delete(spike.id);
     this.spikes = this.spikes.filter((spike) => !gone(spike.time));
     this.gaps = this.gaps.filter((gap) => !gone(gap.time));
+    this.failures = this.failures.filter((failure) => !gone(failure.time));
     for (const lane of this.lanes.values()) {
       for (const bar of lane.bars) if (bar.to !== null && gone(bar.to)) this.#bars.delete(bar.id);
       lane.bars = lane.bars.filter((bar) => bar.to === null || !gone(bar.to));
     }
     const groups = new Set(this.spikes.map((spike) => spike.group));
-    for (const group of groups) this.group(group); // from now on without those between, which are deleted
+    for (const group of groups) this.group(group); // shorten the paths, whose middle is deleted next
     for (const group of this.#into.keys()) if (!groups.has(group)) this.#into.delete(group);
   }
 }
 
-/** The index of the first item at or after a time. */
+/** The glyph of a run's end. */
+export function endState(outcome: string): "done" | "failed" | "resigned" | "interrupted" {
+  if (outcome === "failed" || outcome === "resigned") return outcome;
+  return outcome === "interrupted" || outcome === "wiped" ? "interrupted" : "done";
+}
+
+/** Return the index of the first item at or after a time. */
 export function from<T>(items: readonly T[], time: number, of: (item: T) => number): number {
   let low = 0;
   let high = items.length;

@@ -1,4 +1,4 @@
-/** Which part of time is seen: from `left`, so many seconds wide. While it follows, its right edge is now. */
+/** The visible part of the timeline: `span` seconds from `left` on. While it follows, its right edge is the present. */
 export class View {
   left = 0;
   span = 20;
@@ -11,12 +11,12 @@ export class View {
     return this.left + this.span;
   }
 
-  /** Now is `now`: move along, if it follows. */
+  /** Move to the present, if the view follows. */
   advance(now: number): void {
     if (this.follows) this.left = Math.max(now - this.span * 0.96, -this.span * 0.04);
   }
 
-  /** Where a time is, in a width of pixels. */
+  /** Return the place of a time (pixels). */
   x(time: number, width: number): number {
     return ((time - this.left) / this.span) * width;
   }
@@ -30,7 +30,7 @@ export class View {
     this.left += seconds;
   }
 
-  /** Make the span `factor` times as wide; what is at `time` stays where it is. While it follows, the right edge does. */
+  /** Make the span `factor` times as wide around `time`, or around the right edge while the view follows. */
   zoom(factor: number, time: number): void {
     const span = Math.min(View.MOST, Math.max(View.LEAST, this.span * factor));
     if (this.follows) this.left = this.right - span;
@@ -38,7 +38,7 @@ export class View {
     this.span = span;
   }
 
-  /** See everything from one time to another. */
+  /** Fit a range of times into the view. */
   fit(from: number, to: number): void {
     this.follows = false;
     const span = Math.max(to - from, View.LEAST * 10);
@@ -47,7 +47,7 @@ export class View {
   }
 }
 
-/** Round steps for an axis: the least of 1, 2, 5 × 10ⁿ seconds (or of minutes) that leaves `gap` pixels between two. */
+/** Return the step of an axis: the least of 1, 2, 5 × 10ⁿ seconds, or of round minutes, with `gap` pixels between marks. */
 export function step(span: number, width: number, gap: number): number {
   const least = (span / Math.max(width, 1)) * gap;
   for (const seconds of [60, 120, 300, 600, 1800, 3600, 7200, 21600]) {
@@ -58,7 +58,7 @@ export function step(span: number, width: number, gap: number): number {
   return 10 * power;
 }
 
-/** A time (seconds), as exact as the step between two marks asks for. */
+/** Return a time (seconds) as text, as exact as the step between two marks requires. */
 export function label(time: number, between: number): string {
   if (between >= 60) {
     const minutes = Math.round(time / 60);

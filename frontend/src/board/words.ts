@@ -1,15 +1,16 @@
-import type { Policy, Shown } from "./protocol";
+import { type Description, LOSSES, type Rendered } from "./protocol";
 import type { Bar, Spike, Trace } from "./trace";
 
-/** A value in one line of at most so many characters. */
-export function value(shown: Shown | undefined, most = 200): string {
-  if (shown === undefined) return "";
-  const text = shown.text.length > most ? `${shown.text.slice(0, most)}…` : shown.text;
-  return shown.cut === true && shown.text.length <= most ? `${text}…` : text;
+/** Return a value as text of at most `most` characters. */
+export function value(rendered: Rendered | undefined, most = 200): string {
+  if (rendered === undefined) return "";
+  const { text, cut } = rendered;
+  if (text.length > most) return `${text.slice(0, most)}…`;
+  return cut === true ? `${text}…` : text;
 }
 
-/** What a spike stands for: what was said, which slot was written, or which signal was raised. */
-export function cause(spike: Spike, policy: Policy): string {
+/** Name a cause: by the visitor's words, the written slot, or the raised signal. */
+export function cause(spike: Spike, policy: Description): string {
   const text = value(spike.payload, 48);
   const slot = policy.signals.find(({ name }) => name === spike.signal)?.slot;
   if (slot === undefined || slot === null) return text === "null" ? spike.signal : `${spike.signal}: ${text}`;
@@ -18,10 +19,10 @@ export function cause(spike: Spike, policy: Policy): string {
   return `${slot}: ${text} ${spike.signal.slice(slot.length + 1)}`;
 }
 
-/** The slot of what is said to the agent. */
+/** The slot of the visitor's words. */
 export const SAID = "rawio:input";
 
-/** A value that somebody typed: JSON, or else the text itself. */
+/** Return a typed value: JSON, or else the text itself. */
 export function typed(text: string): unknown {
   try {
     return JSON.parse(text);
@@ -30,27 +31,19 @@ export function typed(text: string): unknown {
   }
 }
 
-/** Why an activation gave its spikes up: the words of `why_given_up` in ravestate.engine.explain. */
+/** Say why an activation gave up its spikes, as `why_given_up` in ravestate.engine.explain does. */
 export function gaveUp(bar: Bar, trace: Trace): string {
   if (bar.reason !== "") return bar.reason;
-  if (bar.outcome !== "consumed" || bar.by === "") return REASONS[bar.outcome] ?? bar.outcome;
+  if (bar.outcome !== "consumed" || bar.by === "")
+    return LOSSES[bar.outcome as keyof typeof LOSSES] ?? bar.outcome;
   const behind = trace.behind(bar);
   return `${behind === "" ? "" : `${behind} → `}${bar.by} answered it`;
 }
 
-const REASONS: Record<string, string> = {
-  age: "the spike was too old",
-  consumed: "another rule answered it",
-  resigned: "the rule resigned for it",
-  eliminated: "its patience ran out while others waited",
-  withdrawn: "the spike was withdrawn",
-  retired: "the rule retired",
-};
-
-/** What is wrong with a value that somebody typed: it begins like JSON, and is none. */
+/** Return what is wrong with a typed value that looks like JSON; empty if nothing is. */
 export function slip(text: string): string {
   if (!/^\s*[[{"]/.test(text) || typed(text) !== text) return "";
-  return `This begins like JSON, and is none: ${text.slice(0, 40)} – put a text that is meant so in quotes.`;
+  return `This looks like JSON but is not valid: ${text.slice(0, 40)} – to write it as text, put it in quotes.`;
 }
 
 export function nats(value: number): string {
@@ -60,21 +53,3 @@ export function nats(value: number): string {
 export function seconds(value: number): string {
   return `${value.toFixed(3)} s`;
 }
-
-/** The verdicts of "why not" in a word or two, and what they count as. */
-export const VERDICTS: Record<string, { title: string; tone: "good" | "busy" | "bad" | "plain" }> = {
-  fired: { title: "It did fire", tone: "good" },
-  running: { title: "It is running", tone: "busy" },
-  waiting: { title: "Ready, and kept waiting", tone: "busy" },
-  outrun: { title: "Ready, but another answered", tone: "plain" },
-  resigned: { title: "It resigned", tone: "plain" },
-  failed: { title: "It failed", tone: "bad" },
-  gated: { title: "A predicate on a slot was false", tone: "plain" },
-  young: { title: "A spike was too young", tone: "plain" },
-  eliminated: { title: "Its patience ran out", tone: "plain" },
-  withdrawn: { title: "A spike was withdrawn", tone: "plain" },
-  lacked: { title: "It lacked a signal", tone: "plain" },
-  passed: { title: "It did not take the spike", tone: "plain" },
-  untouched: { title: "Nothing it hears occurred", tone: "plain" },
-  retired: { title: "It had retired", tone: "plain" },
-};

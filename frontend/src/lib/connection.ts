@@ -1,17 +1,19 @@
 import { Backoff } from "./backoff";
-import { CLOSED, type ClientFrame, parse, type ServerFrame } from "./protocol";
+import { parse } from "./frames";
+import { CLOSING_CODES, type ClientFrame, type ServerFrame } from "./protocol";
 
 /**
- * - `connecting`: for the first time
+ * - `connecting`: the first attempt
  * - `open`: the server has welcomed us
- * - `lost`: it is tried again and again
+ * - `silent`: the connection stands, but the server does not answer
+ * - `lost`: no connection; the next attempt follows
  * - `ended`: the server has ended the conversation
  * - `token`: the server asks for a token, or for another one
  * - `refused`: the server does not understand this page
  */
-export type Status = "connecting" | "open" | "lost" | "ended" | "token" | "refused";
+export type Status = "connecting" | "open" | "silent" | "lost" | "ended" | "token" | "refused";
 
-/** A WebSocket, as far as it is used. */
+/** The part of a WebSocket that a connection uses. */
 export interface Socket {
   readonly readyState: number;
   onopen: ((event: Event) => void) | null;
@@ -22,7 +24,7 @@ export interface Socket {
 }
 
 export interface Options {
-  /** The first frame of each connection. */
+  /** Returns the first frame of each connection. */
   hello: () => ClientFrame;
   onframe: (frame: ServerFrame) => void;
   onstatus: (status: Status) => void;
@@ -32,47 +34,54 @@ export interface Options {
 
 const OPEN = 1;
 
-/** Milliseconds without a word from the server after which it is asked whether it is there. */
-const QUIET = 25_000;
+/**
+ * Milliseconds without a frame from the server, by what the page waits for:
+ *
+ * - `welcome`: the answer to hello; then the connection is lost
+ * - `frame`: anything; then the page sends a ping
+ * - `answer`: the answer to a ping or an utterance; then the server counts as silent
+ * - `return`: a silent server; then the connection is lost
+ */
+const TIMEOUTS = { welcome: 10_000, frame: 15_000, answer: 5_000, return: 20_000 } as const;
 
-/** Milliseconds that it has to answer. */
-const PATIENCE = 10_000;
-
-/** A connection that comes back by itself. */
+/** A WebSocket that reconnects by itself. */
 export class Connection {
   #socket: Socket | null = null;
   #status: Status = "connecting";
   #retry: ReturnType<typeof setTimeout> | undefined;
   #watch: ReturnType<typeof setTimeout> | undefined;
+  #awaited: keyof typeof TIMEOUTS = "welcome";
   #backoff: Backoff;
 
   constructor(private readonly options: Options) {
     this.#backoff = options.backoff ?? new Backoff();
   }
 
-  /** Connect now, whatever was waited for. */
+  /** Connect now, without waiting for the next attempt. */
   start(): void {
     clearTimeout(this.#retry);
     this.#drop();
     const socket = (this.options.open ?? openHere)();
     this.#socket = socket;
-    this.#expect(PATIENCE);
+    this.#expect("welcome");
     socket.onopen = () => socket.send(JSON.stringify(this.options.hello()));
     socket.onmessage = (event) => this.#receive(event.data);
     socket.onclose = (event) => this.#closed(event.code);
   }
 
-  /** Send a frame, if there is a connection; whether there was. */
+  /** Send a frame if there is a connection; return whether there was one. */
   send(frame: ClientFrame): boolean {
-    if (this.#status !== "open" || this.#socket?.readyState !== OPEN) return false;
+    if ((this.#status !== "open" && this.#status !== "silent") || this.#socket?.readyState !== OPEN)
+      return false;
     this.#socket.send(JSON.stringify(frame));
+    if (this.#awaited === "frame" && frame.type !== "writing") this.#expect("answer");
     return true;
   }
 
-  /** The network may be back, or the page is looked at again: try now if it is lost, and make sure if it is not. */
+  /** Check the connection: the network may be back, or the user looks at the page again. */
   nudge(): void {
     if (this.#status === "lost") this.start();
-    else if (this.send({ type: "ping" })) this.#expect(PATIENCE);
+    else this.send({ type: "ping" });
   }
 
   /** Disconnect for good. */
@@ -82,9 +91,10 @@ export class Connection {
   }
 
   #receive(data: unknown): void {
-    this.#expect(QUIET);
+    this.#expect("frame");
+    if (this.#status === "silent") this.#become("open");
     const frame = parse(data);
-    if (frame === null) return; // of a later version
+    if (frame === null) return; // a later version may send it
     if (frame.type === "welcome") {
       this.#backoff.reset();
       this.#become("open");
@@ -92,20 +102,27 @@ export class Connection {
     this.options.onframe(frame);
   }
 
-  /** Wait for a word from the server; ask for one; take the connection for lost. */
-  #expect(milliseconds: number): void {
+  #expect(awaited: keyof typeof TIMEOUTS): void {
     clearTimeout(this.#watch);
-    this.#watch = setTimeout(() => {
-      if (milliseconds === QUIET && this.send({ type: "ping" })) this.#expect(PATIENCE);
-      else this.#closed(0);
-    }, milliseconds);
+    this.#awaited = awaited;
+    this.#watch = setTimeout(() => this.#late(), TIMEOUTS[awaited]);
+  }
+
+  #late(): void {
+    if (this.#awaited === "frame" && this.send({ type: "ping" })) return;
+    if (this.#awaited !== "answer") {
+      this.#closed(0);
+      return;
+    }
+    this.#become("silent");
+    this.#expect("return");
   }
 
   #closed(code: number): void {
     this.#drop();
-    if (code === CLOSED.ended) this.#become("ended");
-    else if (code === CLOSED.tokenNeeded) this.#become("token");
-    else if (code === CLOSED.notUnderstood) this.#become("refused");
+    if (code === CLOSING_CODES.ended) this.#become("ended");
+    else if (code === CLOSING_CODES.token) this.#become("token");
+    else if (code === CLOSING_CODES.malformed) this.#become("refused");
     else {
       this.#become("lost");
       this.#retry = setTimeout(() => this.start(), this.#backoff.next());
@@ -127,7 +144,7 @@ export class Connection {
   }
 }
 
-/** The WebSocket beside this page. */
+/** Open the WebSocket beside this page. */
 function openHere(): Socket {
   const url = new URL("ws", document.baseURI);
   url.protocol = url.protocol.replace("http", "ws");

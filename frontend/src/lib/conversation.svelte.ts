@@ -1,6 +1,6 @@
 import { Connection, type Options, type Status } from "./connection";
 import { type Message, type Say, type ServerFrame, VERSION } from "./protocol";
-import { type Kept, keep, recall, tokenOfLink } from "./store";
+import { announce, type Kept, keep, recall, tokenOfLink } from "./store";
 
 export interface Line {
   key: string;
@@ -19,9 +19,14 @@ const WRITING = 2000;
 
 /** A conversation as a window shows it: what was said, what is being said, and how the connection is. */
 export class Conversation {
-  lines: Line[] = $state([]);
+  /** Plain objects, replaced on each change: there may be thousands. */
+  lines: readonly Line[] = $state.raw([]);
   partial = $state("");
   typing = $state(false);
+  /** Whether the agent's clock stands still. */
+  paused = $state(false);
+  /** Things that the visitor could say first. */
+  suggestions: readonly string[] = $state.raw([]);
   agent = $state("Ravestate");
   status: Status = $state("connecting");
   /** What was said before the page was loaded is still coming: nothing that has to be read out. */
@@ -47,7 +52,7 @@ export class Conversation {
     const token = tokenOfLink();
     if (token !== undefined) this.#keep({ token });
     this.#outbox = (this.#kept.outbox ?? []).map(({ id, text }) => ({ type: "say", id, text }));
-    for (const { id, text } of this.#outbox) this.lines.push({ key: id, from: "user", text });
+    this.lines = this.#outbox.map(({ id, text }) => ({ key: id, from: "user", text }));
     this.#connection = new Connection({
       ...options,
       hello: () => ({
@@ -60,7 +65,7 @@ export class Conversation {
       onframe: (frame) => this.#take(frame),
       onstatus: (status) => {
         this.status = status;
-        if (status !== "open") this.typing = false;
+        if (status !== "open" && status !== "silent") this.typing = this.paused = false;
       },
     });
   }
@@ -90,7 +95,7 @@ export class Conversation {
     const say: Say = { type: "say", id: crypto.getRandomValues(new Uint32Array(3)).join("-"), text };
     this.trouble = "";
     this.#told = Number.NEGATIVE_INFINITY; // what is written next is news
-    this.lines.push({ key: say.id, from: "user", text });
+    this.lines = [...this.lines, { key: say.id, from: "user", text }];
     this.#outbox.push(say);
     this.#keep({ outbox: this.#outbox });
     this.#connection.send(say);
@@ -118,6 +123,7 @@ export class Conversation {
   #take(frame: ServerFrame): void {
     if (frame.type === "welcome") {
       this.agent = frame.agent;
+      this.suggestions = frame.suggestions ?? [];
       this.#listens = frame.writing === true;
       this.trouble = "";
       if (!frame.resumed) {
@@ -128,6 +134,7 @@ export class Conversation {
       this.#recalled = frame.resumed && this.#last === 0 ? (frame.last ?? 0) : 0;
       this.recalling = this.#recalled > 0;
       this.#keep({ session: frame.session });
+      if (frame.inside !== undefined && !frame.resumed) announce(frame.session);
       this.inside = frame.inside === undefined ? "" : this.#linkInside(frame.inside);
       this.partial = "";
       for (const say of this.#outbox) this.#connection.send(say); // what was heard already is not heard again
@@ -135,6 +142,7 @@ export class Conversation {
     else if (frame.type === "message") this.#hear(frame);
     else if (frame.type === "piece") this.partial = this.partial.slice(0, frame.at) + frame.text;
     else if (frame.type === "typing") this.typing = frame.on;
+    else if (frame.type === "paused") this.paused = frame.on;
     else if (frame.type === "error") {
       this.trouble = frame.text;
       if (frame.id !== undefined) this.#giveUp(frame.id);
@@ -158,11 +166,12 @@ export class Conversation {
       line.anew = true;
       this.#anew = false;
     }
-    // What is not heard yet stands at the end.
-    const pending = this.lines.findIndex((other) => other.key === line.key);
-    if (pending >= 0) this.lines.splice(pending, 1);
-    const end = this.lines.findIndex((other) => other.time === undefined);
-    this.lines.splice(end >= 0 ? end : this.lines.length, 0, line);
+    // Lines that nobody has heard yet stay at the end.
+    const others =
+      message.id === undefined ? this.lines : this.lines.filter((other) => other.key !== line.key);
+    let end = others.length;
+    while (end > 0 && others[end - 1]?.time === undefined) end -= 1;
+    this.lines = [...others.slice(0, end), line, ...others.slice(end)];
     if (message.from === "agent") {
       this.partial = "";
     } else if (message.id !== undefined) this.#settle(message.id);
@@ -176,10 +185,9 @@ export class Conversation {
 
   #giveUp(id: string): void {
     this.#settle(id);
-    const line = this.lines.find((other) => other.key === id);
-    if (line === undefined) return;
-    line.refused = true;
-    line.time = Date.now();
+    this.lines = this.lines.map((line) =>
+      line.key === id ? { ...line, refused: true, time: Date.now() } : line,
+    );
   }
 
   /** A link to what shows this conversation from inside; the secrets are in its fragment, which is sent nowhere. */

@@ -27,6 +27,15 @@ export function keep(kept: Kept): void {
   }
 }
 
+/** Tell the boards of this browser that a conversation has begun. They follow the newest one. */
+export function announce(session: string): void {
+  try {
+    localStorage.setItem("ravestate.newest", session);
+  } catch {
+    // then a board shows the newest conversation of the server
+  }
+}
+
 /** The token of a link, `#token=...`, which is taken out of the address so that it is not shown or passed on. */
 export function tokenOfLink(): string | undefined {
   const token = new URLSearchParams(location.hash.slice(1)).get("token");

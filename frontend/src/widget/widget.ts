@@ -4,6 +4,8 @@
 //   data-title   what the button says, "Talk with us" by default
 //   data-token   the token, where the agent asks for one: everybody who reads the page's source can read it
 
+import { RAVEN } from "../lib/raven";
+
 const STYLE = `
   :host { all: initial; }
   button {
@@ -27,9 +29,6 @@ const STYLE = `
 
 /** Milliseconds after the frame has loaded within which the chat in it tells that it is there. */
 const PATIENCE = 1000;
-
-const RAVEN =
-  "M5 45C4 27 11 9 27 8.500C33.500 8.300 37 11.500 38.800 15.500L47 21.800C43.500 24.600 38.500 25 34.600 24.700C33 28.500 33.800 31 35.500 33.500C32.500 33.200 31.500 32.800 30.300 32C30.300 35.500 31.500 38.500 34.500 41C31 41.300 28.800 40.700 26.800 39.500C26.300 42 26.800 43.500 28 45ZM30.800 14.300A2.100 2.100 0 1 0 30.800 18.500A2.100 2.100 0 1 0 30.800 14.300Z";
 
 const script = document.currentScript;
 if (script instanceof HTMLScriptElement) {

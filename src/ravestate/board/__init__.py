@@ -1,5 +1,5 @@
-"""Raveboard, the web debugger: a context's trace, its policy, and the answer to why a rule did not fire.
+"""Raveboard, the web debugger: the trace and policy of a context, and why a rule did not fire.
 
-`application.routes` serves it beside the chat page: conversations that go on, and traces that were recorded. Nothing here
-is imported by the rest of the library but the command line.
+`application.routes` serves it beside the chat page, for running conversations and recorded traces. Only the command line
+imports this package.
 """

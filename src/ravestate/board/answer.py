@@ -1,51 +1,22 @@
-"""The answer to why a rule did not fire: how far it came, the reason in words, what it lacked, and what befell it (L25).
-
-Values; `why_not` has them from a trace.
-"""
+"""The answer to why a rule did not fire, as data (L25). `ravestate.board.why_not` derives it from a trace."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
 
-__all__ = ["FURTHEST", "Missing", "Moment", "Raiser", "Verdict", "WhyNot"]
+from ravestate.engine.explain import seconds
+from ravestate.engine.reasons import Verdict
 
-Verdict = Literal[
-    "fired",  # it did
-    "running",  # it does
-    "waiting",  # it is ready, and kept waiting
-    "outrun",  # it was ready, and another one answered
-    "resigned",
-    "failed",
-    "gated",  # a predicate on a slot was false
-    "young",  # its spikes were not old enough yet
-    "eliminated",  # others waited for it until its patience ran out
-    "withdrawn",  # the spike was wiped, superseded, or dropped
-    "lacked",  # a signal was missing
-    "passed",  # it hears the signal, but did not take the spike
-    "untouched",  # nothing of what it hears occurred
-    "retired",
-]
-"""How far a rule came."""
-
-FURTHEST: dict[str, int] = {
-    verdict: rank
-    for rank, verdict in enumerate(
-        (
-            "fired", "running", "waiting", "outrun", "failed", "resigned", "gated", "young", "eliminated", "withdrawn",
-            "lacked", "passed", "untouched", "retired",
-        )
-    )
-}  # fmt: skip
+__all__ = ["Missing", "Moment", "Raiser", "WhyNot"]
 
 
 @dataclass(frozen=True, slots=True)
 class Raiser:
-    """A rule that might have raised a missing signal, and how that ended in this causal group.
+    """A rule that may raise a missing signal, and how that ended in this causal group.
 
     Attributes:
-        outcome: Of its run; ``running``; or ``not run``.
-        words: The same in words.
+        outcome: The outcome of its run, ``running``, or ``not run``.
+        words: The same as text.
     """
 
     rule: str
@@ -56,7 +27,7 @@ class Raiser:
 
 @dataclass(frozen=True, slots=True)
 class Missing:
-    """A signal that the rule lacked, and who might have raised it."""
+    """A signal that the rule lacked, and the rules that may raise it."""
 
     signal: str
     words: str
@@ -65,7 +36,7 @@ class Missing:
 
 @dataclass(frozen=True, slots=True)
 class Moment:
-    """Something that befell the rule, for this cause; `rules` are the others that it is about."""
+    """Something that happened to the rule for this cause; `rules` are the other rules involved."""
 
     time: float
     words: str
@@ -74,18 +45,17 @@ class Moment:
 
 @dataclass(frozen=True, slots=True)
 class WhyNot:
-    """The answer.
+    """How far a rule came for an input, and why it came no further.
 
     Attributes:
-        rule, spike, signal, time: What was asked; the time is when the spike was born (seconds).
-        verdict: How far the rule came, at best.
+        rule, spike, signal, time: The question; the time is the spike's birth (seconds).
+        verdict: How far the rule came at best.
         words: The reason, in a sentence or two.
-        at: When that was decided (seconds), if it is.
-        clause: By which clause (its number), if it took a spike.
-        missing: What it lacked, and who might have raised it.
-        moments: What befell it, in order; of more than 200 the first and the last, with one between them that says how
-            many are left out.
-        whole: Whether the trace reaches back to before the spike; otherwise something may have gone unseen.
+        at: The time of that decision (seconds); None while it is open.
+        clause: The number of the clause that took a spike, if one did.
+        missing: The signals that the rule lacked.
+        moments: The rule's history for this cause. Beyond 200 moments, the middle is left out and one moment says so.
+        whole: Whether the trace reaches back to before the spike; otherwise the answer may be incomplete.
     """
 
     rule: str
@@ -101,9 +71,9 @@ class WhyNot:
     whole: bool
 
     def __str__(self) -> str:
-        lines = [f"{self.rule}, for {self.signal} at {self.time:.3f} s: {self.words}"]
+        lines = [f"{self.rule}, for {self.signal} at {seconds(self.time)}: {self.words}"]
         for missing in self.missing:
             lines.append(f"  {missing.words}")
             lines += [f"    {raiser.words}" for raiser in missing.raisers]
-        lines += [f"  {moment.time:.3f} s: {moment.words}" for moment in self.moments]
+        lines += [f"  {seconds(moment.time)}: {moment.words}" for moment in self.moments]
         return "\n".join(lines)

@@ -1,6 +1,6 @@
-"""A policy as plain values: what the board shows of it, and what a recorded trace carries along.
+"""A policy as plain values, for the board and for recorded traces.
 
-Everything here can be written to JSON and read back, so that a trace is understood without the agent that made it.
+JSON can express all of it, so a trace is readable without its agent.
 """
 
 from __future__ import annotations
@@ -10,10 +10,10 @@ import math
 from dataclasses import dataclass
 from typing import Any, get_origin
 
+from ravestate.draw.build import build
+from ravestate.draw.graph import Diagram
 from ravestate.policy.completion import UNIT
-from ravestate.policy.diagram.build import build
-from ravestate.policy.diagram.graph import Diagram
-from ravestate.policy.plan import Clause, Need, RulePlan, SignalPlan, SlotPlan
+from ravestate.policy.model import Clause, Need, RulePlan, SignalPlan, SlotPlan
 from ravestate.policy.policy import Policy
 
 __all__ = [
@@ -34,7 +34,7 @@ _Users = dict[str, list[str]]
 
 @dataclass(frozen=True, slots=True)
 class ConstraintView:
-    """A signal that a clause wants; ages in seconds (``max_age=None``: any), predicates by their names."""
+    """A signal in a clause; ages in seconds (``max_age=None``: any), predicates by their names."""
 
     signal: str
     min_age: float
@@ -45,7 +45,7 @@ class ConstraintView:
 
 @dataclass(frozen=True, slots=True)
 class GateView:
-    """A predicate on a slot that gates a clause, and how it is written."""
+    """A slot predicate of a clause, and its source text."""
 
     slot: str
     text: str
@@ -53,7 +53,7 @@ class GateView:
 
 @dataclass(frozen=True, slots=True)
 class Term:
-    """One addend of a utility: a signal that lies on the pathways of so many rules says −ln(rules / |Λ|) nats (L9)."""
+    """One addend of a utility: −ln(rules / |Λ|) nats, where `rules` have the signal on their pathways (L9)."""
 
     signal: str
     rules: int
@@ -62,15 +62,15 @@ class Term:
 
 @dataclass(frozen=True, slots=True)
 class ClauseView:
-    """A clause, and how its utility is made up (nats).
+    """A clause, and the parts of its utility (nats).
 
     Attributes:
-        condition: As it is written.
-        terms: Of the pathway that decides, which is the one that says least.
-        pathways: How many pathways there are.
-        predicates: How many predicates add ln 2 each.
-        utility: The sum of both (L9).
-        base: Utility × weight: the effective utility of a rule that has recovered.
+        condition: Its source text.
+        terms: The addends of the pathway with the least utility, which decides.
+        pathways: The number of pathways.
+        predicates: The number of predicates, which add ln 2 each.
+        utility: The sum of all addends (L9).
+        base: Utility × weight: the effective utility without a cooldown.
     """
 
     condition: str
@@ -85,7 +85,7 @@ class ClauseView:
 
 @dataclass(frozen=True, slots=True)
 class RuleView:
-    """A rule: as declared, with all that it ``raises``, the signals of slots that it writes included."""
+    """A rule as declared. ``raises`` has all signals that it may raise, with those of its slots."""
 
     name: str
     module: str
@@ -108,7 +108,7 @@ class RuleView:
 
 @dataclass(frozen=True, slots=True)
 class SignalView:
-    """A signal: whose it is, whether it may come from outside, who hears it and who raises it."""
+    """A signal: its module, slot and payload, whether it is an input, and the rules that hear and raise it."""
 
     name: str
     module: str
@@ -121,7 +121,7 @@ class SignalView:
 
 @dataclass(frozen=True, slots=True)
 class SlotView:
-    """A slot: ``value``, ``flag`` or ``collection``, the type that it takes, and its signals."""
+    """A slot: its kind (``value``, ``flag`` or ``collection``), type and signals, and the rules that use it."""
 
     name: str
     module: str
@@ -143,12 +143,16 @@ class Description:
     diagram: Diagram
 
     def rule(self, name: str) -> RuleView | None:
-        """The rule of a name, if there is one."""
+        """Return the rule of a name, if there is one."""
         return next((rule for rule in self.rules if rule.name == name), None)
+
+    def signal(self, name: str) -> SignalView | None:
+        """Return the signal of a name, if there is one."""
+        return next((signal for signal in self.signals if signal.name == name), None)
 
 
 def describe(policy: Policy) -> Description:
-    """Describe a policy. It takes a moment (milliseconds for a hundred rules): describe each one once.
+    """Describe a policy. A hundred rules take milliseconds, so describe each policy once.
 
     Example:
         >>> import ravestate as rs
@@ -193,7 +197,7 @@ def _rule(policy: Policy, plan: RulePlan) -> RuleView:
 
 
 def _clause(policy: Policy, clause: Clause) -> ClauseView:
-    pathways = clause.pathways
+    pathways = policy.pathways.of_clause(clause)
     predicates = len(clause.guards) + sum(len(need.predicates) for need in clause.needs)
     least = sorted(signal.name for signal in pathways[0]) if pathways else []
     return ClauseView(
@@ -219,9 +223,7 @@ def _constraint(need: Need) -> ConstraintView:
 
 
 def _term(policy: Policy, clause: Clause, name: str) -> Term:
-    completed = clause.completed
-    assert completed is not None  # a compiled clause has it
-    completion = completed.completion
+    completion = policy.pathways.completion
     nats = completion.information[completion.place[policy.signal_of[name].index]] / UNIT
     return Term(name, round(len(policy.rule_plans) * math.exp(-nats)), round(nats, 12))
 
@@ -253,7 +255,7 @@ def _slot(plan: SlotPlan, readers: _Users, writers: _Users) -> SlotView:
 
 
 def _users(policy: Policy) -> tuple[_Users, _Users]:
-    """For each slot the rules that read it, and those that write it."""
+    """Return the rules that read each slot, and those that write it."""
     readers: _Users = {}
     writers: _Users = {}
     for name, rule in policy.rules.items():

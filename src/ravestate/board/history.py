@@ -1,6 +1,6 @@
-"""What a trace says of one causal group: its spikes, and for each rule the attempts that it made on them.
+"""An index of a trace for one causal group: its spikes, and the attempts of each rule on them.
 
-Built once for a question, from the records alone.
+It is built from the records alone, once for each question.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from itertools import accumulate
 from operator import attrgetter
 
+from ravestate.engine.reasons import Outcome
 from ravestate.engine.trace import (
     Born,
     Dropped,
@@ -25,7 +26,7 @@ from ravestate.engine.trace import (
     Started,
     Told,
     Waits,
-)
+)  # fmt: skip
 
 __all__ = ["Attempt", "History"]
 
@@ -35,22 +36,23 @@ BY_TIME = attrgetter("time")
 
 @dataclass(slots=True)
 class Attempt:
-    """One activation of a rule, as far as the trace tells.
+    """One activation of a rule, as far as the trace shows it.
 
     Attributes:
+        records: All its records, in order.
         held: The spikes that it took, in order.
-        lacks: What it lacked before it ended (signals).
-        complete: When it had all spikes, if it ever had (seconds).
-        waits: When it was ready and kept waiting, for whom.
-        gave_up: What it gave up at its end.
-        started: When it ran.
-        settled: How its run ended.
-        told: Why its run was told to end.
+        lacks: The signals that it lacked before it ended.
+        complete: The time at which it had all spikes (seconds); None: never.
+        waits: The records of its waits.
+        gave_up: The spikes that it gave up at its end.
+        started: The record of its run's start.
+        settled: The record of its run's end.
     """
 
     id: int
     rule: str
     clause: int
+    records: list[Record] = field(default_factory=list[Record])
     held: list[Held] = field(default_factory=list[Held])
     lacks: tuple[str, ...] = ()
     complete: float | None = None
@@ -58,24 +60,23 @@ class Attempt:
     gave_up: list[GaveUp] = field(default_factory=list[GaveUp])
     started: Started | None = None
     settled: Settled | None = None
-    told: Told | None = None
     _missing: tuple[str, ...] = ()
     _holds: set[int] = field(default_factory=set[int])
 
     @property
     def over(self) -> bool:
-        """Whether it has ended."""
+        """Whether the attempt has ended."""
         return self.settled is not None or (self.started is None and not self._holds)
 
     @property
     def end(self) -> float | None:
-        """When it ended (seconds)."""
+        """The time of its end (seconds); None before."""
         if self.settled is not None:
             return self.settled.time
         return self.gave_up[-1].time if self.over and self.gave_up else None
 
     def take(self, record: Held) -> None:
-        """It took a spike."""
+        """Note a spike that the activation took."""
         self.held.append(record)
         self._holds.add(record.spike)
         self.lacks = self._missing = record.lacks
@@ -83,13 +84,11 @@ class Attempt:
         self.gave_up.clear()
 
     def lose(self, record: GaveUp) -> None:
-        """It gave a spike up. What it lacks is as before the first of those that it gives up in one instant."""
-        if self.gave_up and self.gave_up[-1].time == record.time:
-            self._missing = (*self._missing, record.signal)
-        else:
+        """Note a spike that the activation gave up. `lacks` stays as it was before the first loss of this instant."""
+        if not self.gave_up or self.gave_up[-1].time != record.time:
             self.lacks = self._missing
-            self._missing = (*self._missing, record.signal)
             self.gave_up.clear()
+        self._missing = (*self._missing, record.signal)
         self.gave_up.append(record)
         self._holds.discard(record.spike)
 
@@ -102,15 +101,15 @@ class History:
         spike: The number of a spike in it.
 
     Attributes:
-        raising: The number of a run and a signal, for each signal that it raised.
+        raising: A pair for each signal that a run raised: the run's number and the signal.
 
     Raises:
-        LookupError: The trace does not have the spike (any more).
+        LookupError: The trace does not hold the spike, or no longer does.
     """
 
     def __init__(self, records: Iterable[Record], spike: int) -> None:
         self.born: dict[int, Born] = {}
-        self.attempts: dict[str, dict[int, Attempt]] = {}
+        self.attempts: dict[str, list[Attempt]] = {}
         self.passed: dict[str, list[Passed]] = {}
         self.pressed: dict[str, list[Pressed]] = {}
         self.writes: dict[int, list[Set]] = {}
@@ -138,26 +137,26 @@ class History:
         self.group = {id for id, born in self.born.items() if self.root(born.group) == root}
 
     def root(self, group: int) -> int:
-        """The group into which one has merged, at last."""
+        """Return the group into which a group has merged at last."""
         root = group
         while root in self._into:
             root = self._into[root]
-        while group != root:  # who asks again need not follow the way again
+        while group != root:  # shorten the path for the next call
             self._into[group], group = root, self._into[group]
         return root
 
     def of(self, rule: str) -> list[Attempt]:
-        """The attempts of a rule on spikes of the group, in the order of their beginning."""
+        """Return the attempts of a rule on spikes of the group, in the order of their start."""
         if rule not in self._of:
-            self._of[rule] = [a for a in self.attempts.get(rule, {}).values() if self._is_ours(a)]
+            self._of[rule] = [a for a in self.attempts.get(rule, []) if self._is_ours(a)]
         return self._of[rule]
 
     def raised(self, signal: str) -> list[Born]:
-        """The spikes of a signal in the group."""
+        """Return the spikes of a signal in the group."""
         return [self.born[id] for id in self.group if self.born[id].signal == signal]
 
     def ran(self, rule: str, time: float) -> bool:
-        """Whether a rule ran for the group at a time (seconds)."""
+        """Return whether a rule was running for the group at a time (seconds)."""
         if rule not in self._spans:
             spans = sorted(
                 (attempt.started.time, NEVER if attempt.end is None else attempt.end)
@@ -173,24 +172,24 @@ class History:
         return begun > 0 and ends[begun - 1] >= time
 
     def answered(self, hears: Mapping[str, Sequence[Collection[str]]]) -> Attempt | None:
-        """The first run that answered for the group.
+        """Return the first run that answered for the group.
 
         Args:
-            hears: The rules of which it may be one; for each of their clauses, the signals that it takes from others.
-                What a rule only looks at (a detached constraint) it answers to nobody (L19).
+            hears: For each rule that counts, the signals that each of its clauses takes. A detached constraint takes
+                none (L19).
         """
         return next(
             (a for a in self._answers if a.rule in hears and self._is_taken(a, hears[a.rule][a.clause])), None
         )
 
     def _is_taken(self, attempt: Attempt, signals: Collection[str]) -> bool:
-        """Whether an attempt took a spike of one of these signals in the group."""
+        """Return whether an attempt took a spike of one of these signals in the group."""
         started = attempt.started
         spikes = [held.spike for held in attempt.held] if started is None else started.spikes
         return any(spike in self.group and self.born[spike].signal in signals for spike in spikes)
 
     def before(self, run: int) -> str:
-        """The rule that raised what a run of another one took of this group; empty: none, or not known."""
+        """Return the rule that raised a spike that a run took of this group; empty if none did, or the trace lacks it."""
         attempt = self._runs.get(run)
         if attempt is None or attempt.started is None:
             return ""
@@ -202,7 +201,7 @@ class History:
         return ""
 
     def value(self, slot: str, time: float) -> Set | None:
-        """The last write of a slot up to a time (seconds), if the trace has one."""
+        """Return the last write of a slot up to a time (seconds), if the trace has one."""
         written = self.values.get(slot, [])
         number = bisect_right(written, time, key=BY_TIME)
         return written[number - 1] if number else None
@@ -213,11 +212,13 @@ class History:
             started is not None and any(spike in self.group for spike in started.spikes)
         )
 
-    def _attempt(self, id: int, rule: str, clause: int) -> Attempt:
-        attempts = self.attempts.setdefault(rule, {})
-        if id not in attempts:
-            attempts[id] = self._runs[id] = Attempt(id, rule, clause)
-        return attempts[id]
+    def _attempt(self, id: int, record: Held | Started) -> Attempt:
+        attempt = self._runs.get(id)
+        if attempt is None:
+            attempt = self._runs[id] = Attempt(id, record.rule, record.clause)
+            self.attempts.setdefault(record.rule, []).append(attempt)
+        attempt.records.append(record)
+        return attempt
 
     def _read(self, record: Record) -> None:
         match record:
@@ -225,24 +226,23 @@ class History:
                 self.born[record.spike] = record
                 self.raising.add((record.source, record.signal))
             case Held():
-                self._attempt(record.activation, record.rule, record.clause).take(record)
-            case GaveUp():
-                if record.activation in self._runs:  # else it took the spike before the trace began
-                    self._runs[record.activation].lose(record)
-            case Waits():
-                if record.activation in self._runs:
-                    self._runs[record.activation].waits.append(record)
+                self._attempt(record.activation, record).take(record)
             case Started():
-                self._attempt(record.run, record.rule, record.clause).started = record
-            case Settled():
-                if record.run in self._runs:
-                    self._runs[record.run].settled = record
-                    if record.fired:
-                        self._answers.append(self._runs[record.run])
-                if record.fired:
-                    self.fired.setdefault(record.rule, []).append(record.time)
-                if record.outcome == "retired":
-                    self.retired.setdefault(record.rule, record.time)
+                self._attempt(record.run, record).started = record
+            case GaveUp() | Waits():
+                attempt = self._runs.get(record.activation)
+                if attempt is not None:  # else it began before the trace
+                    attempt.records.append(record)
+                    if isinstance(record, GaveUp):
+                        attempt.lose(record)
+                    else:
+                        attempt.waits.append(record)
+            case Told() | Settled():
+                attempt = self._runs.get(record.run)
+                if attempt is not None:
+                    attempt.records.append(record)
+                if isinstance(record, Settled):
+                    self._settle(record, attempt)
             case Passed():
                 self.passed.setdefault(record.rule, []).append(record)
             case Pressed():
@@ -251,12 +251,17 @@ class History:
                 self.writes.setdefault(record.run, []).append(record)
                 self.values.setdefault(record.slot, []).append(record)
             case Merged():
-                if (
-                    self.root(record.into) != record.group
-                ):  # a file may say anything, but groups do not merge in circles
+                if self.root(record.into) != record.group:  # a damaged file may merge groups in a circle
                     self._into[record.group] = record.into
-            case Told():
-                if record.run in self._runs:
-                    self._runs[record.run].told = record
             case Dropped():
                 self.dropped[record.spike] = record
+
+    def _settle(self, record: Settled, attempt: Attempt | None) -> None:
+        if attempt is not None:
+            attempt.settled = record
+            if record.fired:
+                self._answers.append(attempt)
+        if record.fired:
+            self.fired.setdefault(record.rule, []).append(record.time)
+        if record.outcome == Outcome.RETIRED:
+            self.retired.setdefault(record.rule, record.time)

@@ -1,29 +1,51 @@
-"""One inspector: a WebSocket over which a browser sees what happens, and asks and does things."""
+"""An inspector: one WebSocket between the board's page and a running conversation or a recording."""
 
 from __future__ import annotations
 
 import asyncio
-import json
 from time import perf_counter
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from starlette.websockets import WebSocket
 
 from ravestate.board import picture
-from ravestate.board.commands import Command, Diagram, Explain, Hello, Look, Ping, Why, parse
-from ravestate.board.leisure import Leisure
+from ravestate.board.idle_share import IdleShare
+from ravestate.board.protocol import (
+    VERSION,
+    Answer,
+    Changed,
+    ClientFrame,
+    Conversation,
+    Conversations,
+    Ended,
+    Error,
+    Explain,
+    Hello,
+    Look,
+    Ping,
+    Pong,
+    Records,
+    Renamed,
+    ServerFrame,
+    Unfold,
+    Welcome,
+    Why,
+    fields_of,
+    parse,
+    serialise,
+)  # fmt: skip
 from ravestate.board.recorder import Gap, Recorders
-from ravestate.board.shelf import Shelf
-from ravestate.board.subject import Live, Recorded, Subject
+from ravestate.board.recordings import Recordings
+from ravestate.board.source import LiveSource, RecordedSource, Source
 from ravestate.board.why_not import why_not
-from ravestate.board.wire import VERSION, data_of, whole_data
+from ravestate.board.wire import data_of
 from ravestate.errors import RavestateError
 from ravestate.modules.platform.webio.bucket import Bucket
 from ravestate.modules.platform.webio.channel import Channel
 from ravestate.modules.platform.webio.protocol import ProtocolError
 
 if TYPE_CHECKING:
-    from ravestate.modules.platform.webio.gate import Gate
+    from ravestate.modules.platform.webio.access import Access
     from ravestate.modules.platform.webio.session import Session
     from ravestate.modules.platform.webio.sessions import Sessions
 
@@ -33,71 +55,71 @@ FRAME = 0.05
 """Seconds between two frames of records."""
 
 SHARE = 0.015
-"""The share of the loop's time that telling one inspector may take: a frame that took long is followed by a long pause."""
+"""The share of the loop's time for one inspector: after a slow frame comes a long pause."""
 
 OF_SPARE = 0.5
-"""Of the time that the process has to spare, the share that it may take besides."""
+"""The share of the process's idle time that an inspector may use as well."""
 
 MOST = 800
-"""Records in one frame: more would hold the agent up."""
+"""The most records in a frame; more would delay the agent."""
 
 BACKLOG = 20_000
-"""Records of the past that an inspector gets when it comes."""
+"""The most past records that a new inspector gets."""
 
 LAG = 25_000
-"""Records by which an inspector may be behind; more are left out, so that it sees what happens now."""
+"""The most records that an inspector may lag behind. Beyond it, the server skips to the present."""
 
 BURST, SPEED = 60, 30.0
-"""Commands that are taken at once, and each second after that. Who sends more has to wait."""
+"""The rate limit: commands at once, and commands a second after that."""
 
 LISTED = 1.0
-"""Seconds between two looks at which conversations there are."""
+"""Seconds between two checks of the list of conversations."""
 
 LIST = 100
-"""Conversations that are listed: the newest, and the one that is looked at."""
+"""The most conversations in the list: the newest, and the shown one."""
 
 WORDS = 48
-"""Characters of a visitor's last words, by which a conversation is known."""
+"""The most characters of a visitor's last words in the list."""
 
 REPLIES = 64
-"""Answers that may wait for a client."""
+"""The most answers in the queue for a client."""
 
 HELLO = f'{{"type": "hello", "v": {VERSION}}}'
 
 
 class Inspector:
-    """Carries the board's protocol over one WebSocket.
+    """The server's side of the board's protocol, for one WebSocket.
 
     Args:
-        socket: Not accepted yet.
-        gate: Knows the token.
+        socket: The connection, not accepted yet.
+        access: Checks the token.
         sessions: The conversations.
-        recorders: Those of their contexts.
-        shelf: The recordings.
-        title: What the agent is called; None: what it calls itself.
+        recorders: The recorders of their contexts.
+        recordings: The recordings.
+        title: The agent's name; None: the name that the agent gives itself.
     """
 
     def __init__(
         self,
         socket: WebSocket,
-        gate: Gate,
+        access: Access,
         sessions: Sessions,
         recorders: Recorders,
-        shelf: Shelf,
+        recordings: Recordings,
         title: str | None,
     ) -> None:
         self._channel = Channel(socket, REPLIES)
-        self._gate = gate
+        self._access = access
         self._sessions = sessions
         self._recorders = recorders
-        self._shelf = shelf
+        self._recordings = recordings
         self._title = title
 
     def wake(self) -> None:
-        """As an onlooker of a conversation: what it has to tell stands in the records."""
+        """Ignore news of the conversation: the records have it all."""
 
     async def run(self) -> None:
-        """Serve the browser until either side closes."""
+        """Serve the page until either side closes."""
         await self._channel.carry(self._serve)
 
     async def _serve(self) -> None:
@@ -105,38 +127,33 @@ class Inspector:
         session: Session | None = None
         recorded = self._recording(hello)
         if recorded is not None:
-            subject: Subject = recorded
+            source: Source = recorded
             title = recorded.title
         else:
             session = await self._session(hello)
             self._sessions.enter(session, self)
-            subject = Live(session, self._recorders.of(session.context))
+            source = LiveSource(session, self._recorders.of(session.context))
             title = self._title_of(session)
         try:
             if session is not None:
-                await asyncio.sleep(0)  # a conversation that is new has begun by now
-            seen = max(subject.first - 1, subject.last - BACKLOG)
+                await asyncio.sleep(0)  # a new conversation begins
+            seen = max(source.first - 1, source.last - BACKLOG)
+            visitor = None if session is None else session.visitor
+            whole = source.whole and seen == 0
             await self._send(
-                {
-                    "type": "welcome",
-                    "v": VERSION,
-                    "title": title,
-                    "live": subject.live,
-                    "visitor": None if session is None else session.visitor,
-                    "whole": subject.whole and seen == 0,
-                    "policy": whole_data(subject.description),
-                    **subject.clock(),
-                }
+                Welcome(VERSION, title, source.live, visitor, whole, source.description, *source.clock())
             )
-            await self._send({"type": "state", **subject.look(), **subject.clock()})
-            await self._channel.both(self._read(subject), self._write(subject, session, seen, title))
+            await self._send(source.look())
+            await self._channel.both(self._read(source), self._write(source, session, seen, title))
         finally:
             if session is not None:
                 self._sessions.exit(session, self)
-                if isinstance(subject, Live) and not any(isinstance(o, Inspector) for o in session.onlookers):
-                    subject.leave()
+                if isinstance(source, LiveSource) and not any(
+                    isinstance(o, Inspector) for o in session.onlookers
+                ):
+                    source.leave()
 
-    # ------------------------------------------------------------------------------------ what is looked at
+    # ------------------------------------------------------------------------------------ the first frame
 
     async def _hello(self) -> Hello:
         text = await self._channel.first(HELLO)
@@ -148,16 +165,16 @@ class Inspector:
             raise ProtocolError("malformed", f"begin with {HELLO}")
         if command.v != VERSION:
             raise ProtocolError("version", f'"v": {command.v}: this side speaks version {VERSION} only')
-        await self._gate.check_token(command.token)
+        await self._access.check_token(command.token)
         return command
 
-    def _recording(self, hello: Hello) -> Recorded | None:
+    def _recording(self, hello: Hello) -> RecordedSource | None:
         if hello.session is not None or hello.visitor is not None:
             return None
-        recording = self._shelf.get(hello.recording)
+        recording = self._recordings.get(hello.recording)
         if recording is None and hello.recording is not None:
-            raise ProtocolError("gone", "this recording is kept no more: open its file again")
-        return None if recording is None else Recorded(recording)
+            raise ProtocolError("gone", "the server no longer keeps this recording: open its file again")
+        return None if recording is None else RecordedSource(recording)
 
     async def _session(self, hello: Hello) -> Session:
         if hello.session is not None:
@@ -165,15 +182,15 @@ class Inspector:
         elif hello.visitor is not None:
             session = next((s for s in self._sessions if s.visitor == hello.visitor), None)
         else:
-            going_on = [session for session in self._sessions if not session.leaving]
-            return going_on[-1] if going_on else await self._sessions.open()
+            running = [session for session in self._sessions if not session.leaving]
+            return running[-1] if running else await self._sessions.open()
         if session is None:
             raise ProtocolError("gone", "this conversation has ended")
         return session
 
-    # ------------------------------------------------------------------------------------ from the browser
+    # ------------------------------------------------------------------------------------ from the page
 
-    async def _read(self, subject: Subject) -> None:
+    async def _read(self, source: Source) -> None:
         now = asyncio.get_running_loop().time
         bucket = Bucket(burst=BURST, rate=SPEED, now=now())
         while True:
@@ -184,106 +201,94 @@ class Inspector:
             try:
                 command = parse(text)
             except ValueError as error:
-                self._reply({"type": "error", "code": "malformed", "text": str(error)})
+                self._reply(Error("malformed", str(error)))
                 continue
             try:
-                await self._take(command, subject)
+                await self._take(command, source)
             except (RavestateError, LookupError, ValueError) as error:
                 words = str(error.args[0]) if isinstance(error, LookupError) and error.args else str(error)
-                self._reply({"type": "error", "code": "refused", "text": words, "of": command.type})
+                self._reply(Error("refused", words, command.type))
 
-    async def _take(self, command: Command, subject: Subject) -> None:
+    async def _take(self, command: ClientFrame, source: Source) -> None:
         match command:
             case Why():
-                records = [
-                    r for r in subject.since(subject.first - 1, subject.last) if not isinstance(r, Gap)
-                ]
+                records = [r for r in source.since(source.first - 1, source.last) if not isinstance(r, Gap)]
                 found = await asyncio.to_thread(
                     why_not,
                     records,
-                    subject.description,
+                    source.description,
                     command.rule,
                     command.spike,
-                    subject.opens,
-                    subject.whole,
+                    source.opens,
+                    source.whole,
                 )
-                self._reply({"type": "why", **whole_data(found)})
-            case Diagram():
-                drawn = await asyncio.to_thread(
-                    picture.draw, subject.description.diagram, frozenset(command.unfolded)
-                )
-                self._reply({"type": "diagram", "unfolded": command.unfolded, **drawn})
+                self._reply(Answer(**fields_of(found)))
+            case Unfold():
+                diagram = source.description.diagram
+                self._reply(await asyncio.to_thread(picture.draw, diagram, command.unfolded))
             case Explain():
-                self._reply({"type": "explained", "rule": command.rule, **subject.explain(command.rule)})
+                self._reply(source.explain(command.rule))
             case Look():
-                self._reply({"type": "state", **subject.look(), **subject.clock()})
+                self._reply(source.look())
             case Ping():
-                self._reply({"type": "pong"})
+                self._reply(Pong())
             case Hello():
-                raise ValueError("hello is said once, at the beginning")
+                raise ValueError("hello comes once, first")
             case _:
-                await subject.act(command)
+                await source.act(command)
 
-    def _reply(self, frame: dict[str, Any]) -> None:
-        self._channel.reply(_json(frame))
+    def _reply(self, frame: ServerFrame) -> None:
+        self._channel.reply(serialise(frame))
 
-    # ------------------------------------------------------------------------------------ to the browser
+    # ------------------------------------------------------------------------------------ to the page
 
-    async def _write(self, subject: Subject, session: Session | None, seen: int, title: str) -> None:
-        """Tell what happens, some twenty times a second at most, and answer."""
-        leisure = Leisure()
-        clock: dict[str, Any] = {}
-        listed: dict[str, Any] = {}
+    async def _write(self, source: Source, session: Session | None, seen: int, title: str) -> None:
+        """Send records, some twenty times a second at most, and answers."""
+        idle = IdleShare()
+        sent: bool | None = None  # whether the clock was stopped, as the page knows it
+        listed: Conversations | None = None
         now, looked = asyncio.get_running_loop().time, -LISTED
         while True:
             began = perf_counter()
             self._channel.woken.clear()
             await self._channel.send_replies()
-            if isinstance(subject, Live) and subject.renewed():
-                await self._send({"type": "policy", "policy": whole_data(subject.description)})
+            if isinstance(source, LiveSource) and source.renewed():
+                await self._send(Changed(source.description))
             if session is not None and self._title_of(session) != title:
                 title = self._title_of(session)
-                await self._send({"type": "renamed", "title": title})
+                await self._send(Renamed(title))
             if session is not None and now() - looked >= LISTED:
                 looked = now()
                 if (conversations := self._conversations(session)) != listed:
                     listed = conversations
-                    await self._send({"type": "conversations", **listed})
-            missed = max(0, subject.first - 1 - seen)
-            if subject.live and subject.last - seen > LAG:
-                missed = subject.last - seen - MOST
-            records = subject.since(seen + missed, MOST)
-            paused = subject.clock()["paused"]
+                    await self._send(listed)
+            missed = max(0, source.first - 1 - seen)
+            if source.live and source.last - seen > LAG:
+                missed = source.last - seen - MOST
+            records = source.since(seen + missed, MOST)
+            clock = source.clock()
             text = ""
             gap = False
-            if records or missed or paused != clock.get("paused"):
+            if records or missed or clock[1] != sent:
+                sent = clock[1]
                 seen += missed + len(records)
-                clock = subject.clock()
                 gap = missed > 0 or any(isinstance(record, Gap) for record in records)
-                behind = subject.last - seen
-                text = _json(
-                    {
-                        "type": "records",
-                        "records": [data_of(record) for record in records],
-                        "missed": missed,
-                        "behind": behind,
-                        **clock,
-                    }
-                )
+                data = [data_of(record) for record in records]
+                text = serialise(Records(data, missed, source.last - seen, *clock))
             took = perf_counter() - began
             if text:
                 await self._channel.send(text)
-            if gap and subject.live:
-                await self._send({"type": "state", **subject.look(), **subject.clock()})
-            if session is not None and session.ended is not None and seen >= subject.last:
-                await self._send({"type": "ended", "text": session.ended})
+            if gap and source.live:
+                await self._send(source.look())
+            if session is not None and session.ended is not None and seen >= source.last:
+                await self._send(Ended(session.ended))
                 await self._channel.end()
                 return
-            seconds = max(FRAME, took / (SHARE + OF_SPARE * leisure.share())) if text else FRAME
-            await self._pause(seconds if subject.live else 0.0, seen < subject.last)
+            seconds = max(FRAME, took / (SHARE + OF_SPARE * idle.share())) if text else FRAME
+            await self._pause(seconds if source.live else 0.0, seen < source.last)
 
     async def _pause(self, seconds: float, more: bool) -> None:
-        """Until the next frame; answers need not wait so long."""
+        """Wait for the next frame, or for an answer to send."""
         if seconds == 0.0 and not more:
             await self._channel.woken.wait()
             return
@@ -296,31 +301,19 @@ class Inspector:
     def _title_of(self, session: Session) -> str:
         return session.agent if self._title is None else self._title
 
-    def _conversations(self, own: Session) -> dict[str, Any]:
-        """Those that go on, the oldest first, and how many more there are."""
-        going_on = list(self._sessions)
-        listed = going_on[-LIST:]
-        if own in going_on[:-LIST]:
+    def _conversations(self, own: Session) -> Conversations:
+        """Return the newest conversations and the shown one."""
+        running = list(self._sessions)
+        listed = running[-LIST:]
+        if own in running[:-LIST]:
             listed[0] = own
-        return {
-            "conversations": [_conversation(session) for session in listed],
-            "more": len(going_on) - len(listed),
-        }
+        return Conversations([_conversation(session) for session in listed], len(running) - len(listed))
 
-    async def _send(self, frame: dict[str, Any]) -> None:
-        await self._channel.send(_json(frame))
+    async def _send(self, frame: ServerFrame) -> None:
+        await self._channel.send(serialise(frame))
 
 
-def _conversation(session: Session) -> dict[str, Any]:
+def _conversation(session: Session) -> Conversation:
     newest = session.history.newest("user")
-    return {
-        "visitor": session.visitor,
-        "name": session.name,
-        "began": session.began,
-        "said": None if newest is None else newest.text[:WORDS],
-    }
-
-
-def _json(frame: dict[str, Any]) -> str:
-    """In ASCII, as there may be halves of characters in it, which nothing else can be sent with."""
-    return json.dumps(frame, separators=(",", ":"))
+    said = None if newest is None else newest.text[:WORDS]
+    return Conversation(session.visitor, session.name, session.began, said)

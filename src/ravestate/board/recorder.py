@@ -1,13 +1,13 @@
-"""What happens in a context, kept for whoever looks in: bounded in memory, and in what it costs the agent.
+"""Recorders: they keep the records of contexts for inspectors, with bounded memory and cost.
 
-Nobody has a queue of their own: records are numbered, and an inspector reads those that it has not seen. One that does
-not read misses what is kept no more; it holds nobody up.
+Inspectors have no queues. Records are numbered, and each inspector reads the ones that it lacks. A slow inspector misses
+the records that are gone, and delays nobody.
 
-Making records is dear for an agent that does nothing else. So a recorder takes a burst, then so many a second, more of
-them while the process has time to spare; beyond that it stops listening for a moment, in which the engine makes none,
-and a `Gap` says how many spikes went unseen.
+Making records is expensive for a busy agent, so a rate limit applies: a burst, then a steady rate, and more while the
+process is idle. Beyond the limit, a recorder stops listening for a moment, and the engine makes no records. A `Gap` says
+how many spikes the recorder missed.
 
-All recorders of an agent share what is kept: when it is too much, the longest are shortened to one length.
+All recorders of an agent share one limit. Beyond it, the longest ones are shortened to one length.
 """
 
 from __future__ import annotations
@@ -19,41 +19,41 @@ from dataclasses import dataclass
 from itertools import islice
 from weakref import WeakKeyDictionary, ref
 
-from ravestate.board.leisure import Leisure
+from ravestate.board.idle_share import IdleShare
 from ravestate.engine.trace import Born, Record
 from ravestate.runtime.context import Context
 
 __all__ = ["BURST", "IN_ALL", "KEPT", "RATE", "Gap", "Recorder", "Recorders"]
 
 KEPT = 100_000
-"""Records of one context that are kept."""
+"""The most records of one context."""
 
 IN_ALL = 500_000
-"""Records of all contexts that are kept, as far as they are shared out: some 136 bytes each, and their payloads."""
+"""The most records of all contexts together, at some 136 bytes each, and their payloads."""
 
-LUMP = 100
-"""Records after which a recorder tells that it has grown."""
+BATCH = 100
+"""The number of records between two reports of growth."""
 
 BURST = 20_000
-"""Records that are taken at once."""
+"""The most records at once."""
 
 RATE = 2_000
-"""Records a second that are taken after that of an agent that is busy all the time."""
+"""Records a second after a burst, from an agent that is always busy."""
 
 SPARE = 60_000
-"""Records a second that are taken besides, times the share of its time that the process has to spare."""
+"""Further records a second, times the idle share of the process."""
 
 PAUSE = 0.1
-"""Seconds for which a recorder that has taken too much does not listen."""
+"""Seconds without listening, after too many records."""
 
 
 @dataclass(slots=True)
 class Gap:
-    """Here something went unseen.
+    """A gap in the records.
 
     Attributes:
-        time: Since when (seconds).
-        spikes: How many spikes were born meanwhile; -1 as long as that is not known.
+        time: Its start (seconds).
+        spikes: How many spikes the recorder missed; -1 while that is unknown.
     """
 
     time: float
@@ -61,16 +61,16 @@ class Gap:
 
 
 class Recorder:
-    """Keeps what happens in a context from now on.
+    """Keeps the records of a context from now on.
 
     Args:
-        context: Running, or not begun yet.
-        kept: Records to keep.
-        burst: Records to take at once.
-        rate: Records a second to take after that.
-        spare: Records a second to take besides, times the share of time that the process has to spare.
-        whole: Whether the context has not begun yet, so that nothing is missed.
-        grown: Called after each `LUMP` of records.
+        context: A context, running or not.
+        kept: The most records to keep.
+        burst: The most records at once.
+        rate: Records a second after a burst.
+        spare: Further records a second, times the idle share of the process.
+        whole: Whether the context has not started yet, so that the records are complete.
+        grown: A callback after each `BATCH` of records.
     """
 
     def __init__(
@@ -89,39 +89,39 @@ class Recorder:
         self._burst = burst
         self._rate = rate
         self._spare = spare
-        self._leisure = Leisure()
-        self._left = 0  # the first record is granted a burst
+        self._idle_share = IdleShare()
+        self._left = 0  # the first record earns a burst
         self._granted: float | None = None
-        self._spike = 0  # the newest that was seen, whether it is still kept or not
+        self._spike = 0  # the newest spike so far
         self._gap: Gap | None = None
         self._leave: Callable[[], None] = lambda: None
         self.records: deque[Record | Gap] = deque(maxlen=kept)
-        """The newest, oldest first."""
+        """The newest records, oldest first."""
         self.last = 0
-        """The number of the newest: how many there have been."""
+        """The number of the newest record, which is the number of all records so far."""
         self.missed = 0
-        """Spikes that went unseen."""
+        """How many spikes the recorder missed."""
         self.whole = whole
-        """Whether it has been there from the beginning."""
+        """Whether it has listened from the start."""
         self._listen()
 
     @property
     def first(self) -> int:
-        """The number of the oldest that is kept."""
+        """The number of the oldest record that is kept."""
         return self.last - len(self.records) + 1
 
     def since(self, number: int, most: int) -> list[Record | Gap]:
-        """Records after a number, at most so many."""
+        """Return at most `most` records after a number."""
         skip = max(0, number - self.first + 1)
         length = len(self.records)
-        if length - skip < skip:  # a deque is quick from both ends
+        if length - skip < skip:  # a deque is fast at both ends
             tail = list(islice(reversed(self.records), length - skip))
             tail.reverse()
             return tail[:most]
         return list(islice(self.records, skip, skip + most))
 
     def shorten(self, length: int) -> None:
-        """Keep the newest records only, so many at most."""
+        """Keep at most `length` records, the newest ones."""
         while len(self.records) > length:
             self.records.popleft()
 
@@ -139,21 +139,21 @@ class Recorder:
     def _keep(self, record: Record | Gap) -> None:
         self.records.append(record)
         self.last += 1
-        if self.last % LUMP == 0:
+        if self.last % BATCH == 0:
             self._grown()
 
     def _take_after_gap(self, record: Record) -> None:
-        """Until the number of a spike tells how many went unseen."""
+        """Take the first spike after a gap, whose number shows how many spikes were missed."""
         if isinstance(record, Born) and self._gap is not None:
             self._gap.spikes = record.spike - self._spike - 1
             self.missed += self._gap.spikes
             self._gap = None
             self._leave()
             self._listen()
-        self._take(record)  # after which it may rest
+        self._take(record)  # may begin the next gap
 
     def _rest(self) -> None:
-        """What it may take is used up: go on if there was time enough meanwhile, or else stop listening for a moment."""
+        """Earn further records for the time that has passed, or else stop listening for a moment."""
         loop = asyncio.get_running_loop()
         now = loop.time()
         earned = self._burst if self._granted is None else (now - self._granted) * self._speed()
@@ -173,15 +173,15 @@ class Recorder:
         self._listen()
 
     def _speed(self) -> float:
-        """Records a second that it may take now."""
-        return self._rate + self._spare * self._leisure.share()
+        """Return the current rate (records a second)."""
+        return self._rate + self._spare * self._idle_share.share()
 
 
 class Recorders:
-    """The recorder of each context that is, or was, looked into; it goes with the context.
+    """The recorders of an agent's contexts. Each lives as long as its context.
 
     Args:
-        in_all: Records to keep of all contexts together. At times it is a little more: a fiftieth, and a lump of each.
+        in_all: The most records of all contexts together. The limit may be exceeded by a fiftieth and a batch of each.
     """
 
     def __init__(self, in_all: int = IN_ALL) -> None:
@@ -189,10 +189,10 @@ class Recorders:
         self._grown = 0
         self._of: WeakKeyDictionary[Context, ref[Recorder]] = (
             WeakKeyDictionary()
-        )  # it is held by what it listens to
+        )  # the context holds its recorder
 
     def of(self, context: Context, *, whole: bool = False) -> Recorder:
-        """The recorder of a context: made when it is first asked for; `whole` as for `Recorder`."""
+        """Return the recorder of a context, new at the first call; `whole` is as for `Recorder`."""
         known = self._of.get(context)
         found = None if known is None else known()
         if found is None:
@@ -201,8 +201,8 @@ class Recorders:
         return found
 
     def _grow(self) -> None:
-        self._grown += LUMP
-        if self._grown * 50 >= self._in_all:  # seldom, so that it costs each record next to nothing
+        self._grown += BATCH
+        if self._grown * 50 >= self._in_all:  # rarely, so that it costs almost nothing a record
             self._grown = 0
             recorders = [found for known in self._of.values() if (found := known()) is not None]
             length = _fair([len(recorder.records) for recorder in recorders], self._in_all)
@@ -211,7 +211,7 @@ class Recorders:
 
 
 def _fair(lengths: list[int], in_all: int) -> int:
-    """The length to which the longest are shortened, so that all have no more than so much together.
+    """Return the length to which the longest have to be cut, for a total of at most `in_all`.
 
     Example:
         >>> _fair([10, 500, 700], 610)

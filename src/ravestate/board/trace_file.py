@@ -1,43 +1,69 @@
-"""Recorded traces: a JSON file with the policy and what happened, to be looked at without the agent."""
+"""Recorded traces: JSON files with a policy and its records, which the board shows without the agent."""
 
 from __future__ import annotations
 
+import dataclasses
+import io
 import json
+import os
+import pickle
 import re
+import subprocess
+import sys
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, cast
+from typing import Any, Literal
+
+import pydantic
 
 from ravestate.board.description import Description, describe
 from ravestate.board.recorder import Gap
-from ravestate.board.shown import well_formed
-from ravestate.board.wire import VERSION, data_of, description_of, record_of, whole_data
+from ravestate.board.rendering import well_formed
+from ravestate.board.wire import VERSION, TraceRecord, checked_record, data_of
 from ravestate.engine.trace import Record
 from ravestate.errors import PlatformError
 from ravestate.policy.policy import Policy
 
-__all__ = ["FORMAT", "Recording", "open_trace", "read_trace", "save_trace"]
+__all__ = ["FORMAT", "Recording", "open_trace", "read_apart", "read_trace", "save_trace"]
 
 FORMAT = "ravestate-trace"
 
+MOST_VALUES = 6_000_000
+"""The most commas and brackets in a file: more would fill the memory. 64 MB of records have some four million."""
+
+LONGEST = 120
+"""The most seconds for reading a file."""
+
+CHUNK = 1000
+"""Records that pass between processes at once. While they are unpacked, no other thread runs."""
+
 SURROGATE = re.compile(r"\\u[dD][89a-fA-F]")
-"""Half of a pair, as JSON spells it."""
+"""One half of a surrogate pair in JSON."""
 
 
 @dataclass(frozen=True, slots=True)
 class Recording:
-    """A trace that was recorded, and the policy that it is of.
+    """A recorded trace and its policy.
 
     Attributes:
-        title: What the agent was called.
-        whole: Whether it begins with the context.
+        title: The agent's name.
+        whole: Whether the trace begins with the context.
     """
 
     title: str
     description: Description
     records: tuple[Record | Gap, ...]
     whole: bool
+
+
+class _File(pydantic.BaseModel):
+    format: Literal["ravestate-trace"]
+    v: Literal[1]
+    records: list[TraceRecord]
+    policy: Description
+    title: str = "Ravestate"
+    whole: bool = False
 
 
 def save_trace(
@@ -48,7 +74,7 @@ def save_trace(
     title: str = "Ravestate",
     whole: bool = True,
 ) -> None:
-    """Write a trace to a file that the board opens; ``context.trace`` of a context with ``trace=True`` is one.
+    """Write a trace to a file for the board, for example ``context.trace`` of a context with ``trace=True``.
 
     Raises:
         OSError: The file cannot be written.
@@ -58,7 +84,7 @@ def save_trace(
         "v": VERSION,
         "title": title,
         "whole": whole,
-        "policy": whole_data(describe(policy)),
+        "policy": dataclasses.asdict(describe(policy)),
         "records": [data_of(record) for record in records],
     }
     path.write_text(well_formed(json.dumps(data, ensure_ascii=False)), encoding="utf-8")
@@ -68,7 +94,7 @@ def open_trace(path: Path) -> Recording:
     """Read a trace from a file.
 
     Raises:
-        PlatformError: It cannot be read, or is no trace.
+        PlatformError: The file cannot be read, or is no trace.
     """
     try:
         return read_trace(path.read_bytes())
@@ -79,42 +105,52 @@ def open_trace(path: Path) -> Recording:
 
 
 def read_trace(text: str | bytes) -> Recording:
-    """Read a trace. Texts in it that no encoding carries, as they have lone surrogates, are mended.
+    """Read a trace. Lone surrogates in its texts are replaced.
 
     Raises:
-        ValueError: It is none; the message says where it is wrong.
+        ValueError: The text is no trace; the message names the place of the fault.
     """
+    data = text if isinstance(text, bytes) else text.encode("utf-8", "surrogatepass")
+    if sum(map(data.count, (b",", b"[", b"{"))) > MOST_VALUES:
+        raise ValueError(f"it has more than {MOST_VALUES:,} values")
     try:
-        found = _parsed(text)
+        found = _parsed(data.decode("utf-8-sig", "surrogatepass"))
     except (ValueError, RecursionError):
         raise ValueError("it is not JSON") from None
-    if not isinstance(found, dict) or cast("dict[str, Any]", found).get("format") != FORMAT:
-        raise ValueError(f'it lacks "format": "{FORMAT}"')
-    data = cast("dict[str, Any]", found)
-    if data.get("v") != VERSION:
-        raise ValueError(f'"v": {str(data.get("v"))[:20]}: this release reads version {VERSION}')
-    records: Any = data.get("records")
-    if not isinstance(records, list):
-        raise ValueError('"records" must be a list')
-    read: list[Record | Gap] = []
-    for number, record in enumerate(cast("list[Any]", records)):
-        try:
-            read.append(record_of(record))
-        except ValueError as error:
-            raise ValueError(f"record {number}: {_first(error)}") from None
     try:
-        description = description_of(data.get("policy"))
-    except ValueError as error:
-        raise ValueError(f'"policy": {_first(error)}') from None
-    return Recording(
-        str(data.get("title", "Ravestate"))[:80], description, tuple(read), data.get("whole") is True
-    )
+        file = _File.model_validate(found)
+    except pydantic.ValidationError as error:
+        first = error.errors(include_url=False, include_input=False)[0]
+        raise ValueError(f"{'.'.join(map(str, first['loc']))}: {first['msg']}") from None
+    records = tuple(map(checked_record, file.records))
+    return Recording(file.title[:80], file.policy, records, file.whole)
 
 
-def _parsed(text: str | bytes) -> Any:
-    """What JSON stands for, its texts well formed."""
-    if isinstance(text, bytes):
-        text = text.decode("utf-8-sig", "surrogatepass")
+def read_apart(data: bytes) -> Recording:
+    """Read a trace in a process of its own, so that other threads of this one run on.
+
+    Raises:
+        ValueError: The data is no trace, or reading takes too long.
+    """
+    command = [sys.executable, "-m", __name__]
+    paths = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
+    try:
+        done = subprocess.run(
+            command, input=data, capture_output=True, env=paths, timeout=LONGEST, check=False
+        )
+    except subprocess.TimeoutExpired:
+        raise ValueError(f"reading it takes more than {LONGEST} s") from None
+    if done.returncode:
+        raise ValueError(done.stderr.decode("utf-8", "replace").strip() or "reading it fails")
+    chunks = io.BytesIO(done.stdout)
+    title, description, whole = pickle.load(chunks)
+    records: list[Record | Gap] = []
+    while chunk := pickle.load(chunks):
+        records += chunk
+    return Recording(title, description, tuple(records), whole)
+
+
+def _parsed(text: str) -> Any:
     text = well_formed(text)
     found = json.loads(text)
     if SURROGATE.search(text) is None:
@@ -122,11 +158,21 @@ def _parsed(text: str | bytes) -> Any:
     return json.loads(well_formed(json.dumps(found, ensure_ascii=False)))
 
 
-def _first(error: ValueError) -> str:
-    """The first of what pydantic has to say, in one line."""
-    errors: Any = getattr(error, "errors", None)
-    if errors is None:
-        return str(error)
-    first = errors()[0]
-    place = ".".join(str(part) for part in first["loc"])
-    return f"{place}: {first['msg']}" if place else str(first["msg"])
+def _main() -> int:
+    """Read a trace from the standard input, and write it to the standard output for `read_apart`."""
+    from ravestate.board import trace_file  # by its name, which the pickled records need
+
+    try:
+        read = trace_file.read_trace(sys.stdin.buffer.read())
+    except ValueError as error:
+        sys.stderr.write(str(error))
+        return 1
+    pickle.dump((read.title, read.description, read.whole), sys.stdout.buffer)
+    for start in range(0, len(read.records), CHUNK):
+        pickle.dump(read.records[start : start + CHUNK], sys.stdout.buffer)
+    pickle.dump((), sys.stdout.buffer)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(_main())

@@ -1,32 +1,33 @@
 """Why a rule did not fire for an input, derived from the trace (L25).
 
-The question is asked of a causal group: of the spike that a user points at, and all that has the same cause. The answer
-is how far the rule came, at best, and what it failed for there.
+A question is about a causal group: the spike that a user points at, and every spike with the same cause. The answer says how
+far the rule came at best, and why it came no further.
 """
 
 from __future__ import annotations
 
-from bisect import bisect_right
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
-from ravestate.board.answer import FURTHEST, Missing, Moment, Raiser, Verdict, WhyNot
+from ravestate.board.answer import Missing, Moment, Raiser, WhyNot
 from ravestate.board.description import ClauseView, Description, RuleView
 from ravestate.board.history import Attempt, History
-from ravestate.engine.explain import PASSED, how_ended, why_given_up
+from ravestate.board.rivals import Rivals
+from ravestate.engine.explain import join, latest, seconds, why_given_up, without, words_of
+from ravestate.engine.reasons import DropReason, LossReason, Outcome, PassReason, Verdict
 from ravestate.engine.trace import GaveUp, Passed, Record, Settled, Waits
 
 __all__ = ["Opens", "why_not"]
 
 DEEPEST = 3
-"""Causes of causes that are told."""
+"""The most causes of causes in an answer."""
 
 MOST = 200
-"""Moments that are told; of more, the first and the last."""
+"""The most moments in an answer. Beyond it, the middle is left out."""
 
 Opens = Callable[[str, int, int, Any], bool | None]
-"""Whether a gate is open for a value of its slot: the rule, its clause and the gate by their numbers, the value; None
-where it cannot be told."""
+"""Returns whether a slot predicate accepts a value, given the rule, the clause's number, the predicate's number and the
+value. None: unknown."""
 
 
 def why_not(
@@ -37,18 +38,18 @@ def why_not(
     opens: Opens | None = None,
     whole: bool = True,
 ) -> WhyNot:
-    """Why a rule did not fire for the cause of a spike (or that it did).
+    """Explain why a rule did not fire for the cause of a spike, or that it did.
 
     Args:
         records: The trace.
         description: The policy.
         rule: The rule's name.
-        spike: The number of a spike in the trace, such as one of an input.
-        opens: Tells of a live policy whether a gate is open for a value of its slot.
-        whole: Whether the trace has all that happened since the context began.
+        spike: The number of a spike in the trace, for example one of an input.
+        opens: Evaluates the slot predicates of a live policy.
+        whole: Whether the trace reaches back to the start of the context.
 
     Raises:
-        LookupError: There is no such rule, or no such spike in the trace.
+        LookupError: The policy has no such rule, or the trace no such spike.
 
     Example:
         >>> import ravestate as rs
@@ -62,8 +63,8 @@ def why_not(
         ...     sim.emit(bell)
         ...     sim.advance(6)
         ...     spike = next(record.spike for record in sim.trace if getattr(record, "signal", "") == "door:bell")
-        ...     why_not(sim.trace, describe(sim.context.policy), "door:unlock", spike).verdict
-        'lacked'
+        ...     print(why_not(sim.trace, describe(sim.context.policy), "door:unlock", spike).verdict)
+        lacked
     """
     view = description.rule(rule)
     if view is None:
@@ -72,8 +73,13 @@ def why_not(
     return _Inquiry(history, description, opens).answer(view, whole or history.first < history.spike.time)
 
 
+Reached = tuple[Verdict, str, float | None]
+"""How far a rule came, the reason as text, and the time of that decision."""
+
 Judgement = tuple[Verdict, str, float | None, Attempt | None]
-"""How far a rule came, in words too, when that was decided, and with which attempt."""
+"""The same, and the attempt."""
+
+ORDER = {verdict: place for place, verdict in enumerate(Verdict)}
 
 
 class _Inquiry:
@@ -81,164 +87,133 @@ class _Inquiry:
         self.history = history
         self.description = description
         self.opens = opens
-        self.asked: list[str] = []  # rules that are being explained: causes may be circular
+        self.rivals = Rivals(history, description)
+        self.asked: list[str] = []  # the rules that are being explained; causes may be circular
         self._judged: dict[str, Judgement] = {}
-        self._first: dict[str, Attempt | None] = {}  # by the rule whose slots were taken
 
     def answer(self, rule: RuleView, whole: bool) -> WhyNot:
         born = self.history.spike
         verdict, words, at, attempt = self.judge(rule)
-        missing: tuple[Missing, ...] = ()
-        if verdict in ("lacked", "eliminated", "untouched"):
-            missing = self.missing(rule, attempt)
+        lacked = verdict in (Verdict.LACKED, Verdict.ELIMINATED, Verdict.UNTOUCHED)
+        missing = self.missing(rule, attempt) if lacked else ()
         moments = _abridged(sorted(self.moments(rule), key=lambda moment: moment.time))
         clause = None if attempt is None else attempt.clause
         return WhyNot(
-            rule.name,
-            born.spike,
-            born.signal,
-            born.time,
-            verdict,
-            words,
-            at,
-            clause,
-            missing,
-            moments,
-            whole,
+            rule.name, born.spike, born.signal, born.time, verdict, words, at, clause, missing, moments, whole
         )
 
     # ------------------------------------------------------------------------------------ the verdict
 
     def judge(self, rule: RuleView) -> Judgement:
-        """How far a rule came in this group, and why no further."""
+        """Return how far a rule came in this group."""
         if rule.name not in self._judged:
-            self._judged[rule.name] = self._furthest(rule)
+            tried = [(*self._judge(rule, attempt), attempt) for attempt in self.history.of(rule.name)]
+            self._judged[rule.name] = (
+                min(tried, key=lambda one: ORDER[one[0]]) if tried else (*self._never_tried(rule), None)
+            )
         return self._judged[rule.name]
 
-    def _furthest(self, rule: RuleView) -> Judgement:
-        best: Judgement | None = None
-        for attempt in self.history.of(rule.name):
-            verdict, words, at = self._judge(rule, attempt)
-            if best is None or FURTHEST[verdict] < FURTHEST[best[0]]:
-                best = (verdict, words, at, attempt)
-        if best is not None:
-            return best
+    def _never_tried(self, rule: RuleView) -> Reached:
         retired = self.history.retired.get(rule.name)
         if retired is not None and retired <= self.history.spike.time:
-            return "retired", f"it had retired at {_s(retired)}, before that", retired, None
-        passed = [p for p in self.history.passed.get(rule.name, ()) if p.spike in self.history.group]
+            return Verdict.RETIRED, f"it had already retired, at {seconds(retired)}", retired
+        passed = self._passed(rule)
         if passed:
             first = passed[0]
-            reason = PASSED.get(first.reason, first.reason)
-            if first.reason == "consumed":
-                reason = f"{self._path(*self._answerer(rule, first))} had answered this cause already"
-            elif first.reason == "caused":
-                reason += ", and no rule is its own cause"
-            return "passed", f"it did not take {first.signal}: {reason}", first.time, None
+            reason = PassReason.say(first.reason)
+            if first.reason == PassReason.CONSUMED:
+                reason = f"{self.rivals.answerer(rule, first)[1]} had already answered this cause"
+            elif first.reason == PassReason.CAUSED:
+                reason += ", and a rule never causes itself"
+            return Verdict.PASSED, f"it did not take {first.signal}: {reason}", first.time
         if retired is not None:
-            return (
-                "retired",
-                f"it retired at {_s(retired)}, before it took anything of this cause",
-                retired,
-                None,
-            )
-        return "untouched", "none of the signals that it hears occurred for this cause", None, None
+            words = f"it retired at {seconds(retired)} without a spike of this cause"
+            return Verdict.RETIRED, words, retired
+        return Verdict.UNTOUCHED, "none of the signals that it hears occurred for this cause", None
 
-    def _judge(self, rule: RuleView, attempt: Attempt) -> tuple[Verdict, str, float | None]:
+    def _judge(self, rule: RuleView, attempt: Attempt) -> Reached:
         settled = attempt.settled
-        if settled is not None:  # a gap may have swallowed its beginning
+        if settled is not None:  # a gap may hide the start
             began = settled.time if attempt.started is None else attempt.started.time
-            return self._ran(rule, attempt, began, settled)
+            return self._ran(attempt, began, settled)
         if attempt.started is not None:
-            return "running", f"it runs since {_s(attempt.started.time)}", attempt.started.time
+            began = attempt.started.time
+            return Verdict.RUNNING, f"it has been running since {seconds(began)}", began
         clause = rule.clauses[attempt.clause]
         ripe = self._ripe(clause, attempt)
         if not attempt.over:
-            return self._pending(clause, attempt, ripe)
+            return self._pending(rule, clause, attempt, ripe)
         end = attempt.end or 0.0
         last = attempt.gave_up[-1]
-        if last.reason == "withdrawn":
+        held = join(dict.fromkeys(held.signal for held in attempt.held))
+        if last.reason == LossReason.WITHDRAWN:
             dropped = self.history.dropped.get(last.spike)
-            why = f": {DROPPED.get(dropped.reason, dropped.reason)}" if dropped is not None else ""
-            return "withdrawn", f"{last.signal} was withdrawn at {_s(end)}{why}", end
-        if last.reason == "retired":
-            return "retired", f"it retired at {_s(end)}, while it held {_names(self._held(attempt))}", end
+            why = f": {DropReason.say(dropped.reason)}" if dropped is not None else ""
+            return Verdict.WITHDRAWN, f"{last.signal} was withdrawn at {seconds(end)}{why}", end
+        if last.reason == LossReason.RETIRED:
+            return Verdict.RETIRED, f"it retired at {seconds(end)} while it held {held}", end
         lost = self._lost(rule, last, clause)
         if attempt.lacks:
-            lacked = f"it took {_names(self._held(attempt))}, but lacked {_names(attempt.lacks)}"
-            if last.reason == "eliminated":
-                return "eliminated", f"{lacked}; {self._pressure(rule, end)}", end
-            return "lacked", f"{lacked}{lost}", end
-        waited = self._waited(rule, attempt)
+            lacked = f"it took {held} but lacked {join(attempt.lacks)}"
+            if last.reason == LossReason.ELIMINATED:
+                return Verdict.ELIMINATED, f"{lacked}; {self.rivals.pressure(rule, end)}", end
+            return Verdict.LACKED, f"{lacked}; {lost}", end
+        waited = self.rivals.waited(rule, attempt)
         if ripe is not None and end < ripe:
-            return "young", f"{waited and f'{waited}; '}{self._young(clause, ripe)}{lost}", end
+            return Verdict.YOUNG, "; ".join(filter(None, (waited, _young(clause, ripe), lost))), end
         if self._was_gated(rule, attempt, ripe, last):
-            return "gated", f"{self._gated(clause, waited)}{lost}", end
-        if last.reason != "consumed":
-            return "lacked", f"{waited or f'it took {_names(self._held(attempt))}'}{lost}", end
-        by, run = self._answerer(rule, last)
+            return Verdict.GATED, f"{_gated(clause, waited)}; {lost}", end
+        if last.reason != LossReason.CONSUMED:
+            return Verdict.LACKED, f"{waited or f'it took {held}'}; {lost}", end
+        by, path = self.rivals.answerer(rule, last)
         if waited:
-            return "outrun", f"{waited}; {self._path(by, run)} answered at {_s(end)}", end
-        first = f"{self._path(by, run)}{self._ahead(by, rule, attempt, end)} was asked first"
-        return "outrun", f"it was ready, but {first}, and answered at {_s(end)}", end
+            return Verdict.OUTRUN, f"{waited}; {path} answered at {seconds(end)}", end
+        ahead = self.rivals.ahead(by, rule, attempt, end)
+        words = f"it was ready, but {path}{ahead} came first and answered at {seconds(end)}"
+        return Verdict.OUTRUN, words, end
 
-    def _ran(
-        self, rule: RuleView, attempt: Attempt, began: float, settled: Settled
-    ) -> tuple[Verdict, str, float | None]:
+    def _ran(self, attempt: Attempt, began: float, settled: Settled) -> Reached:
         reason = f": {settled.reason}" if settled.reason else ""
-        if settled.outcome == "failed":
-            after = " after it had written" if settled.fired else ""
-            return (
-                (
-                    "fired",
-                    f"it did fire, at {_s(began)}, and failed{after} at {_s(settled.time)}{reason}",
-                    settled.time,
-                )
-                if settled.fired
-                else ("failed", f"it ran at {_s(began)} and failed{reason}", settled.time)
-            )
+        at = settled.time
+        if settled.outcome == Outcome.FAILED and settled.fired:
+            words = f"it fired at {seconds(began)}, and failed after its write at {seconds(at)}{reason}"
+            return Verdict.FIRED, words, at
+        if settled.outcome == Outcome.FAILED:
+            return Verdict.FAILED, f"it ran at {seconds(began)} and failed{reason}", at
         if not settled.fired:
-            return (
-                "resigned",
-                f"it ran at {_s(began)} and resigned{reason or ' without a reason'}",
-                settled.time,
-            )
-        how = {
-            "interrupted": ", and was interrupted",
-            "wiped": ", and was ended as its spike was wiped",
-            "retired": ", and retired",
-        }
-        what = [write.slot for write in self.history.writes.get(attempt.id, ())]
-        wrote = f"; it wrote {_names(dict.fromkeys(what))}" if what else ""
-        return "fired", f"it did fire, at {_s(began)}{how.get(settled.outcome, '')}{wrote}", settled.time
+            words = f"it ran at {seconds(began)} and resigned{reason or ' without a reason'}"
+            return Verdict.RESIGNED, words, at
+        parts = [f"it fired at {seconds(began)}"]
+        slots = dict.fromkeys(write.slot for write in self.history.writes.get(attempt.id, ()))
+        if slots:
+            parts.append(f"wrote {join(slots)}")
+        if settled.outcome != Outcome.DONE:
+            parts.append(Outcome.say(settled.outcome))
+        return Verdict.FIRED, join(parts), at
 
-    def _pending(
-        self, clause: ClauseView, attempt: Attempt, ripe: float | None
-    ) -> tuple[Verdict, str, float | None]:
-        """It still holds something."""
-        rule = self.description.rule(attempt.rule)
-        assert rule is not None  # it is asked about
+    def _pending(self, rule: RuleView, clause: ClauseView, attempt: Attempt, ripe: float | None) -> Reached:
+        """Judge an attempt that still holds something."""
         if attempt.lacks or attempt.complete is None:
-            lacks = _names(attempt.lacks)
-            return "lacked", f"it has {_names(self._held(attempt))}, and still lacks {lacks}", None
+            held = join(dict.fromkeys(held.signal for held in attempt.held))
+            return Verdict.LACKED, f"it has {held} and still lacks {join(attempt.lacks)}", None
         if ripe is not None and ripe > self.history.last:
-            return "young", self._young(clause, ripe), None
+            return Verdict.YOUNG, _young(clause, ripe), None
         wait = attempt.waits[-1] if attempt.waits else None
-        if clause.gates and (wait is None or self._stands_still(rule, attempt, wait)):
-            return "gated", self._gated(clause, self._waited(rule, attempt)), None
+        if clause.gates and (wait is None or self._gated_since(rule, attempt, wait)):
+            return Verdict.GATED, _gated(clause, self.rivals.waited(rule, attempt)), None
         if wait is None:
-            return "waiting", f"it is ready since {_s(attempt.complete)}, and will be asked next", None
-        whom = f"{self._rivals(rule, attempt, wait)}{_until(wait)}"
-        return "waiting", f"it is ready since {_s(wait.time)}, and waits for {whom}", None
+            return Verdict.WAITING, f"it has been ready since {seconds(attempt.complete)} and is next", None
+        rivals = f"{self.rivals.names(rule, attempt, wait)}{latest(wait.until)}"
+        return Verdict.WAITING, f"it has been ready since {seconds(wait.time)} and waits for {rivals}", None
 
-    def _stands_still(self, rule: RuleView, attempt: Attempt, wait: Waits) -> bool:
-        """Whether one that waited waits no longer, and is not ready either: a gate was shut meanwhile."""
+    def _gated_since(self, rule: RuleView, attempt: Attempt, wait: Waits) -> bool:
+        """Return whether a slot predicate became false after an attempt began to wait."""
         last = self.history.last
         shut = self._shut(rule, attempt, last)
         return shut is True or (shut is None and wait.until is not None and wait.until < last)
 
     def _ripe(self, clause: ClauseView, attempt: Attempt) -> float | None:
-        """When all its spikes are old enough (seconds); None if it never had all."""
+        """Return when all spikes of an attempt are old enough (seconds); None if it never had all."""
         if attempt.complete is None:
             return None
         ripe = attempt.complete
@@ -248,141 +223,65 @@ class _Inquiry:
                 ripe = max(ripe, self.history.born[held[-1]].time + constraint.min_age)
         return ripe
 
-    def _young(self, clause: ClauseView, ripe: float) -> str:
-        slow = max(clause.constraints, key=lambda constraint: constraint.min_age)
-        return f"{slow.signal} has to be {slow.min_age:g} s old, which it would have been at {_s(ripe)}"
-
     def _shut(self, rule: RuleView, attempt: Attempt, time: float) -> bool | None:
-        """Whether a gate was shut at a time, as far as can be told."""
+        """Return whether a slot predicate was false at a time; None: unknown."""
         if self.opens is None:
             return None
         known = True
         for number, gate in enumerate(rule.clauses[attempt.clause].gates):
             written = self.history.value(gate.slot, time)
-            told = None if written is None else self.opens(rule.name, attempt.clause, number, written.value)
-            if told is False:
+            opens = None if written is None else self.opens(rule.name, attempt.clause, number, written.value)
+            if opens is False:
                 return True
-            known = known and told is not None
+            known = known and opens is not None
         return False if known else None
 
     def _was_gated(self, rule: RuleView, attempt: Attempt, ripe: float | None, last: GaveUp) -> bool:
-        """Whether a gate was shut when an attempt lost what it had: as far as its slot tells, or else by its not having
-        been asked."""
+        """Return whether a slot predicate was false when an attempt lost its spikes.
+
+        If the slot's value is unknown, an attempt that never became ready counts as gated.
+        """
         if not rule.clauses[attempt.clause].gates:
             return False
         shut = self._shut(rule, attempt, last.time)
         if shut is not None:
             return shut
-        return last.reason != "consumed" or (ripe is not None and ripe < last.time and not attempt.waits)
-
-    def _gated(self, clause: ClauseView, waited: str) -> str:
-        shut = f"{' and '.join(gate.text for gate in clause.gates)} was false"
-        return f"{waited}; then {shut}" if waited else f"it had all spikes, but {shut}"
-
-    # ------------------------------------------------------------------------------------ the others
-
-    def _waited(self, rule: RuleView, attempt: Attempt) -> str:
-        """That it was ready, and for whom it waited; empty if it did not wait."""
-        if not attempt.waits:
-            return ""
-        return f"it was ready, and waited for {self._rivals(rule, attempt, attempt.waits[-1])}"
-
-    def _rivals(self, rule: RuleView, attempt: Attempt, wait: Waits) -> str:
-        """For whom an attempt waited, and why."""
-        parts: list[str] = []
-        for name in wait.for_:
-            if name == rule.name:
-                parts.append("another run of its own on the same spike")
-            elif self.history.ran(name, wait.time):
-                other = self.description.rule(name)
-                common = [] if other is None else [slot for slot in rule.writes if slot in other.writes]
-                parts.append(f"{name}, which ran and had taken {_names(common) or 'the spike'}")
-            else:
-                parts.append(f"{name}{self._ahead(name, rule, attempt, wait.time)}")
-        return _and(parts)
-
-    def _ahead(self, name: str, rule: RuleView, attempt: Attempt, time: float) -> str:
-        """By how much another rule is ahead, in words."""
-        other = self.description.rule(name)
-        if other is None or name == rule.name:
-            return ""
-        theirs = max((clause.base for clause in other.clauses), default=0.0) * self._recovered(other, time)
-        nats = theirs - rule.clauses[attempt.clause].base * self._recovered(rule, time)
-        if nats > 1e-8:
-            return f" ({nats:.3f} nats ahead)"
-        return " (worth as much, and declared before it)" if abs(nats) <= 1e-8 else ""
-
-    def _recovered(self, rule: RuleView, time: float) -> float:
-        """The share of its utility that a rule has recovered since it ran last (L9)."""
-        fired = self.history.fired.get(rule.name, [])
-        times = bisect_right(fired, time)
-        return min(1.0, (time - fired[times - 1]) / rule.cooldown) if rule.cooldown and times else 1.0
-
-    def _path(self, by: str, run: int) -> str:
-        """Who answered, and on what account: behind the rule that raised what it heard, where there is one."""
-        before = self.history.before(run)
-        return f"{before} → {by}" if before else by
-
-    def _answerer(self, rule: RuleView, lost: GaveUp | Passed) -> tuple[str, int]:
-        """Who answered what an attempt lost, or never took: the rule, and the number of its run (0: not known)."""
-        return (lost.by, lost.run) if lost.by else self._answered(rule, lost.time)
-
-    def _answered(self, rule: RuleView, time: float) -> tuple[str, int]:
-        """Who had taken one of the rule's slots in this group by a time, if the trace tells."""
-        if rule.name not in self._first:
-            slots = set(rule.writes)
-            self._first[rule.name] = self.history.answered(
-                {
-                    other.name: [
-                        {c.signal for c in clause.constraints if not c.detached} for clause in other.clauses
-                    ]
-                    for other in self.description.rules
-                    if other.name != rule.name and slots & set(other.writes)
-                }
-            )
-        first = self._first[rule.name]
-        if first is None or first.end is None or first.end > time:
-            return "another rule", 0
-        return first.rule, first.id
-
-    def _pressure(self, rule: RuleView, end: float) -> str:
-        pressed = self.history.pressed.get(rule.name, [])
-        times = bisect_right(pressed, end, key=lambda one: one.until)  # its patience is always the same
-        if not times:
-            return f"its patience ran out at {_s(end)}"
-        last = pressed[times - 1]
-        return f"{last.by} waited for it from {_s(last.time)} on, and its patience ran out at {_s(end)}"
+        return last.reason != LossReason.CONSUMED or (
+            ripe is not None and ripe < last.time and not attempt.waits
+        )
 
     def _lost(self, rule: RuleView, last: GaveUp, clause: ClauseView) -> str:
-        """How it ended, as the end of a sentence."""
-        if last.reason == "age":
+        """Say how an attempt lost its spikes."""
+        at = seconds(last.time)
+        if last.reason == LossReason.AGE:
             ages = [
                 c.max_age for c in clause.constraints if c.signal == last.signal and c.max_age is not None
             ]
-            most = f" of {ages[0]:g} s" if ages else ""
-            return f"; {last.signal} reached its greatest age{most} at {_s(last.time)}"
-        if last.reason == "consumed":
-            return f"; {self._path(*self._answerer(rule, last))} answered this cause at {_s(last.time)}"
-        return f"; {why_given_up(last)} at {_s(last.time)}"
+            return f"{last.signal} reached its maximum age{f' of {ages[0]:g} s' if ages else ''} at {at}"
+        if last.reason == LossReason.CONSUMED:
+            return f"{self.rivals.answerer(rule, last)[1]} answered this cause at {at}"
+        return f"{why_given_up(last)} at {at}"
 
-    def _held(self, attempt: Attempt) -> list[str]:
-        return list(dict.fromkeys(held.signal for held in attempt.held))
+    def _passed(self, rule: RuleView, signal: str = "") -> list[Passed]:
+        """Return the spikes of the group, or those of one signal, that a rule did not take."""
+        passed = [p for p in self.history.passed.get(rule.name, ()) if p.spike in self.history.group]
+        return [p for p in passed if p.signal == signal] if signal else passed
 
-    # ------------------------------------------------------------------------------------ what is missing
+    # ------------------------------------------------------------------------------------ missing signals
 
     def missing(self, rule: RuleView, attempt: Attempt | None) -> tuple[Missing, ...]:
-        """The signals that a rule lacked: of the clause that it tried, or else of all of them."""
+        """Return the signals that a rule lacked for the clause that it tried, or else for all its clauses."""
         if attempt is not None:
-            names = list(dict.fromkeys(attempt.lacks))
+            names = dict.fromkeys(attempt.lacks)
         else:
-            names = list(dict.fromkeys(c.signal for clause in rule.clauses for c in clause.constraints))
+            names = dict.fromkeys(c.signal for clause in rule.clauses for c in clause.constraints)
         self.asked.append(rule.name)
         found = tuple(self._missing(name, rule, attempt) for name in names)
         self.asked.pop()
         return found
 
     def _missing(self, name: str, rule: RuleView, attempt: Attempt | None) -> Missing:
-        signal = next((s for s in self.description.signals if s.name == name), None)
+        signal = self.description.signal(name)
         raisers = () if signal is None else tuple(self._raiser(raiser, name) for raiser in signal.raisers)
         outside = signal is not None and signal.input
         return Missing(name, f"{name} {self._absence(name, rule, attempt, outside, bool(raisers))}", raisers)
@@ -390,96 +289,84 @@ class _Inquiry:
     def _absence(
         self, name: str, rule: RuleView, attempt: Attempt | None, outside: bool, raisers: bool
     ) -> str:
-        here = sorted(self.history.raised(name), key=lambda born: born.time)
-        refused = [
-            p
-            for p in self.history.passed.get(rule.name, ())
-            if p.signal == name and p.spike in self.history.group
-        ]
+        refused = self._passed(rule, name)
         if refused:
-            why = PASSED.get(refused[0].reason, refused[0].reason)
-            return f"occurred at {_s(refused[0].time)}, but {why}"
-        if here:
-            late = attempt is not None and attempt.end is not None and here[0].time > attempt.end
-            return f"occurred at {_s(here[0].time)}, {'after it had given up' if late else 'but was not held then'}"
-        elsewhere = [born for born in self.history.born.values() if born.signal == name]
+            return f"occurred at {seconds(refused[0].time)}, but {PassReason.say(refused[0].reason)}"
+        here = min((born.time for born in self.history.raised(name)), default=None)
+        if here is not None:
+            late = attempt is not None and attempt.end is not None and here > attempt.end
+            return f"occurred at {seconds(here)}, {'after the rule gave up' if late else 'but the rule did not hold it'}"
+        elsewhere = [born.time for born in self.history.born.values() if born.signal == name]
         if elsewhere:
-            near = min(elsewhere, key=lambda born: abs(born.time - self.history.spike.time))
-            return f"did not occur for this cause (for another one at {_s(near.time)})"
-        if outside and not raisers:
-            return "comes from outside, and did not come"
+            near = min(elsewhere, key=lambda time: abs(time - self.history.spike.time))
+            return f"did not occur for this cause (it did for another, at {seconds(near)})"
         if outside:
-            return "did not come from outside, and no rule raised it"
+            return (
+                "did not arrive as an input, and no rule raised it"
+                if raisers
+                else "is an input and did not arrive"
+            )
         return "did not occur" if raisers else "did not occur: no rule raises it"
 
     def _raiser(self, name: str, signal: str) -> Raiser:
         rule = self.description.rule(name)
         runs = [attempt for attempt in self.history.of(name) if attempt.started is not None]
         if runs:
-            last = runs[-1]
-            if last.settled is None:
-                return Raiser(name, "running", None, f"{name} may still raise it: it runs")
-            ended = last.settled
-            raised = (last.id, signal) in self.history.raising
-            what = "raised it" if raised else f"{how_ended(last.settled)} without raising it"
-            why = f": {ended.reason}" if ended.reason else ""
-            return Raiser(name, ended.outcome, ended.time, f"{name} {what}, at {_s(ended.time)}{why}")
+            ended = runs[-1].settled
+            if ended is None:
+                return Raiser(name, "running", None, f"{name} is running and may still raise it")
+            words = without(name, ended)
+            if (runs[-1].id, signal) in self.history.raising:
+                words = f"{name} raised it, at {seconds(ended.time)}"
+            return Raiser(
+                name, ended.outcome, ended.time, words + (f": {ended.reason}" if ended.reason else "")
+            )
         if rule is None or name in self.asked or len(self.asked) > DEEPEST:
             return Raiser(name, "not run", None, f"{name} did not run")
         self.asked.append(name)
         verdict, words, at, attempt = self.judge(rule)
-        if verdict in ("lacked", "untouched"):  # one step further back
-            lacks = attempt.lacks if attempt is not None else ()
-            for lack in dict.fromkeys(lacks):
-                for raiser in next((s.raisers for s in self.description.signals if s.name == lack), ()):
+        if verdict in (Verdict.LACKED, Verdict.UNTOUCHED):  # one step further back
+            for lack in dict.fromkeys(attempt.lacks if attempt is not None else ()):
+                lacked = self.description.signal(lack)
+                for raiser in () if lacked is None else lacked.raisers:
                     if raiser not in self.asked:
                         words += f"; {self._raiser(raiser, lack).words}"
         self.asked.pop()
         return Raiser(name, "not run", at, f"{name} did not run: {words}")
 
-    # ------------------------------------------------------------------------------------ the story
+    # ------------------------------------------------------------------------------------ the history
 
     def moments(self, rule: RuleView) -> Iterator[Moment]:
-        """What befell the rule in this group."""
-        for passed in self.history.passed.get(rule.name, ()):
-            if passed.spike in self.history.group:
-                why = PASSED.get(passed.reason, passed.reason)
-                yield Moment(passed.time, f"did not take {passed.signal}: {why}")
+        """Yield what happened to a rule in this group."""
+        for passed in self._passed(rule):
+            yield Moment(passed.time, words_of(passed))
         for attempt in self.history.of(rule.name):
-            for held in attempt.held:
-                lacking = f", still lacking {_names(held.lacks)}" if held.lacks else ": it has all it needs"
-                yield Moment(held.time, f"took {held.signal}{lacking}")
-            last = ""
-            for wait in attempt.waits:
-                words = f"was ready, and waited for {self._rivals(rule, attempt, wait)}{_until(wait)}"
-                if words != last:  # it may be asked again, and still wait for the same
-                    yield Moment(wait.time, words, wait.for_)
-                last = words
-            if attempt.started is not None:
-                yield Moment(attempt.started.time, "ran")
-            if attempt.told is not None:
-                yield Moment(attempt.told.time, f"was told to end: {attempt.told.reason}")
-            if attempt.settled is not None:
-                reason = f": {attempt.settled.reason}" if attempt.settled.reason else ""
-                yield Moment(attempt.settled.time, f"{how_ended(attempt.settled)}{reason}")
-            for lost in attempt.gave_up:
-                why = why_given_up(lost, self.history.before(lost.run))
-                yield Moment(lost.time, f"gave {lost.signal} up: {why}", (lost.by,) if lost.by else ())
+            waited = ""
+            for record in attempt.records:
+                match record:
+                    case Waits():
+                        words = words_of(record, others=self.rivals.names(rule, attempt, record))
+                        if words != waited:  # the engine may ask it again, with the same result
+                            yield Moment(record.time, words, record.for_)
+                        waited = words
+                    case GaveUp(by=by):
+                        words = words_of(record, behind=self.history.before(record.run))
+                        yield Moment(record.time, words, (by,) if by else ())
+                    case _:
+                        yield Moment(record.time, words_of(record))
         for pressed in self.history.pressed.get(rule.name, ()):
-            if any(a.id for a in self.history.of(pressed.by)):
-                lacks = _names(pressed.lacks)
-                yield Moment(
-                    pressed.time,
-                    f"{pressed.by} waits for it; lacking {lacks}, it has patience until {_s(pressed.until)}",
-                    (pressed.by,),
-                )
+            if self.history.of(pressed.by):
+                yield Moment(pressed.time, words_of(pressed), (pressed.by,))
 
 
-DROPPED = {
-    "overflow": "there were too many of it",
-    "superseded": "a later one took its place",
-    "wiped": "it was wiped",
-}
+def _young(clause: ClauseView, ripe: float) -> str:
+    slow = max(clause.constraints, key=lambda constraint: constraint.min_age)
+    return f"{slow.signal} must be {slow.min_age:g} s old, so not before {seconds(ripe)}"
+
+
+def _gated(clause: ClauseView, waited: str) -> str:
+    shut = f"{join(gate.text for gate in clause.gates)} was false"
+    return f"{waited}; then {shut}" if waited else f"it had all its spikes, but {shut}"
 
 
 def _abridged(moments: list[Moment]) -> tuple[Moment, ...]:
@@ -487,23 +374,5 @@ def _abridged(moments: list[Moment]) -> tuple[Moment, ...]:
         return tuple(moments)
     half = MOST // 2
     left = moments[half : 1 - half]
-    told = Moment(
-        left[0].time, f"and {len(left)} moments more, until {_s(left[-1].time)}, that are left out here"
-    )
-    return (*moments[:half], told, *moments[1 - half :])
-
-
-def _until(wait: Waits) -> str:
-    return "" if wait.until is None else f", until {_s(wait.until)} at the latest"
-
-
-def _s(time: float) -> str:
-    return f"{time:.3f} s"
-
-
-def _names(names: Iterable[str]) -> str:
-    return _and(list(names))
-
-
-def _and(parts: list[str]) -> str:
-    return parts[0] if len(parts) == 1 else ", ".join(parts[:-1]) + (" and " + parts[-1] if parts else "")
+    words = f"{len(left)} more moments, until {seconds(left[-1].time)}, are left out"
+    return (*moments[:half], Moment(left[0].time, words), *moments[1 - half :])

@@ -1,108 +1,146 @@
-"""The board's language: records, policies and answers as plain data for JSON, and back. Version 1.
+"""Trace records and values as plain data for JSON, and back.
 
-What each frame means stands in ``docs/reference/board-protocol.md``. Records bear the names and fields of
-``ravestate.engine.trace``; a value is a `Shown`: text, JSON or not, cut or not.
+A record has the name and fields of its class in ``ravestate.engine.trace``. A value is a `Rendered`.
 """
 
 from __future__ import annotations
 
 import dataclasses
 import json
+import traceback
 from collections.abc import Callable
 from operator import attrgetter
-from typing import Any, cast
+from typing import TYPE_CHECKING, Annotated, Any, Literal, NotRequired, Union, cast, get_args, get_type_hints
 
 import pydantic
+import typing_extensions
 
-from ravestate.board.description import Description
 from ravestate.board.recorder import Gap
-from ravestate.board.shown import Shown, show
-from ravestate.engine import trace
+from ravestate.board.rendering import Rendered, render, well_formed
 from ravestate.engine.trace import Record
 
-__all__ = ["VERSION", "data_of", "description_of", "record_of", "shown_data", "whole_data"]
+__all__ = ["VERSION", "TraceRecord", "checked_record", "data_of", "record_of", "rendered_data"]
 
 VERSION = 1
-"""Of the protocol and of trace files. A frame, a kind of record or a field that is added does not change it."""
+"""The version of the protocol and of trace files. A new frame, record or field keeps it; any other change raises it."""
 
 PAYLOAD = 400
-"""Characters that are shown of a payload."""
+"""The most characters of a payload."""
 
 VALUE = 2000
-"""Characters that are shown of a slot's value."""
+"""The most characters of a slot's value."""
 
-KINDS: dict[str, type[Any]] = {
-    kind.__name__.lower(): kind
-    for kind in (
-        trace.Born,
-        trace.Dropped,
-        trace.GaveUp,
-        trace.Held,
-        trace.Merged,
-        trace.Passed,
-        trace.Pressed,
-        trace.Set,
-        trace.Settled,
-        trace.Started,
-        trace.Told,
-        trace.Waits,
-        Gap,
+KINDS: dict[str, type[Any]] = {kind.__name__.lower(): kind for kind in (*get_args(Record), Gap)}
+"""Each kind of record."""
+
+TRACEBACK = 8000
+"""The most characters of a traceback; its end is kept."""
+
+RENDERED = {"payload": PAYLOAD, "value": VALUE}
+
+
+def _shape(name: str, kind: type[Any]) -> Any:
+    """Return the type of a record's data."""
+    hints = get_type_hints(kind)
+    fields: dict[str, Any] = {"kind": Literal[name]}
+    for field in dataclasses.fields(kind):
+        sort = Rendered if field.name in RENDERED else str if field.name == "error" else hints[field.name]
+        required = field.default is dataclasses.MISSING
+        fields[field.name.rstrip("_")] = sort if required else NotRequired[sort]
+    make: Any = typing_extensions.TypedDict
+    made = make(kind.__name__, fields)
+    made.__doc__ = kind.__doc__
+    return made
+
+
+if TYPE_CHECKING:
+    TraceRecord = dict[str, Any]
+else:
+    TraceRecord = typing_extensions.TypeAliasType(
+        "TraceRecord",
+        Annotated[
+            Union[tuple(_shape(name, kind) for name, kind in KINDS.items())],  # noqa: UP007  # not known before
+            pydantic.Field(discriminator="kind"),
+        ],
     )
-}
-"""The kinds of records by the word that stands for them."""
 
-SHOWN = {"payload": PAYLOAD, "value": VALUE}
-TIMES = ("time", "until")
+_RECORD: pydantic.TypeAdapter[dict[str, Any]] = pydantic.TypeAdapter(TraceRecord)
 
 
-def data_of(record: Record | Gap) -> dict[str, Any]:
-    """A record as data.
+def data_of(record: Record | Gap) -> TraceRecord:
+    """Return a record as data.
 
     Example:
-        >>> data_of(trace.Merged(1.5, 3, 2))
+        >>> from ravestate.engine.trace import Merged
+        >>> data_of(Merged(1.5, 3, 2))
         {'kind': 'merged', 'time': 1.5, 'group': 3, 'into': 2}
     """
     return _WRITERS[type(record)](record)
 
 
-def shown_data(shown: Shown) -> dict[str, Any]:
-    """A shown value as data: what is as usual is left out."""
-    data: dict[str, Any] = {"text": shown.text}
-    if not shown.json:
+def record_of(data: Any) -> Record | Gap:
+    """Return the record that data stands for. Its values stay rendered.
+
+    Raises:
+        ValueError: The data is no record.
+    """
+    return checked_record(_RECORD.validate_python(data))
+
+
+def checked_record(data: TraceRecord) -> Record | Gap:
+    """Return the record that validated data stands for."""
+    fields = {f"{name}_" if name == "for" else name: value for name, value in data.items()}
+    return KINDS[fields.pop("kind")](**fields)
+
+
+def rendered_data(rendered: Rendered) -> dict[str, Any]:
+    """Return a rendered value as data, without defaults."""
+    data: dict[str, Any] = {"text": rendered.text}
+    if not rendered.json:
         data["json"] = False
-    if shown.cut:
+    if rendered.cut:
         data["cut"] = True
     return data
 
 
-_PLAIN: dict[Any, dict[str, Any]] = {None: {"text": "null"}, True: {"text": "true"}, False: {"text": "false"}}
+_FREQUENT: dict[Any, dict[str, Any]] = {
+    None: {"text": "null"},
+    True: {"text": "true"},
+    False: {"text": "false"},
+}
 
 
 def _quickly(value: Any) -> dict[str, Any] | None:
-    """The most frequent of values, which need no care: as `show` would have them."""
+    """Return a frequent value as `render` would; None for other values."""
     if value is None or value is True or value is False:
-        return _PLAIN[value]
+        return _FREQUENT[value]
     if type(value) is str and len(value) < 60 and value.isascii():
         return {"text": json.dumps(value)}
     return None
+
+
+def _traceback(error: BaseException) -> str:
+    return well_formed("".join(traceback.format_exception(error)))[-TRACEBACK:]
 
 
 def _writer(name: str, kind: type[Any]) -> Callable[[Any], dict[str, Any]]:
     fields = [field.name for field in dataclasses.fields(kind)]
     keys = ("kind", *(field.rstrip("_") for field in fields))
     get = attrgetter(*fields)
-    most = next(((field, SHOWN[field]) for field in fields if field in SHOWN), None)
-    bounded = "until" in fields
+    rendered = next((field for field in fields if field in RENDERED), None)
+    bounded, fails = "until" in fields, "error" in fields
 
     def write(record: Any) -> dict[str, Any]:
         data = dict(zip(keys, (name, *get(record)), strict=True))
         data["time"] = round(cast("float", data["time"]), 6)
         if bounded and data["until"] is not None:
             data["until"] = round(cast("float", data["until"]), 6)
-        if most is not None:
-            value = data[most[0]]
-            data[most[0]] = _quickly(value) or shown_data(
-                value if type(value) is Shown else show(value, most[1])
+        if fails and (error := data.pop("error")) is not None:
+            data["error"] = error if isinstance(error, str) else _traceback(error)
+        if rendered is not None:
+            value = data[rendered]
+            data[rendered] = _quickly(value) or rendered_data(
+                value if type(value) is Rendered else render(value, RENDERED[rendered])
             )
         return data
 
@@ -110,44 +148,3 @@ def _writer(name: str, kind: type[Any]) -> Callable[[Any], dict[str, Any]]:
 
 
 _WRITERS = {kind: _writer(name, kind) for name, kind in KINDS.items()}
-_READERS: dict[str, pydantic.TypeAdapter[Any]] = {}
-
-
-def record_of(data: Any) -> Record | Gap:
-    """The record that data stands for. Values stay as they were shown.
-
-    Raises:
-        ValueError: It stands for none.
-    """
-    if not isinstance(data, dict):
-        raise ValueError(f"a record is an object, not {str(data)[:60]!r}")
-    fields = dict(cast("dict[str, Any]", data))
-    name = fields.pop("kind", None)
-    if not isinstance(name, str) or name not in KINDS:
-        raise ValueError(f'"kind": {str(name)[:60]!r} is none of {", ".join(KINDS)}')
-    if name not in _READERS:
-        _READERS[name] = pydantic.TypeAdapter(KINDS[name])
-    if "for" in fields:
-        fields["for_"] = fields.pop("for")
-    for field in SHOWN:
-        if field in fields:
-            fields[field] = _SHOWN.validate_python(fields[field])
-    return _READERS[name].validate_python(fields)
-
-
-_SHOWN = pydantic.TypeAdapter(Shown)
-_DESCRIPTION = pydantic.TypeAdapter(Description)
-
-
-def whole_data(value: Any) -> dict[str, Any]:
-    """A description, an explanation or an answer, which are dataclasses of plain fields, as data."""
-    return dataclasses.asdict(value)
-
-
-def description_of(data: Any) -> Description:
-    """The description that data stands for.
-
-    Raises:
-        ValueError: It stands for none.
-    """
-    return _DESCRIPTION.validate_python(data)

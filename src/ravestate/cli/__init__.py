@@ -1,7 +1,7 @@
-"""The command line: ``ravestate COMMAND ...``, one file a command.
+"""The command line: ``ravestate COMMAND ...``, one file for each command.
 
-Exit codes: 0 all well, 1 the agent has faults or failed, 2 the command was used wrongly. A user's mistake gives a
-message, never a traceback.
+Exit codes: 0 for success, 1 if the agent has faults or fails, 2 for wrong use. A user's mistake gives a message,
+never a traceback.
 """
 
 from __future__ import annotations
@@ -13,20 +13,20 @@ from collections.abc import Sequence
 from importlib import import_module
 from typing import Any
 
-from ravestate.errors import PlatformError, RavestateError, nearest
+from ravestate.errors import RavestateError, UsageError, nearest
 
-__all__ = ["main", "script"]
+__all__ = ["UsageError", "main", "script"]
 
 COMMANDS = {
     "chat": "talk with the complete agent on the console",
     "run": "run an agent from modules or an agent file",
-    "board": "talk with an agent on a page and look inside it, or into a recorded trace",
-    "check": "print an agent's faults, ties, rules that can never win, and signals nobody hears",
-    "graph": "draw an agent's Signal-Rule-Slot diagram",
+    "board": "talk with an agent on a web page and look inside it, or into a recorded trace",
+    "check": "print an agent's faults, and findings such as ties, endless loops and undeclared writes",
+    "graph": "draw the Signal-Rule-Slot diagram of the complete agent or of another",
     "nlp": "show what the agent sees in a text: words, names, triples, yes or no, signals",
     "memory": "list, show, export and forget what an agent knows",
     "genqa": "read documents, and answer questions from them",
-    "new": "write a small project to begin with",
+    "new": "write a small project to start from",
 }
 
 
@@ -34,7 +34,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     """Run the command line.
 
     Args:
-        argv: The arguments; the process's own by default.
+        argv: The arguments; those of the process by default.
 
     Returns:
         The exit code.
@@ -42,7 +42,10 @@ def main(argv: Sequence[str] | None = None) -> int:
     from ravestate import __version__
 
     parser = argparse.ArgumentParser(
-        prog="ravestate", description="Design, run and inspect interactive agents.", allow_abbrev=False
+        prog="ravestate",
+        description="Design, run and inspect interactive agents.",
+        allow_abbrev=False,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("--version", action="version", version=f"ravestate {__version__}")
     parser.add_argument("-v", "--verbose", action="count", default=0, help="say more; twice for everything")
@@ -50,9 +53,13 @@ def main(argv: Sequence[str] | None = None) -> int:
         dest="command", metavar="COMMAND", required=True, parser_class=CommandParser
     )
     arguments = sys.argv[1:] if argv is None else list(argv)
+    if not {"-h", "--help"}.isdisjoint(arguments):
+        from ravestate.cli.built_in import listing
+
+        parser.epilog = listing()
     for name, summary in COMMANDS.items():
         command = commands.add_parser(name, help=summary, description=summary.capitalize() + ".")
-        if name in arguments:  # the others' options are not needed to list them
+        if name in arguments:  # listing the others needs no options of theirs
             import_module(f"ravestate.cli.{name}").add_arguments(command)
     options = parser.parse_args(arguments)
     _log(options.verbose)
@@ -61,7 +68,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     except UsageError as error:
         print(f"ravestate {options.command}: {error}", file=sys.stderr)
         return 2
-    except (RavestateError, PlatformError) as error:
+    except RavestateError as error:
         print(f"ravestate {options.command}: {error}", file=sys.stderr)
         return 1
     except KeyboardInterrupt:
@@ -71,17 +78,17 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def script() -> int:
-    """The command ``ravestate``: `main`, and the end of the process.
+    """Run the command ``ravestate``, and end the process.
 
-    The interpreter ends threads that are left in the midst of what they do. Where that is a C++ library (a model that takes
-    long to load on a busy machine), the process would be aborted; so it ends here, with all else in order.
+    The interpreter stops the remaining threads in the middle of their work. In a C++ library, such as a model that is
+    still loading, this aborts the process. So the process ends here, after everything else is in order.
     """
     import atexit
     import os
     import threading
 
     code = main()
-    atexit._run_exitfuncs()  # pyright: ignore[reportPrivateUsage]  # they wait for what can be waited for
+    atexit._run_exitfuncs()  # pyright: ignore[reportPrivateUsage]  # handlers that wait for threads
     if any(thread.daemon for thread in threading.enumerate()):
         for stream in (sys.stdout, sys.stderr):
             with contextlib.suppress(OSError, ValueError):
@@ -91,18 +98,16 @@ def script() -> int:
 
 
 class CommandParser(argparse.ArgumentParser):
-    """Reads the arguments of one command, or of one of its actions, and tells the usage of that one if they are wrong."""
+    """A parser for one command, or for one of its actions. Its errors show its own usage."""
 
     def __init__(self, *, allow_abbrev: bool = False, **options: Any) -> None:
         super().__init__(allow_abbrev=allow_abbrev, **options)
 
     def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:  # type: ignore[override]  # which has overloads
-        """Refuse here what is not known: else it would be left to the parser above, and that one's usage told."""
+        """Refuse unknown arguments here: the parser above would show its own usage."""
         options, unknown = super().parse_known_args(args, namespace)
         many = [action.dest for action in self._get_positional_actions() if action.nargs in ("+", "*")]
-        if (
-            many and unknown and all(not word.startswith("-") for word in unknown)
-        ):  # some stood behind an option
+        if many and unknown and all(not word.startswith("-") for word in unknown):  # they follow an option
             setattr(options, many[0], [*getattr(options, many[0]), *unknown])
             return options, []
         if unknown:
@@ -112,20 +117,10 @@ class CommandParser(argparse.ArgumentParser):
         return options, unknown
 
 
-class UsageError(RavestateError):
-    """The command was used wrongly: exit code 2."""
-
-
 def _log(verbosity: int) -> None:
-    """Warnings go to whatever ``sys.stderr`` is at the time: a console may have replaced it."""
     import logging
-
-    class Handler(logging.Handler):
-        def emit(self, record: logging.LogRecord) -> None:
-            print(self.format(record), file=sys.stderr)
 
     logging.basicConfig(
         level=[logging.WARNING, logging.INFO, logging.DEBUG][min(verbosity, 2)],
-        handlers=[Handler()],
         format="%(levelname)s %(name)s: %(message)s",
     )

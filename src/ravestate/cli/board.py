@@ -1,4 +1,4 @@
-"""``ravestate board``: an agent on a page, and the debugger that looks into it; or a recorded trace without one."""
+"""``ravestate board``: an agent on a web page beside its debugger, or a recorded trace without an agent."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ import sys
 import webbrowser
 from collections.abc import Awaitable, Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from ravestate.cli import agent as agents
-from ravestate.cli import complete as whole
-from ravestate.errors import PlatformError
+from ravestate.cli import complete
+from ravestate.errors import PlatformError, UsageError
 
 if TYPE_CHECKING:
     from starlette.routing import BaseRoute
@@ -24,9 +24,10 @@ __all__ = ["add_arguments", "run"]
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """The command's options."""
-    agents.add_arguments(parser, modules="*")
-    whole.add_arguments(parser)
+    """Add the options of the command."""
+    agents.add_arguments(parser)
+    complete.add_arguments(parser)
+    complete.explain_memory(parser)
     parser.add_argument(
         "--open",
         dest="recording",
@@ -37,19 +38,19 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--browser",
         action=argparse.BooleanOptionalAction,
         default=None,
-        help="open a browser, or do not; by default if there is one",
+        help="open a browser; by default if the session has a screen",
     )
 
 
 def run(options: argparse.Namespace) -> int:
-    """Carry the command out."""
+    """Run the command."""
     from ravestate.modules import webio
 
     named = bool(options.modules or options.file)
     if options.without and (named or options.recording):
-        raise agents.UsageError("--without is for the complete agent, which is shown if nothing is named")
+        raise UsageError("--without is for the complete agent: leave the modules out")
     if options.recording and named:
-        raise agents.UsageError("--open shows a recording, which has no agent: leave the modules out")
+        raise UsageError("--open shows a recording, which has no agent: leave the modules out")
     try:
         from ravestate.board.application import INSIDE, RecordedAgent, routes
         from ravestate.board.trace_file import open_trace
@@ -57,7 +58,7 @@ def run(options: argparse.Namespace) -> int:
         raise PlatformError(f"the board needs {error.name}: pip install 'ravestate[web]'") from error
     recording = open_trace(Path(options.recording)) if options.recording else None
     talks = recording is None
-    chosen = agents.load_agent(options, ["webio", *(whole.complete(options) if talks and not named else ())])
+    chosen = agents.load_agent(options, ["webio", *(complete.names(options) if talks and not named else ())])
     made = RecordedAgent(*chosen.modules, **chosen.options())
     title = getattr(made.settings[webio.module.name], "title", None)
     beside = routes(made.recorders, recording, title)
@@ -74,20 +75,14 @@ async def _serve(
     stopped = asyncio.Event()
     with asked_by_signals(stopped.set):
         async with Server(made, beside, inside) as server:
-            token: Any = getattr(made.settings["webio"], "token", None)
-            secret = f"#token={token.get_secret_value()}" if token else ""
-            board = f"{server.address}{inside}{secret}"
-            if talks:
-                sys.stdout.write(f"The agent is at {server.address}{secret}\n")
-            sys.stdout.write(f"The board is at {board} (Ctrl-C ends it)\n")
-            sys.stdout.flush()
+            server.announce({"agent": "", "board": inside} if talks else {"board": inside})
             if browser or (browser is None and _has_browser()):
-                await asyncio.to_thread(webbrowser.open, f"{server.address}{secret}" if talks else board)
+                await asyncio.to_thread(webbrowser.open, server.link("" if talks else inside))
             await _first(stopped.wait, server.until_failed)
 
 
 async def _first(*waits: Callable[[], Awaitable[object]]) -> None:
-    """Wait for the first of some things, and fail as it fails."""
+    """Wait for the first of some awaitables, and raise its exception."""
     tasks = [asyncio.ensure_future(wait()) for wait in waits]
     done, _ = await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
     for task in tasks:
@@ -97,7 +92,7 @@ async def _first(*waits: Callable[[], Awaitable[object]]) -> None:
 
 
 def _has_browser() -> bool:
-    """Whether there is a screen on which a browser would be seen."""
+    """Return whether this session has a screen for a browser."""
     if not sys.stdout.isatty():
         return False
     return sys.platform in ("darwin", "win32") or bool(

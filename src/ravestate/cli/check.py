@@ -1,9 +1,12 @@
-"""``ravestate check``: what is wrong with an agent, and what is probably not meant."""
+"""``ravestate check``: the faults of an agent, and the findings that its designer should look at."""
 
 from __future__ import annotations
 
 import argparse
+import inspect
+import shutil
 import sys
+import textwrap
 
 from ravestate.cli import agent
 
@@ -11,43 +14,63 @@ __all__ = ["add_arguments", "run"]
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """The command's options."""
-    agent.add_arguments(parser, modules="*")
+    """Add the options of the command."""
+    agent.add_arguments(parser)
     parser.add_argument(
-        "--utilities", action="store_true", help="list every rule with its utility in nats as well"
+        "--utilities", action="store_true", help="also list every rule with its utility in nats"
     )
 
 
 def run(options: argparse.Namespace) -> int:
-    """Carry the command out; 1 if there are faults."""
+    """Run the command; return 1 if there are faults."""
     from ravestate.errors import DeclarationError, DeclarationErrors
     from ravestate.modules import BUILT_IN
     from ravestate.policy.compile import compile_policy
     from ravestate.settings import load_settings
 
     try:
-        chosen = agent.load_agent(options)
+        chosen = agent.load_agent(options, announce=True)
         policy = compile_policy(*chosen.modules)
         policy = policy.with_settings(load_settings(policy.modules, chosen.settings))
     except DeclarationErrors as faults:
         for fault in faults.exceptions:
-            print(f"fault: {fault}", file=sys.stderr)
+            _print(f"fault: {fault}", error=True)
         return 1
     except DeclarationError as fault:
-        print(f"fault: {fault}", file=sys.stderr)
+        _print(f"fault: {fault}", error=True)
         return 1
-    # What a built-in module offers and this agent has no use or no rival for is no finding of its designer's.
+    # A built-in module may offer signals and cooldowns that this agent does not need.
     findings = [
         f
-        for f in policy.findings()
-        if f.kind not in ("unheard", "cooldown") or f.subject.split(":")[0] not in BUILT_IN
+        for f in policy.findings(inspect.getsource)
+        if f.kind not in ("unheard", "unraised", "cooldown")
+        or not {name.split(":")[0] for name in (f.subject, *f.rules)} <= set(BUILT_IN)
     ]
     for finding in findings:
-        print(finding)
+        _print(str(finding))
     if options.utilities:
         width = max((len(name) for name in policy.rules), default=0)
         for name in policy.rules:
             print(f"{name:{width}}  {policy.utility(name):9.6f} nats")
-    counts = f"{len(policy.rules)} rules, {len(policy.signals)} signals, {len(policy.slots)} slots"
-    print(f"{counts}: no faults, {len(findings) or 'no'} finding{'' if len(findings) == 1 else 's'}")
+    sizes = {"rule": len(policy.rules), "signal": len(policy.signals), "slot": len(policy.slots)}
+    counts = ", ".join(_count(number, noun) for noun, number in sizes.items())
+    print(f"{counts}: no faults, {_count(len(findings), 'finding')}")
     return 0
+
+
+def _print(text: str, *, error: bool = False) -> None:
+    """Print a message: wrapped with a hanging indent on a terminal, on one line elsewhere."""
+    stream = sys.stderr if error else sys.stdout
+    if stream.isatty():
+        text = textwrap.fill(
+            text,
+            shutil.get_terminal_size().columns,
+            subsequent_indent="    ",
+            break_long_words=False,
+            break_on_hyphens=False,
+        )
+    print(text, file=stream)
+
+
+def _count(number: int, noun: str) -> str:
+    return f"{number or 'no'} {noun}{'' if number == 1 else 's'}"

@@ -1,4 +1,4 @@
-"""The complete text agent: the modules that take part in any chat, on whichever platform."""
+"""The complete text agent: all modules of a chat except the platform."""
 
 from __future__ import annotations
 
@@ -6,10 +6,9 @@ import argparse
 from pathlib import Path
 from typing import Literal
 
-from ravestate.cli import UsageError
-from ravestate.errors import nearest
+from ravestate.errors import UsageError, nearest
 
-__all__ = ["COMPLETE", "add_arguments", "complete", "shown"]
+__all__ = ["COMPLETE", "add_arguments", "explain_memory", "names", "shown"]
 
 COMPLETE = (
     "idle",
@@ -30,14 +29,7 @@ COMPLETE = (
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """The option that leaves something out; and in the help, where what the agent learns is kept."""
-    parser.formatter_class = argparse.RawDescriptionHelpFormatter
-    parser.epilog = (
-        "What the complete agent learns of you stays on this machine:\n"
-        f"  {shown('data', 'default', 'memory.lbug')} (--set ontology.path=FILE names another)\n"
-        "To look at it: ravestate memory list, ravestate memory show NAME. To delete it: ravestate memory forget NAME,\n"
-        'say "forget me", or delete the file.\n'
-    )
+    """Add the option ``--without``."""
     parser.add_argument(
         "--without",
         action="append",
@@ -47,11 +39,22 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def complete(options: argparse.Namespace) -> list[str]:
-    """The names of its modules, without those that the options leave out.
+def explain_memory(parser: argparse.ArgumentParser) -> None:
+    """Add to the help where the agent keeps its memory."""
+    parser.formatter_class = argparse.RawDescriptionHelpFormatter
+    parser.epilog = (
+        "The complete agent keeps its memory of you on this machine:\n"
+        f"  {shown('data', 'default', 'memory.lbug')} (--set ontology.path=FILE names another)\n"
+        "To look at it: ravestate memory list, ravestate memory show NAME. To delete it: ravestate memory forget NAME,\n"
+        'say "forget me", or delete the file.\n'
+    )
+
+
+def names(options: argparse.Namespace) -> list[str]:
+    """Return the names of the modules, without those that the options leave out.
 
     Raises:
-        UsageError: It has no such module.
+        UsageError: The complete agent has no such module.
     """
     for name in options.without:
         if name not in COMPLETE:
@@ -60,11 +63,11 @@ def complete(options: argparse.Namespace) -> list[str]:
 
 
 def shown(kind: Literal["data", "state"], *parts: str) -> str:
-    """A file among the user's own, as people write its path."""
+    """Return the path of a file of the user, with ``~`` for their home."""
     from ravestate.modules._folders import user_folder
 
     try:
         path, home = user_folder(kind).joinpath(*parts), Path.home()
-    except RuntimeError:  # a user without a home
+    except RuntimeError:  # the user has no home
         return "/".join(parts)
     return f"~/{path.relative_to(home).as_posix()}" if path.is_relative_to(home) else str(path)

@@ -3,54 +3,92 @@
 from __future__ import annotations
 
 import argparse
+import sys
 from pathlib import Path
-from typing import Literal
 
-from ravestate.cli import agent
+from ravestate.cli import agent, complete
+from ravestate.errors import UsageError, nearest
 
 __all__ = ["add_arguments", "run"]
 
-FORMATS: dict[str, Literal["svg", "dot", "mermaid"]] = {
-    ".svg": "svg",
-    ".dot": "dot",
-    ".gv": "dot",
-    ".mmd": "mermaid",
-    ".mermaid": "mermaid",
-}
+SUFFIXES = {".svg": "svg", ".dot": "dot", ".gv": "dot", ".mmd": "mermaid", ".mermaid": "mermaid"}
+"""The format of an output file by the end of its name."""
+
+LARGE = 40
+"""Rules from which the diagram folds by itself: with more, no text is legible on a screen."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """The command's options."""
-    agent.add_arguments(parser, modules="*")
+    """Add the options of the command."""
+    agent.add_arguments(parser)
+    complete.add_arguments(parser)
+    parser.description = (
+        "Draw the Signal-Rule-Slot diagram of an agent; without a MODULE, of the complete agent that `ravestate chat` "
+        "runs. The diagram has the slots and signals that some rule touches. Folded, each module is one box, and one "
+        "arrow shows the strongest relation of two modules: writes, emits, condition, then reads."
+    )
     parser.add_argument(
-        "-o", "--output", metavar="FILE", help="where to write it; standard output by default"
+        "-o", "--output", metavar="FILE", help="the file to write; standard output by default"
     )
     parser.add_argument(
         "--format",
         choices=["svg", "dot", "mermaid"],
-        help="by default what the output's name ends in, else svg",
+        help="the format; by default the end of the file's name decides, else svg",
+    )
+    parser.add_argument(
+        "--fold",
+        action=argparse.BooleanOptionalAction,
+        default=None,
+        help=f"draw each module as one box; by default for agents of more than {LARGE} rules",
+    )
+    parser.add_argument(
+        "--unfold",
+        action="append",
+        default=[],
+        metavar="MODULE",
+        help="draw the rules of this module, and fold the others (may be repeated)",
     )
 
 
 def run(options: argparse.Namespace) -> int:
-    """Carry the command out."""
+    """Run the command."""
+    from ravestate.draw import FORMATS
+    from ravestate.draw.build import build
+    from ravestate.draw.fold import fold
     from ravestate.policy.compile import compile_policy
 
-    chosen = agent.load_agent(options)
-    format: Literal["svg", "dot", "mermaid"] | None = options.format
+    named = bool(options.modules or options.file)
+    if named and options.without:
+        raise UsageError("--without is for the complete agent: leave the modules out")
+    if options.unfold and options.fold is False:
+        raise UsageError("--unfold draws some modules, --no-fold all: write one of them")
+    format = options.format or (SUFFIXES.get(Path(options.output).suffix) if options.output else "svg")
     if format is None:
-        format = FORMATS.get(Path(options.output).suffix) if options.output else "svg"
-    if format is None:
-        raise agent.UsageError(
-            f"cannot tell the format of {options.output}: end its name in {', '.join(FORMATS)}, or write --format svg"
+        raise UsageError(
+            f"cannot tell the format of {options.output}: end its name in {', '.join(SUFFIXES)}, or write --format svg"
         )
-    text = compile_policy(*chosen.modules).diagram(format)
+    first = [] if named else ["conio", *complete.names(options)]
+    policy = compile_policy(*agent.load_agent(options, first, announce=True).modules)
+    known = [module.name for module in policy.modules]
+    for name in options.unfold:
+        if name not in known:
+            raise UsageError(f"--unfold {name}: the agent has no such module{nearest(name, known)}")
+    diagram = build(policy.rules.values())
+    if options.fold or options.unfold or (options.fold is None and len(policy.rules) > LARGE):
+        diagram = fold(diagram, options.unfold)
+        if not (options.fold or options.unfold):
+            print(
+                f"ravestate graph: folded {len(policy.rules)} rules into their modules: --unfold MODULE draws the rules "
+                "of one, --no-fold all",
+                file=sys.stderr,
+            )
+    text = FORMATS[format](diagram)
     if options.output is None:
         print(text)
         return 0
     try:
         Path(options.output).write_text(text, encoding="utf-8")
     except OSError as error:
-        raise agent.UsageError(f"cannot write {options.output}: {error.strerror}") from None
+        raise UsageError(f"cannot write {options.output}: {error.strerror}") from None
     print(f"wrote {options.output}")
     return 0

@@ -1,4 +1,4 @@
-"""``ravestate memory``: what an agent knows, listed, shown, exported, loaded, forgotten."""
+"""``ravestate memory``: list, show, export, load, forget, and reset."""
 
 from __future__ import annotations
 
@@ -20,27 +20,29 @@ __all__ = ["add_arguments", "run"]
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """The command's options."""
+    """Add the command's options."""
     _add_place(parser)
     does = parser.add_subparsers(dest="does", metavar="WHAT", required=True)
-    listing = does.add_parser("list", help="list what is known")
+    listing = does.add_parser("list", help="list all nodes")
     listing.add_argument("type", nargs="?", default="", metavar="TYPE", help="a type, e.g. Person")
     listing.add_argument("--types", action="store_true", help="only count, by type")
-    showing = does.add_parser("show", help="show somebody or something with its relations")
+    showing = does.add_parser("show", help="show a node with its relations")
     showing.add_argument("which", metavar="NAME|ID")
     exporting = does.add_parser("export", help="write everything as JSON")
     exporting.add_argument("to", nargs="?", default="-", metavar="FILE", help="by default standard output")
-    loading = does.add_parser("load", help="add what was exported")
-    loading.add_argument("document", metavar="FILE", help="a file that export wrote; - for standard input")
-    forgetting = does.add_parser("forget", help="forget somebody with everything about them")
+    loading = does.add_parser("load", help="add the nodes of an exported file")
+    loading.add_argument("document", metavar="FILE", help="a file from export; - for standard input")
+    forgetting = does.add_parser("forget", help="forget a person with everything about them")
     forgetting.add_argument("which", metavar="NAME|ID")
     forgetting.add_argument("-y", "--yes", action="store_true", help="do not ask")
-    for action in (listing, showing, exporting, loading, forgetting):
+    resetting = does.add_parser("reset", help="remove all files of the memory, also damaged ones")
+    resetting.add_argument("-y", "--yes", action="store_true", help="do not ask")
+    for action in (listing, showing, exporting, loading, forgetting, resetting):
         _add_place(action, later=True)
 
 
 def _add_place(parser: argparse.ArgumentParser, *, later: bool = False) -> None:
-    """The options that say which memory; `later`, behind the name of an action, they leave what was said before it."""
+    """Add the options that choose a memory. `later`: behind an action; they keep the values given before it."""
     default = argparse.SUPPRESS if later else None
     parser.add_argument(
         "--path",
@@ -62,11 +64,13 @@ def _add_place(parser: argparse.ArgumentParser, *, later: bool = False) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Carry the command out; 1 if memory cannot be used."""
-    from ravestate.modules.meta.ontology.places import open_memory, path_of
+    """Run the command; return 1 if memory cannot be used."""
+    from ravestate.modules.meta.ontology.opening import open_memory, path_of
 
     settings = _settings(options)
     path = path_of(settings)
+    if options.does == "reset":
+        return _reset(path, options)
     if path is not None and not path.exists() and options.does != "load":
         raise RavestateError(
             f"there is no memory yet: {path} does not exist; name another with --path FILE, or an agent's settings "
@@ -78,8 +82,8 @@ def run(options: argparse.Namespace) -> int:
         unseen = memory.undeclared().result()
         if unseen:
             print(
-                f"ravestate memory: {memory.place} also has {', '.join(unseen)}, which no file of types has, so it is not "
-                "seen here: name the file with --set ontology.types=[FILE]",
+                f"ravestate memory: {memory.place} also has {', '.join(unseen)}, which no file of types has, so it is "
+                "hidden here: name the file with --set ontology.types=[FILE]",
                 file=sys.stderr,
             )
         does: dict[str, Callable[[Memory, argparse.Namespace], int]] = {
@@ -107,7 +111,7 @@ def _settings(options: argparse.Namespace) -> Settings:
     return load_settings([ontology.module], {"ontology": given})["ontology"]
 
 
-# ------------------------------------------------------------------------------------ what to do
+# ------------------------------------------------------------------------------------ actions
 
 
 def _list(memory: Memory, options: argparse.Namespace) -> int:
@@ -148,7 +152,7 @@ def _export(memory: Memory, options: argparse.Namespace) -> int:
     target = Path(options.to)
     new = target.with_name(target.name + ".new")
     try:
-        new.touch(mode=0o600)  # it is about people
+        new.touch(mode=0o600)  # the document is about people
         new.write_text(text, encoding="utf-8")
         new.replace(target)
     except OSError as error:
@@ -180,19 +184,48 @@ def _forget(memory: Memory, options: argparse.Namespace) -> int:
     if not options.yes:
         for one in going:
             print(f"{one.type:<16} {_name(one):<24} {one.id}")
-        try:
-            answer = input(f"Forget {'this' if len(going) == 1 else 'these'}, with all relations? [y/N] ")
-        except EOFError:
-            answer = ""
-            print()
-        if answer.strip().lower() not in ("y", "yes"):
+        if not _confirmed(f"Forget {'this' if len(going) == 1 else 'these'}, with all relations?"):
             print("nothing was forgotten")
             return 1
     print(f"forgot {len(memory.forget(node).result())}")
     return 0
 
 
-# ------------------------------------------------------------------------------------ who, and how shown
+def _reset(path: Path | None, options: argparse.Namespace) -> int:
+    from ravestate.modules.meta.ontology.files import MemoryFiles
+
+    if path is None:
+        raise UsageError("reset removes files, and this memory is on a server: empty its database there")
+    files = MemoryFiles(path)
+    present = files.present()
+    if not present:
+        raise RavestateError(f"there is no memory at {path}; name another with --path FILE")
+    if files.in_use():
+        raise RavestateError(f"memory {path} is in use by another process: end that agent first")
+    if not options.yes:
+        print(*present, sep="\n")
+        if not _confirmed(
+            f"Remove {'this file' if len(present) == 1 else 'these files'}, with all that is known?"
+        ):
+            print("nothing was removed")
+            return 1
+    try:
+        for file in files.remove():
+            print(f"removed {file}")
+    except OSError as error:
+        raise RavestateError(f"cannot remove {error.filename}: {error.strerror}") from None
+    return 0
+
+
+def _confirmed(question: str) -> bool:
+    try:
+        return input(f"{question} [y/N] ").strip().lower() in ("y", "yes")
+    except EOFError:
+        print()
+        return False
+
+
+# ------------------------------------------------------------------------------------ nodes as text
 
 
 def _everything(memory: Memory) -> list[Node]:
@@ -201,7 +234,7 @@ def _everything(memory: Memory) -> list[Node]:
 
 
 def _chosen(memory: Memory, which: str) -> Node:
-    """The one node with this id or name; capitals do not matter.
+    """Return the one node with this id or name, ignoring case.
 
     Raises:
         UsageError: There is none, or there are several.
@@ -226,7 +259,7 @@ def _name(node: Node) -> str:
 
 
 def _shown(value: object) -> str:
-    """A value in one line, fit for a terminal."""
+    """Return a value in one line, safe for a terminal."""
     from ravestate.modules._text import printable
 
     text = " ".join(printable(str(value)).split())

@@ -1,4 +1,4 @@
-"""``ravestate new``: a small project to begin with, whose tests pass."""
+"""``ravestate new``: a small project to start from, with tests that pass."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import sys
 from importlib.resources import files
 from pathlib import Path
 
-from ravestate.cli import UsageError
+from ravestate.errors import UsageError
 from ravestate.modules import BUILT_IN
 
 __all__ = ["add_arguments", "run"]
@@ -23,16 +23,16 @@ FILES = {
     "module.py": "{package}.py",
     "test_module.py": "tests/test_{package}.py",
 }
-"""Template, and the path that it gets in the new project."""
+"""Each template, with its path in the new project."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """The command's options."""
-    parser.add_argument("name", help="of the project, and of the folder that is made, e.g. my-agent")
+    """Add the options of the command."""
+    parser.add_argument("name", help="the name of the project and of its new folder, e.g. my-agent")
 
 
 def run(options: argparse.Namespace) -> int:
-    """Carry the command out."""
+    """Run the command."""
     folder = Path(options.name)
     name = folder.name
     package = name.replace("-", "_").lower()
@@ -60,7 +60,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _named(command: str) -> str:
-    """How to call a command of this environment: by its path, unless the shell finds it by its name."""
+    """Return the name of a command of this environment, or its path if the shell would not find it."""
     place = Path(sys.executable).with_name(command)
     found = shutil.which(command)
     is_found = found is not None and Path(found) == place

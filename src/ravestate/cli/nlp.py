@@ -1,4 +1,4 @@
-"""``ravestate nlp``: what the agent sees in a text."""
+"""``ravestate nlp``: the analysis of a text, as the agent sees it."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import sys
 from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
-from ravestate.cli import UsageError
+from ravestate.errors import UsageError
 
 if TYPE_CHECKING:
     from ravestate.modules.meta.nlp.analysis import Analysis
@@ -18,28 +18,28 @@ __all__ = ["add_arguments", "run"]
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """The command's options."""
+    """Add the options of the command."""
     parser.add_argument(
-        "text", nargs="*", metavar="TEXT", help="what to read; each line of standard input by default"
+        "text", nargs="*", metavar="TEXT", help="the text; each line of standard input by default"
     )
-    parser.add_argument("--json", action="store_true", help="print a JSON object for each text, one a line")
+    parser.add_argument("--json", action="store_true", help="print one line of JSON for each text")
     parser.add_argument(
         "--pipeline",
         default="",
         metavar="NAME",
-        help="a spaCy pipeline, or its folder; the setting nlp.pipeline",
+        help="a spaCy pipeline or its folder, as the setting nlp.pipeline",
     )
     parser.add_argument(
         "--agent-name",
         dest="agent_names",
         action="append",
         metavar="NAME",
-        help="what the agent is called (may be repeated); the setting nlp.agent_names",
+        help="a name of the agent (may be repeated), as the setting nlp.agent_names",
     )
 
 
 def run(options: argparse.Namespace) -> int:
-    """Carry the command out."""
+    """Run the command."""
     from ravestate.modules._text import printable
     from ravestate.modules.meta.nlp import Settings
     from ravestate.modules.meta.nlp.analysis import analyse
@@ -47,7 +47,7 @@ def run(options: argparse.Namespace) -> int:
 
     names: Sequence[str] = options.agent_names or Settings().agent_names
     texts: Iterable[str] = [" ".join(options.text)] if options.text else _lines()
-    for number, text in enumerate(map(printable, texts)):  # it is shown, and must not steer the terminal
+    for number, text in enumerate(map(printable, texts)):  # without control codes for the terminal
         seen = analyse(text, pipeline(options.pipeline), names)
         if options.json:
             print(json.dumps(_plain(text, seen), ensure_ascii=False), flush=True)
@@ -66,7 +66,7 @@ def _lines() -> Iterator[str]:
 
 
 def _table(seen: Analysis) -> str:
-    """Everything for people: the words in columns, then the rest."""
+    """Return the analysis for people: the words in columns, then the rest."""
     words = [
         (word.text, word.lemma, word.pos, word.tag, word.dep, seen.tree.head(word).text)
         for word in seen.tree.words
@@ -107,7 +107,7 @@ def _signals(seen: Analysis) -> list[str]:
 
 
 def _plain(text: str, seen: Analysis) -> dict[str, Any]:
-    """Everything for programs."""
+    """Return the analysis for programs."""
 
     def part(value: Any) -> Any:
         return value if isinstance(value, str) else {"asks_for": value.name}

@@ -5,17 +5,20 @@ from __future__ import annotations
 import argparse
 
 from ravestate.cli import agent
+from ravestate.cli.built_in import listing
 
 __all__ = ["add_arguments", "run"]
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """The command's options."""
-    agent.add_arguments(parser, modules="*")
+    """Add the options of the command."""
+    agent.add_arguments(parser)
+    parser.formatter_class = argparse.RawDescriptionHelpFormatter
+    parser.epilog = listing()
 
 
 def run(options: argparse.Namespace) -> int:
-    """Carry the command out."""
+    """Run the command."""
     from ravestate.runtime.run import run as run_modules
 
     chosen = agent.load_agent(options)

@@ -1,1 +1,1 @@
-"""What a designer writes: module, signal, slot, condition, rule, settings. Values; no behaviour."""
+"""The declarations of a designer: module, signal, slot, condition, rule, settings. Values without behaviour."""

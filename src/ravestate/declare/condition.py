@@ -1,11 +1,12 @@
 """Conditions: boolean combinations of constraints on signals and of predicates on slots (L3, L4).
 
-A condition is a value. ``&`` and ``|`` build trees; ``policy/clauses.py`` brings them into
-disjunctive normal form.
+A condition is a value. ``&`` and ``|`` build trees; ``policy/clauses.py`` brings them into disjunctive normal
+form.
 """
 
 from __future__ import annotations
 
+import inspect
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, NoReturn, cast
@@ -21,16 +22,16 @@ if TYPE_CHECKING:
 __all__ = ["DEFAULT_MAX_AGE", "AllOf", "AnyOf", "Condition", "Constraint", "Holds", "checked_predicate"]
 
 DEFAULT_MAX_AGE = 5.0
-"""Seconds after which a spike no longer fulfils a constraint that does not say otherwise (L4)."""
+"""The default of a constraint's `max_age`, in seconds (L4)."""
 
 Predicate = Callable[[Any], object]
 
-LATER = 0x20 | 0x80 | 0x200
-"""Flags of code whose call only makes a generator, a coroutine or both (``inspect.CO_...``, without importing inspect)."""
+LATER = inspect.CO_GENERATOR | inspect.CO_COROUTINE | inspect.CO_ASYNC_GENERATOR
+"""Flags of a function whose call only makes a generator or a coroutine."""
 
 
 class Condition:
-    """What a rule waits for. Combine with ``&`` (and) and ``|`` (or); ``&`` binds tighter.
+    """The trigger of a rule. Combine conditions with ``&`` (and) and ``|`` (or); ``&`` binds tighter.
 
     Example:
         >>> import ravestate as rs
@@ -57,7 +58,7 @@ class Condition:
 
 @dataclass(frozen=True, slots=True, repr=False)
 class Constraint(Condition):
-    """A signal, the ages (seconds) at which a spike of it counts, and predicates over its payload."""
+    """A signal with the ages (seconds) at which a spike counts, and with predicates over the payload."""
 
     signal: Signal[Any]
     min_age_: Number = 0.0
@@ -66,25 +67,25 @@ class Constraint(Condition):
     predicates: tuple[Predicate, ...] = ()
 
     def min_age(self, seconds: Number) -> Constraint:
-        """Count a spike only once it is `seconds` old (a number, or a setting's name), and not yet older than `max_age`."""
+        """Count a spike only when it is at least `seconds` old; the argument is a number or a setting."""
         return replace(self, min_age_=_age(seconds, "min_age"))
 
     def max_age(self, seconds: Number | None) -> Constraint:
-        """Give a spike up when it is older than `seconds`; ``None``: never. Default 5 s."""
+        """Give a spike up when it is older than `seconds`; ``None`` keeps it for ever. The default is 5 s."""
         return replace(self, max_age_=None if seconds is None else _age(seconds, "max_age"))
 
     def detached(self) -> Constraint:
-        """Look at the spike without consuming it, without its consent, and without becoming its effect (L19)."""
+        """Look at the spike: do not consume it, do not ask its group for consent, and do not join its group (L19)."""
         return replace(self, is_detached=True)
 
     def where(self, predicate: Predicate) -> Constraint:
-        """Accept only spikes for whose payload ``predicate(payload)`` is true. Adds ln 2 to the utility (L9).
+        """Accept a spike only if ``predicate(payload)`` is true. Adds ln 2 to the utility (L9).
 
         Args:
-            predicate: A plain, quick function: it is called on the loop for each spike that is offered to the rule.
+            predicate: A plain, quick function. The loop calls it for each spike that it offers to the rule.
 
         Raises:
-            DeclarationError: It is no function, or an asynchronous one.
+            DeclarationError: The predicate is no function, or an asynchronous one.
 
         Example:
             >>> import ravestate as rs
@@ -108,7 +109,7 @@ class Constraint(Condition):
 
 @dataclass(frozen=True, slots=True, repr=False)
 class Holds(Condition):
-    """A predicate on a slot's present value: it gates a rule without being a spike (L4)."""
+    """A predicate on a slot's present value. It gates a rule without a spike (L4)."""
 
     slot: Slot[Any]
     predicate: Predicate
@@ -138,10 +139,12 @@ class AnyOf(Condition):
 
 
 def checked_predicate(predicate: object, what: str, of: str) -> Predicate:
-    """A predicate, if it is a plain function: the call of another kind only makes an object, which is always true.
+    """Return a predicate that is a plain function; refuse any other value.
+
+    A call of an asynchronous function or a generator only makes an object, which is always true.
 
     Raises:
-        DeclarationError: It is no function, or an asynchronous one, or a generator.
+        DeclarationError: The predicate is no function, an asynchronous one, or a generator.
     """
     if not callable(predicate):
         raise DeclarationError(f"{what}({predicate!r}): expected a function of the {of}")
@@ -153,8 +156,8 @@ def checked_predicate(predicate: object, what: str, of: str) -> Predicate:
     code = getattr(function, "__code__", None)
     if code is not None and code.co_flags & LATER:
         raise DeclarationError(
-            f"{what}({_title(predicate)}) ({place_of_call()}): what an asynchronous function or a generator returns is "
-            f"always true: write a plain function of the {of}, and move what takes time to a rule that emits a signal"
+            f"{what}({_title(predicate)}) ({place_of_call()}): the result of an asynchronous function or a generator is "
+            f"always true: write a plain function of the {of}, and do slow work in a rule that emits a signal"
         )
     return predicate
 
@@ -184,7 +187,7 @@ def _age(seconds: object, what: str) -> Number:
 
 
 def _written(condition: Condition) -> str:
-    """A condition as it was written, of any depth."""
+    """Return a condition as code, whatever its depth."""
     words: list[str] = []
     stack: list[Condition | str] = [condition]
     while stack:

@@ -1,4 +1,4 @@
-"""What is built in (L22): the module ``core``. It brings no rules."""
+"""The built-in signals and flags (L22): the module ``core``, which has no rules."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ __all__ = ["RuleFailure", "activity", "core", "error", "pressure", "shutdown", "
 
 @dataclass(frozen=True, slots=True)
 class RuleFailure:
-    """Payload of ``rs.error``: which rule failed, and how."""
+    """The payload of ``rs.error``: the name of the rule that failed, and the exception."""
 
     rule: str
     exception: BaseException
@@ -23,7 +23,7 @@ startup = core.signal("startup", input=True)
 """Raised once, when a context starts."""
 
 shutdown = core.signal("shutdown", input=True)
-"""Raised once, when a context is asked to end; rules that it triggers may finish."""
+"""Raised once, when a context is about to end; the rules on it run to their end."""
 
 error = core.signal("error", payload=RuleFailure, input=True)
 """Raised when a rule fails (L18)."""
@@ -32,4 +32,4 @@ activity = core.flag("activity", input=True, keep="latest")
 """True while some activation of a non-background rule holds a spike or runs."""
 
 pressure = core.flag("pressure", input=True, keep="latest")
-"""True while some activation is ready and kept waiting."""
+"""True while some ready activation has to wait for consent."""

@@ -1,4 +1,4 @@
-"""What a rule function may return (or raise) besides nothing (L18)."""
+"""The outcomes that a rule function may return or raise (L18)."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ __all__ = ["Resign", "Retire"]
 
 
 class Resign(RavestateError):
-    """The rule does not apply after all: the next best rule is asked.
+    """The rule does not apply after all, and the next best rule gets its turn.
 
-    ``return rs.Resign("reason")`` or ``raise rs.Resign("reason")``. Only before the rule has written a slot.
+    Write ``return rs.Resign("reason")`` or ``raise rs.Resign("reason")``, before the rule writes a slot.
     """
 
     def __init__(self, reason: str = "") -> None:
@@ -19,7 +19,7 @@ class Resign(RavestateError):
 
 
 class Retire(RavestateError):
-    """The rule is done for good: it leaves this context (others that share the policy keep it)."""
+    """The rule leaves this context for good. Other contexts of the same policy keep it."""
 
     def __init__(self, reason: str = "") -> None:
         super().__init__(reason)

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, Generic, ParamSpec, TypeVar
+from dataclasses import KW_ONLY, dataclass, field
+from functools import partial
+from inspect import iscoroutinefunction
+from typing import Any, Generic, ParamSpec, TypeVar, cast
 
 from ravestate.declare.condition import Condition
 from ravestate.declare.settings import Number
@@ -16,81 +19,59 @@ P = ParamSpec("P")
 R = TypeVar("R")
 
 
+@dataclass(eq=False, repr=False)
 class Rule(Generic[P, R]):
-    """What ``@module.rule(...)`` makes of a function. Calling it calls the function.
+    """A function with its declaration, made by ``@module.rule(...)``. A call of the rule calls the function.
 
     Attributes:
         name: The qualified name, ``module:function``.
-        function: The function: ``async def`` runs on the loop, a plain one in a worker thread.
+        function: The function.
+        is_async: Whether the function is a coroutine function. It runs on the loop, a plain one in a worker thread.
         when: The condition.
         reads: The slots whose values the function may read.
-        writes: The slots that the function may write (and read); they decide whom it excludes (L10).
+        writes: The slots that the function may write and read. Rules that write one slot exclude each other (L10).
         emits: The signals that the function may emit.
         weight: Factor on the utility (L9), above 0.
         cooldown: Seconds over which the utility recovers from 0 after a run (L9).
-        patience: Seconds that the rule, when others wait for it, has to become ready (L16); ``None``: the context's.
+        patience: Seconds that the rule has to become ready while others wait for it (L16); ``None`` for the context's.
         until: A condition that interrupts a run (L21).
-        timeout: Seconds that a run may take (L18); ``None``: any.
-        detached: Whether what the rule causes begins new causal groups (L19).
+        timeout: Seconds that a run may take (L18); ``None`` for no limit.
+        detached: Whether the rule's effects begin new causal groups (L19).
         background: Whether the rule leaves ``rs.activity`` alone (L22).
-        origin: Where it was declared, ``file:line``.
+        origin: The place of the declaration, ``file:line``.
     """
 
-    __slots__ = (
-        "__dict__",  # for functools.wraps
-        "background",
-        "cooldown",
-        "detached",
-        "emits",
-        "function",
-        "name",
-        "origin",
-        "patience",
-        "reads",
-        "timeout",
-        "until",
-        "weight",
-        "when",
-        "writes",
-    )
+    name: str
+    function: Callable[P, R]
+    _: KW_ONLY
+    when: Condition
+    reads: tuple[Slot[Any], ...]
+    writes: tuple[Slot[Any], ...]
+    emits: tuple[Signal[Any], ...]
+    weight: Number
+    cooldown: Number
+    patience: Number | None
+    until: Condition | None
+    timeout: Number | None
+    detached: bool
+    background: bool
+    origin: str
+    is_async: bool = field(init=False)
 
-    def __init__(
-        self,
-        name: str,
-        function: Callable[P, R],
-        *,
-        when: Condition,
-        reads: tuple[Slot[Any], ...],
-        writes: tuple[Slot[Any], ...],
-        emits: tuple[Signal[Any], ...],
-        weight: Number,
-        cooldown: Number,
-        patience: Number | None,
-        until: Condition | None,
-        timeout: Number | None,
-        detached: bool,
-        background: bool,
-        origin: str,
-    ) -> None:
-        self.name = name
-        self.function = function
-        self.when = when
-        self.reads = reads
-        self.writes = writes
-        self.emits = emits
-        self.weight = weight
-        self.cooldown = cooldown
-        self.patience = patience
-        self.until = until
-        self.timeout = timeout
-        self.detached = detached
-        self.background = background
-        self.origin = origin
-        self.__doc__ = function.__doc__
-        self.__wrapped__ = function
+    def __post_init__(self) -> None:
+        self.is_async = _is_async(self.function)
+        self.__doc__ = self.function.__doc__
+        self.__wrapped__ = self.function
 
     def __call__(self, *args: P.args, **kwargs: P.kwargs) -> R:
         return self.function(*args, **kwargs)
 
     def __repr__(self) -> str:
         return f"<rule {self.name}>"
+
+
+def _is_async(function: object) -> bool:
+    while isinstance(function, partial):
+        function = cast("partial[Any]", function).func
+    call = getattr(type(function), "__call__", None)  # noqa: B004  # an object's own or inherited call
+    return iscoroutinefunction(function) or iscoroutinefunction(call)

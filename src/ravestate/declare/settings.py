@@ -1,7 +1,6 @@
-"""A setting named in a declaration, to be looked up when a context starts.
+"""A reference to a setting in a declaration; a context looks the value up when it starts.
 
-The `Settings` model itself stands in ``ravestate/settings.py``: it is a pydantic model, and the pure
-rooms know no third party.
+The `Settings` model is in ``ravestate/settings.py``: it needs pydantic, and the pure rooms use no third party.
 """
 
 from __future__ import annotations
@@ -13,7 +12,7 @@ __all__ = ["Number", "SettingRef", "setting"]
 
 @dataclass(frozen=True, slots=True)
 class SettingRef:
-    """The name of a numeric setting; `owner` is the settings class it was taken from, if known."""
+    """The name of a numeric setting, and the settings class that has it, if known."""
 
     name: str
     owner: type | None = None
@@ -24,9 +23,9 @@ class SettingRef:
 
 type_of_number = (int, float, SettingRef)
 Number = float | SettingRef
-"""A number in a declaration: given at once, or by the name of a setting."""
+"""A number in a declaration, or a reference to a setting."""
 
 
 def setting(name: str) -> SettingRef:
-    """Name a setting of the rule's own module, e.g. ``idle.bored.min_age(rs.setting("bored_after"))``."""
+    """Return a reference to a setting of the rule's own module: ``idle.bored.min_age(rs.setting("bored_after"))``."""
     return SettingRef(name)

@@ -2,20 +2,35 @@
 
 from __future__ import annotations
 
-from typing import Generic, Literal, TypeVar
+from typing import Generic, Literal, TypedDict, TypeVar
 
 from ravestate.declare.condition import Condition, Constraint, Predicate
 from ravestate.declare.settings import Number
 
-__all__ = ["DEFAULT_LIMIT", "Keep", "Signal"]
+__all__ = ["DEFAULT_LIMIT", "Keep", "Signal", "SignalOptions"]
 
 T = TypeVar("T")
 
 Keep = Literal["all", "latest"]
-"""What becomes of older live spikes when a new one is born: kept up to a limit, or withdrawn (L20, L23)."""
+"""The overflow policy of a signal: a new spike leaves older live ones up to a limit, or withdraws them (L20, L23)."""
 
 DEFAULT_LIMIT = 100_000
-"""Live spikes of one signal beyond which the oldest is dropped, counted and traced (L23)."""
+"""The default of a signal's `limit`."""
+
+
+class SignalOptions(TypedDict, total=False):
+    """The options of a signal; a collection gives them to each of its signals.
+
+    Attributes:
+        input: Whether it may also come from outside although a rule raises it (L8). A signal that no rule raises is
+            an input anyway.
+        keep: ``"all"``; or ``"latest"``: a new spike withdraws the older ones (L20).
+        limit: The greatest number of live spikes, 100,000 by default. Beyond it the oldest is dropped (L23).
+    """
+
+    input: bool
+    keep: Keep
+    limit: int
 
 
 class Signal(Condition, Generic[T]):
@@ -23,17 +38,24 @@ class Signal(Condition, Generic[T]):
 
     Attributes:
         name: The qualified name, ``module:name``.
-        payload: The payload's type; None if it carries none, and for a slot's own, which carries what the slot takes.
+        payload: The payload's type. None if there is no payload, and for a slot's signal, whose payload is the slot's.
         input: Whether it may come from outside although a rule raises it too (L8).
         keep: ``"all"`` or ``"latest"``.
         limit: The greatest number of live spikes.
-        origin: Where it was declared, ``file:line``.
+        origin: The place of the declaration, ``file:line``.
     """
 
     __slots__ = ("input", "keep", "limit", "name", "origin", "payload")
 
     def __init__(
-        self, name: str, payload: object, *, input: bool, keep: Keep, limit: int, origin: str
+        self,
+        name: str,
+        payload: object,
+        *,
+        origin: str,
+        input: bool = False,
+        keep: Keep = "all",
+        limit: int = DEFAULT_LIMIT,
     ) -> None:
         self.name = name
         self.payload = payload
@@ -57,13 +79,6 @@ class Signal(Condition, Generic[T]):
     def where(self, predicate: Predicate) -> Constraint:
         """Constrain the signal: see `Constraint.where`."""
         return Constraint(self).where(predicate)
-
-    def __eq__(self, other: object) -> bool:
-        # What a policy reports may be compared with signals in hand or with their qualified names.
-        return self is other or (isinstance(other, str) and other == self.name)
-
-    def __hash__(self) -> int:
-        return hash(self.name)
 
     def __repr__(self) -> str:
         return self.name

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from types import MappingProxyType
-from typing import Any, Generic, NamedTuple, NoReturn, TypeVar
+from typing import Any, Generic, NamedTuple, NoReturn, TypeVar, Unpack
 
 from ravestate.declare.condition import Holds, Predicate, checked_predicate
-from ravestate.declare.signal import Keep, Signal
-from ravestate.declare.wording import place_of_call
+from ravestate.declare.signal import Signal, SignalOptions
+from ravestate.declare.wording import place_of_call, short
 from ravestate.errors import DeclarationError, RuleError, nearest
 
-__all__ = ["Collection", "Entry", "Flag", "Slot", "checkable"]
+__all__ = ["Collection", "Entry", "Flag", "Slot", "SlotOptions", "checkable"]
 
 T = TypeVar("T")
 V = TypeVar("V")
@@ -19,8 +19,18 @@ V = TypeVar("V")
 NOTHING: Mapping[str, Any] = MappingProxyType({})
 
 
+class SlotOptions(SignalOptions, total=False):
+    """The options of a value slot and of a flag.
+
+    Attributes:
+        always: Whether a write of an equal value signals too: an utterance may occur twice.
+    """
+
+    always: bool
+
+
 class Entry(NamedTuple):
-    """Payload of a collection's signals: the key, and the item that was added, set or removed."""
+    """The payload of a collection's signals: the key, and the item that was added, set or removed."""
 
     key: str
     item: Any
@@ -32,27 +42,26 @@ class Slot(Generic[T]):
     Attributes:
         name: The qualified name, ``module:name``.
         default: The value before the first write; each context gets a copy of its own.
-        type: What `isinstance` is asked of each value written; None: nothing.
-        declared: The type as it was declared, such as ``list[int]``; None: none was.
-        always: Whether writing an equal value signals too.
+        type: The type that `isinstance` checks at each write; None checks nothing.
+        declared: The type as the designer wrote it, such as ``list[int]``; None if there is none.
+        always: Whether a write of an equal value signals too.
         signals: All signals of the slot, `changed` first.
-        origin: Where it was declared, ``file:line``.
+        origin: The place of the declaration, ``file:line``.
     """
 
     __slots__ = ("always", "changed", "declared", "default", "name", "origin", "signals", "type")
     kind = "value"
+    names: tuple[str, ...] = ("changed",)
 
     def __init__(
         self,
         name: str,
         default: T,
         *,
-        always: bool,
-        input: bool,
-        keep: Keep,
-        limit: int,
         origin: str,
         type: Any = None,
+        always: bool = False,
+        **options: Unpack[SignalOptions],
     ) -> None:
         self.name = name
         self.default = default
@@ -60,42 +69,40 @@ class Slot(Generic[T]):
         self.declared = type
         self.always = always
         self.origin = origin
-        self.changed: Signal[Any] = self._signal("changed", input, keep, limit)
-        self.signals: tuple[Signal[Any], ...] = (self.changed,)
-
-    def _signal(self, what: str, input: bool, keep: Keep, limit: int) -> Signal[Any]:
-        return Signal(f"{self.name}:{what}", None, input=input, keep=keep, limit=limit, origin=self.origin)
+        self.changed: Signal[Any]
+        self.signals: tuple[Signal[Any], ...] = tuple(
+            Signal[Any](f"{name}:{what}", None, origin=origin, **options) for what in self.names
+        )
+        for what, signal in zip(self.names, self.signals, strict=True):
+            setattr(self, what, signal)
 
     def check(self, value: object, writer: str) -> None:
         """Refuse a value that is not of the slot's type.
 
         Args:
-            value: What is written.
-            writer: Who writes it, for the message.
+            value: The value to write.
+            writer: The writer's name, for the message.
 
         Raises:
-            RuleError: It is of another type.
+            RuleError: The value is of another type.
         """
         if self.type is None or isinstance(value, self.type) or (value is None and self.default is None):
             return
-        text = repr(value)
         takes = getattr(self.type, "__name__", str(self.type))
         raise RuleError(
-            f"{writer} wrote {text if len(text) <= 60 else text[:57] + '...'} to {self.name}, which takes {takes}, not "
-            f"{type(value).__name__}"
+            f"{writer} wrote {short(value)} to {self.name}, which takes {takes}, not {type(value).__name__}"
         )
 
     def holds(self, predicate: Predicate) -> Holds:
-        """Gate a rule by ``predicate(value)`` of the slot's present value. Adds ln 2 to the utility (L9)."""
+        """Return a gate: a rule runs only while ``predicate(value)`` of the slot is true. Adds ln 2 to the utility (L9)."""
         return Holds(self, checked_predicate(predicate, f"{self.name}.holds", "value"))
 
     def __getattr__(self, attribute: str) -> NoReturn:
         if attribute.startswith("__"):
             raise AttributeError(attribute)
-        names = [signal.name.rsplit(":", 1)[-1] for signal in self.signals]
         raise AttributeError(
-            f"{self.kind} slot {self.name} has no {attribute!r}: its signals are {', '.join(names)}"
-            f"{nearest(attribute, [*names, 'holds', 'default'])}",
+            f"{self.kind} slot {self.name} has no {attribute!r}: its signals are {', '.join(self.names)}"
+            f"{nearest(attribute, [*self.names, 'holds', 'default'])}",
             name=attribute,
         )
 
@@ -111,7 +118,7 @@ class Slot(Generic[T]):
 
 
 def checkable(kind: Any) -> Any:
-    """A type as `isinstance` takes it, an int being fine for a float; None if it does not."""
+    """Return a type for `isinstance`, or None for a type that it does not know. A float slot takes integers too."""
     if kind is float:
         kind = int | float
     try:
@@ -126,28 +133,22 @@ class Flag(Slot[bool]):
 
     __slots__ = ("false", "true")
     kind = "flag"
-
-    def __init__(
-        self, name: str, default: bool, *, always: bool, input: bool, keep: Keep, limit: int, origin: str
-    ) -> None:
-        super().__init__(name, default, always=always, input=input, keep=keep, limit=limit, origin=origin)
-        self.true: Signal[bool] = self._signal("true", input, keep, limit)
-        self.false: Signal[bool] = self._signal("false", input, keep, limit)
-        self.signals = (self.changed, self.true, self.false)
+    names = ("changed", "true", "false")
+    true: Signal[bool]
+    false: Signal[bool]
 
 
 class Collection(Slot[Mapping[str, V]]):
     """Items by key, with the signals ``.added``, ``.removed`` and ``.changed`` (payload: an `Entry`).
 
-    ``changed`` is raised by every change, as for any slot; ``added`` and ``removed`` say that a key came
-    or went.
+    Every change raises ``changed``, as for any slot. A new key raises ``added``, a key that goes ``removed``.
     """
 
     __slots__ = ("added", "removed")
     kind = "collection"
+    names = ("changed", "added", "removed")
+    added: Signal[Entry]
+    removed: Signal[Entry]
 
-    def __init__(self, name: str, *, input: bool, keep: Keep, limit: int, origin: str) -> None:
-        super().__init__(name, NOTHING, always=False, input=input, keep=keep, limit=limit, origin=origin)
-        self.added: Signal[Entry] = self._signal("added", input, keep, limit)
-        self.removed: Signal[Entry] = self._signal("removed", input, keep, limit)
-        self.signals = (self.changed, self.added, self.removed)
+    def __init__(self, name: str, *, origin: str, **options: Unpack[SignalOptions]) -> None:
+        super().__init__(name, NOTHING, origin=origin, **options)

@@ -1,16 +1,20 @@
-"""How messages name what a designer wrote: as it is typed, and where it stands."""
+"""The wording of messages: names as a designer types them, places in the code, and values cut to a readable length."""
 
 from __future__ import annotations
 
 import sys
 
-__all__ = ["place_of_call", "spelt"]
+__all__ = ["cut", "place_of_call", "short", "shown", "spelt"]
+
+LENGTH = 60
+"""Characters of a value that a message shows."""
 
 HERE = __file__.removesuffix("wording.py")
+CORE = HERE + "core.py"  # the one file here that declares something
 
 
 def spelt(name: str, home: str = "") -> str:
-    """A qualified name as it is typed, seen from the module `home`, whose own names are variables there.
+    """Return a qualified name as code of the module `home` spells it; there, its own names are variables.
 
     Example:
         >>> spelt("rawio:input:changed", "guide"), spelt("guide:face", "guide")
@@ -21,8 +25,33 @@ def spelt(name: str, home: str = "") -> str:
 
 
 def place_of_call() -> str:
-    """Where the nearest caller outside of this folder stands, ``file:line``."""
-    frame = sys._getframe(1)  # pyright: ignore[reportPrivateUsage]  # error messages say where the mistake is
+    """Return the place of the nearest caller outside of this folder, as ``file:line``."""
+    frame = sys._getframe(1)  # pyright: ignore[reportPrivateUsage]  # messages name the line of the mistake
     while frame.f_back is not None and frame.f_code.co_filename.startswith(HERE):
+        if frame.f_code.co_filename == CORE:
+            break
         frame = frame.f_back
     return f"{frame.f_code.co_filename}:{frame.f_lineno}"
+
+
+def shown(value: object) -> str:
+    """Return the `repr` of a value. If its own code fails, return its type."""
+    try:
+        return repr(value)
+    except Exception:  # a value's own code may raise anything, and the message about it still has to appear
+        return f"<{type(value).__name__} without a repr>"
+
+
+def cut(text: str, length: int = LENGTH) -> str:
+    """Return a text cut to `length` characters; a text that was cut ends in three dots.
+
+    Example:
+        >>> cut("a long story", 9), cut("short", 9)
+        ('a long...', 'short')
+    """
+    return text if len(text) <= length else text[: length - 3] + "..."
+
+
+def short(value: object, length: int = LENGTH) -> str:
+    """Return the `repr` of a value, cut to `length` characters."""
+    return cut(shown(value), length)

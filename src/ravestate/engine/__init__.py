@@ -1,5 +1,5 @@
 """The automaton: events and times in, effects out. Pure: no clock, thread, lock, random number or hash order.
 
-``engine.py`` owns the four verbs; ``activation.py`` the life of an activation; ``consent.py`` who may run;
-``horizon.py`` what may still come.
+The way of an event: ``engine.py`` receives it; ``slots.py`` changes values; ``matching.py`` offers the new spikes;
+``holdings.py`` makes activations ready; ``agenda.py`` starts them, with consent (``consent.py``, ``horizon.py``).
 """

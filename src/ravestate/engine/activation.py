@@ -1,21 +1,17 @@
 """The life of an activation (L12, L14, L17, L18).
 
-An activation is a clause plus the spikes that it has acquired; once it has consent, it is the run of the
-rule. For every clause there is always one more, in stand-by, that holds nothing; as it has no state, it
-is not an object: an activation comes to be with the first spike that it takes.
+An activation is a clause plus the spikes that it has acquired; once it has consent, it is the run of the rule.
+Every clause always has one more, in stand-by, that holds nothing. It has no state, so it is no object: an
+activation is made for the first spike that it takes.
 
-=============  =================  ==========================================================================
-State          holds              what may happen
-=============  =================  ==========================================================================
-`GATHERING`    some spikes        it takes more; it gives some up; it holds all, old enough: it is complete
-`READY`        all, old enough    it asks for consent: granted, or it is kept waiting; it loses a spike
-`WAITING`      all, old enough    as READY; what it waits for changes, and it is asked again
-`RUNNING`      all                the function runs; it ends, or is told to end
-`CANCELLING`   all                the function was told to end and cleans up
-`ENDED`        nothing            nothing
-=============  =================  ==========================================================================
+- `GATHERING`: it holds some of its spikes, or some are too young.
+- `READY`: it holds all, old enough, and asks for consent.
+- `WAITING`: it was refused consent, and asks again when something changes.
+- `RUNNING`: the rule's function runs.
+- `CANCELLING`: the engine has cancelled the function, which cleans up.
+- `ENDED`: it holds nothing.
 
-What is not in the table of transitions is an error of the engine's.
+Any step that is not in the table of transitions is an error of the engine.
 """
 
 from __future__ import annotations
@@ -27,8 +23,9 @@ from ravestate.errors import EngineError
 
 if TYPE_CHECKING:
     from ravestate.engine.group import Group
+    from ravestate.engine.loops import Lineage
     from ravestate.engine.spike import Spike
-    from ravestate.policy.plan import Clause
+    from ravestate.policy.model import Clause
 
 __all__ = [
     "CANCEL",
@@ -56,7 +53,7 @@ NEVER = float("inf")
 
 
 class State(enum.IntEnum):
-    """Where an activation stands in its life."""
+    """The state of an activation."""
 
     GATHERING = 0
     READY = 1
@@ -67,7 +64,7 @@ class State(enum.IntEnum):
 
 
 class Step(enum.IntEnum):
-    """What happens to an activation."""
+    """A step in the life of an activation."""
 
     COMPLETE = 0  # holds all its spikes, they are old enough, and its guards hold (L14)
     LOSE = 1  # gave a spike up, or a guard no longer holds
@@ -77,7 +74,7 @@ class Step(enum.IntEnum):
     END = 5  # finished, or gave up its last spike
 
 
-_G, _R, _W, _X, _C, _E = State  # so that the table is one
+_G, _R, _W, _X, _C, _E = State  # short, so that the table reads as one
 TRANSITIONS: dict[tuple[State, Step], State] = {
     (_G, Step.COMPLETE): _R,
     (_G, Step.LOSE): _G,
@@ -97,7 +94,7 @@ TRANSITIONS: dict[tuple[State, Step], State] = {
 
 _TABLE = tuple(tuple(TRANSITIONS.get((state, step)) for step in Step) for state in State)
 
-# An attribute of an enumeration costs more than what is done with it.
+# Reading an attribute of an enumeration costs more than the use of its value.
 GATHERING, READY, WAITING, RUNNING, CANCELLING, ENDED = State
 COMPLETE, LOSE, REFUSE, GRANT, CANCEL, END = Step
 
@@ -105,39 +102,41 @@ COMPLETE, LOSE, REFUSE, GRANT, CANCEL, END = Step
 class Activation:
     """A clause plus the spikes that it has acquired.
 
-    Most activations are given up before they run or wait; what only those that do need stands on the class as its
-    default.
+    Most activations are given up before they run or wait. The attributes that only the others need are defaults on
+    the class.
 
     Attributes:
         id: A number that grows with age; also the number of its run.
-        spikes: One place for each need of the clause.
-        missing: Bits of the needs that hold nothing.
+        spikes: The spike for each need of the clause.
+        missing: The bits of the needs without a spike.
     """
 
     ripens: float = NEVER
-    """When its youngest spike is old enough, while that is in the future (seconds)."""
+    """When its youngest spike will be old enough (seconds), while it is not."""
     pressed: float = NEVER
-    """Until when it has patience, while others wait for it (L16)."""
+    """The end of its patience (seconds), while others wait for it (L16)."""
     waits_for: tuple[str, ...] = ()
-    """While it waits: the names of the rules for which."""
+    """While it waits: the names of the rules that it waits for."""
     blockers: tuple[Activation, ...] = ()
-    """While it waits: the live activations on whose progress that depends."""
+    """While it waits: the live activations on whose progress its turn depends."""
     interests: tuple[Group, ...] = ()
     """While it waits: the groups whose changes concern it."""
     speculative: bool = False
-    """Whether it waits for a rival that only patience bounds."""
+    """Whether it waits for a rival whose patience is the only bound."""
     recheck: float = NEVER
-    """While it waits: when recovering utilities change the order (L9)."""
+    """While it waits: when recovering utilities change the order (L9; seconds)."""
     stands_on: tuple[Spike, ...] = ()
-    """The non-detached spikes of the run: the parents of what it causes."""
+    """The non-detached spikes of the run: the parents of the spikes that it raises."""
     groups: tuple[Group, ...] = ()
     """The groups in which the run has taken slots, as they were when it began."""
     wrote: bool = False
     """Whether the run has written a slot."""
     deadline: float = NEVER
-    """When the run has taken too long (seconds)."""
+    """When the run times out (seconds)."""
     told: str = ""
-    """Why the run was told to end."""
+    """Why the engine cancelled the run."""
+    lineage: Lineage | None = None
+    """The rules that led to the run, its own included, when an instant has many runs (L23)."""
 
     def __init__(self, id: int, clause: Clause) -> None:
         self.id = id
@@ -160,14 +159,14 @@ class Activation:
         self.state = state
 
     def held(self, bits: int) -> Spike | None:
-        """A spike that it holds for one of the needs in `bits`, if any."""
+        """Return a spike that it holds for one of the needs in `bits`, if any."""
         for need in self.clause.needs:
             if need.bit & bits and not need.bit & self.missing:
                 return self.spikes[need.index]
         return None
 
     def firm_groups(self) -> list[Group]:
-        """The causal groups of its non-detached spikes, as they are now, each once."""
+        """Return the present causal groups of its non-detached spikes, each once."""
         if len(self.spikes) == 1 and self.clause.firm_bits:
             only = self.spikes[0]
             return [] if only is None else [only.group if only.group.into is None else only.group.root()]
@@ -181,7 +180,7 @@ class Activation:
         return found
 
     def firm_spikes(self) -> tuple[Spike, ...]:
-        """Its non-detached spikes: the parents of what its run causes."""
+        """Return its non-detached spikes: the parents of the spikes that its run raises."""
         if self.clause.firm_bits == self.clause.all_bits and not self.missing:
             return tuple(self.spikes)  # type: ignore[arg-type]  # nothing is missing
         return tuple(

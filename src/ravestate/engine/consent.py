@@ -1,9 +1,8 @@
-"""Consent (L15): whether a ready activation may run now, and if not, for whom it waits.
+"""Consent (L15): whether a ready activation may run now, and if not, which activations it waits for.
 
-A group refuses while one of the activation's slots is taken in it, or while a rival stands: another
-clause that writes one of these slots, with greater effective utility, that has a stake in the group and is
-still viable there. Rivals are either members of the group (they hold one of its spikes), or clauses in
-stand-by that lie downstream of a live rule of the group.
+A group refuses while one of the activation's slots is taken in it, or while a rival stands. A rival is another clause
+that writes one of these slots with greater effective utility. It has a stake in the group, and is still viable there.
+A rival with a stake holds a spike of the group, or is in stand-by, downstream of a live rule of the group.
 """
 
 from __future__ import annotations
@@ -13,25 +12,25 @@ from typing import TYPE_CHECKING
 
 from ravestate.engine.activation import NEVER, RUNNING, Activation
 from ravestate.engine.horizon import FIRM, NO, Horizon
-from ravestate.policy.plan import Clause, RulePlan
+from ravestate.policy.model import Clause, RulePlan
 
 if TYPE_CHECKING:
+    from ravestate.engine.agenda import Agenda as Engine
     from ravestate.engine.group import Group
-    from ravestate.engine.waves import Waves as Engine
 
 __all__ = ["Refusal", "ask", "stalemate"]
 
 
 class Refusal:
-    """Why an activation has to wait.
+    """The reasons for which an activation waits; without any it has consent.
 
     Attributes:
-        names: For whom: names of rules.
-        blockers: The live activations on whose progress it depends.
+        names: The names of the rules that it waits for.
+        blockers: The live activations on whose progress the refusal depends.
         pressed: The rivals that only patience bounds, each with the group.
-        hopes: Whether it depends on live rules of other groups.
+        hopes: Whether the refusal depends on live rules of other groups.
         interests: The groups whose changes may lift the refusal.
-        recheck: When recovering utilities change the order, at the earliest (seconds).
+        recheck: The earliest time at which recovering utilities change the order (seconds).
     """
 
     __slots__ = ("blockers", "hopes", "interests", "names", "pressed", "recheck")
@@ -46,7 +45,7 @@ class Refusal:
 
     @classmethod
     def by(cls, holder: Activation, activation: Activation) -> Refusal:
-        """A refusal because of a run that `activation` must not run beside."""
+        """Return a refusal because of a run beside which `activation` must not run."""
         refusal = cls()
         refusal.names[holder.clause.rule.name] = None
         refusal.blockers[holder] = None
@@ -58,7 +57,7 @@ class Refusal:
 
 
 def ask(engine: Engine, activation: Activation) -> Refusal:
-    """Ask every causal group of a ready activation; an empty refusal is consent."""
+    """Ask every causal group of a ready activation, and return the refusal; an empty one is consent."""
     refusal = Refusal()
     clause = activation.clause
     rule = clause.rule
@@ -74,7 +73,7 @@ def ask(engine: Engine, activation: Activation) -> Refusal:
         if taken:
             continue
         for member in list(group.members):
-            if member in engine.benches and member is not activation:
+            if member in engine.alternatives and member is not activation:
                 engine.unfold(member)
         for rival, member in _rivals(engine, activation, group):
             if horizon is None:
@@ -98,13 +97,13 @@ def ask(engine: Engine, activation: Activation) -> Refusal:
 def _rivals(
     engine: Engine, activation: Activation, group: Group
 ) -> Iterator[tuple[Clause, Activation | None]]:
-    """The clauses of greater effective utility with a stake in the group that write one of the same slots."""
+    """Yield the clauses that write one of the same slots, are worth more, and have a stake in the group."""
     clause = activation.clause
     slots = clause.rule.slotset
     worth = engine.effective(clause)
     seen: set[Clause] = {clause}
     rules: dict[RulePlan, None] = {}
-    for member in tuple(group.members):  # judging one may unfold the bench of this activation
+    for member in tuple(group.members):  # judging one may unfold alternatives
         theirs = member.clause
         rules[theirs.rule] = None
         if theirs is clause or theirs.rule.slotset.isdisjoint(slots) or member.state >= RUNNING:
@@ -130,7 +129,7 @@ def _beats(engine: Engine, theirs: Clause, mine: Clause, worth: float) -> bool:
 
 
 def _crossing(engine: Engine, mine: Clause, theirs: Clause) -> float:
-    """When `mine` overtakes `theirs`, at the earliest: both climb linearly until they have recovered."""
+    """Return the earliest time at which `mine` overtakes `theirs`: both climb linearly until they have recovered."""
     now = engine.now
     my_worth, my_slope, my_end = engine.recovery(mine)
     their_worth, their_slope, their_end = engine.recovery(theirs)
@@ -142,15 +141,15 @@ def _crossing(engine: Engine, mine: Clause, theirs: Clause) -> float:
 
 
 def stalemate(engine: Engine, refused: Iterable[Activation]) -> Activation | None:
-    """The best of those that wait only for each other, if there are such.
+    """Return the best of the activations that wait only for each other, if there are any.
 
-    Two ready rules may each wait for a rival that the other might bring about. Nothing would ever move them;
-    the one of greater effective utility, or else the first declared, goes first.
+    Two ready rules may each wait for a rival that the other might bring about. Nothing would ever move them, so the
+    one of greater effective utility, or else the first declared, goes first.
 
     Args:
         engine: The engine.
-        refused: Who was told to wait since there was no stalemate. A new one has at least one of them in it, and
-            nobody who is not, over those for whom he waits, reached from there.
+        refused: The activations that were refused since the last search. A new stalemate contains at least one of
+            them, and each of its members is reached from one of them over its blockers.
     """
     stuck: dict[Activation, None] = {}
     reached = [activation for activation in refused if activation in engine.waiting]

@@ -1,4 +1,4 @@
-"""One heap of deadlines. An entry is stale once its owner no longer stands by it."""
+"""The deadlines: one heap. An entry is stale once its owner has another deadline, or none."""
 
 from __future__ import annotations
 
@@ -23,26 +23,26 @@ __all__ = [
 
 
 class Kind(enum.IntEnum):
-    """What is due; at one moment in this order: what becomes possible before what is given up."""
+    """A kind of deadline. At one moment they fall due in this order: first gains, then losses."""
 
     RIPEN = 0  # an activation's spikes are old enough
     RECHECK = 1  # recovering utilities change places
-    PATIENCE = 2  # a pressed activation has had its time
-    STANDBY = 3  # a pressed stand-by rival has had its time
+    PATIENCE = 2  # the patience of a pressured activation ends
+    STANDBY = 3  # the patience of a pressured stand-by rival ends
     EXPIRE = 4  # an activation gives a spike up for age
-    FORGET = 5  # a spike that detached needs might have looked at is too old for all of them
-    TIMEOUT = 6  # a run has taken too long
+    FORGET = 5  # a spike is too old for every detached need
+    TIMEOUT = 6  # a run times out
     WATCH = 7  # the spikes of an `until` are old enough
 
 
-# An attribute of an enumeration costs more than what is done with it.
+# Reading an attribute of an enumeration costs more than the use of its value.
 RIPEN, RECHECK, PATIENCE, STANDBY, EXPIRE, FORGET, TIMEOUT, WATCH = Kind
 
 Entry = tuple[float, Kind, int, Any]
 
 
 class Deadlines:
-    """A heap of (time, kind, number, owner); `valid` says whether an entry still counts."""
+    """A heap of (time in seconds, kind, number, owner); `valid` says whether an entry still counts."""
 
     __slots__ = ("_count", "_heap", "_limit", "_valid")
 
@@ -56,17 +56,17 @@ class Deadlines:
         """Add an entry (seconds)."""
         self._count += 1
         heapq.heappush(self._heap, (time, kind, self._count, owner))
-        if len(self._heap) > self._limit:  # rid the heap of stale entries before they are many
+        if len(self._heap) > self._limit:  # remove stale entries before there are many
             self._heap = [entry for entry in self._heap if self._valid(entry)]
             heapq.heapify(self._heap)
             self._limit = max(256, 2 * len(self._heap))
 
     def pending(self, now: float) -> bool:
-        """Whether an entry, stale or not, is due."""
+        """Return whether an entry, stale or not, is due."""
         return bool(self._heap) and self._heap[0][0] <= now
 
     def next(self) -> float | None:
-        """The time of the first valid entry."""
+        """Return the time of the first valid entry (seconds)."""
         heap = self._heap
         while heap and not self._valid(heap[0]):
             heapq.heappop(heap)

@@ -1,4 +1,4 @@
-"""What an engine asks of the shell around it. A closed union of records."""
+"""Effects: the orders and reports of an engine to the runtime around it. A closed union of records."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ class Run:
     """Call a rule's function, and report by `Finish`.
 
     Attributes:
-        run: The number of the run, to be given with everything it does.
+        run: The number of the run, which every event of the run carries.
         rule: The rule.
-        payloads: What it may ask for: the payload of each signal it holds, by qualified name.
-        values: The slots that it may read as they stand now (L13), by qualified name.
+        payloads: The payload of each signal that it holds, by qualified name.
+        values: The present values of the slots that it may read (L13), by qualified name.
     """
 
     run: int
@@ -32,7 +32,7 @@ class Run:
 
 @dataclass(slots=True)
 class Cancel:
-    """End a run: let it clean up, then report by `Finish`."""
+    """Cancel a run: let it clean up, then report by `Finish`."""
 
     run: int
     reason: CancelReason
@@ -40,7 +40,7 @@ class Cancel:
 
 @dataclass(slots=True)
 class Failed:
-    """A rule failed: log it, once, with its traceback."""
+    """Log the failure of a rule, once, with its traceback."""
 
     rule: str
     exception: BaseException
@@ -48,7 +48,7 @@ class Failed:
 
 @dataclass(slots=True)
 class Spiked:
-    """A spike of a watched signal was born."""
+    """Report a new spike of a watched signal."""
 
     signal: str
     payload: Any
@@ -56,7 +56,7 @@ class Spiked:
 
 @dataclass(slots=True)
 class Ended:
-    """A run has been settled; ``fired`` unless it resigned, or failed before it had written. Only on request."""
+    """Report the outcome of a run: ``fired`` unless it resigned, or failed before a write. Only on request."""
 
     run: int
     rule: str

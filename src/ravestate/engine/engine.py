@@ -1,10 +1,10 @@
 """The Signal-Rule-Slot automaton as a pure state machine.
 
 Four verbs: `receive` an event, `advance` to a time, ask for the `next_deadline`, take the `effects`.
-Time is an argument, in seconds from any origin. Nothing in here knows a clock, a thread or a loop.
+Time is an argument, in seconds from any origin. Nothing here knows a clock, a thread or a loop.
 
-It stands on three layers, each a file: ``pool.py`` (spikes and activations), ``slots.py`` (writing), ``waves.py``
-(who may run). Here is what comes in, how runs end, and what is due when.
+This file has the handlers of events, the outcomes of runs, and the handling of deadlines. The rest is in the layers
+below, one file each: ``agenda.py``, ``slots.py``, ``matching.py``, ``conflict_sets.py``, ``holdings.py``, ``state.py``.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ from typing import Any, get_args
 
 from ravestate.engine import events, trace
 from ravestate.engine.activation import GATHERING, NEVER, RUNNING, WAITING, Activation
+from ravestate.engine.agenda import Agenda
 from ravestate.engine.deadlines import EXPIRE, PATIENCE, RECHECK, RIPEN, STANDBY, TIMEOUT, WATCH, Entry
 from ravestate.engine.effects import Effect, Ended
 from ravestate.engine.events import Event
@@ -22,9 +23,8 @@ from ravestate.engine.group import Group
 from ravestate.engine.horizon import FIRM, Horizon
 from ravestate.engine.slots import ABSENT, equal
 from ravestate.engine.spike import Spike
-from ravestate.engine.waves import Waves
 from ravestate.errors import EngineError, RuleError, RuleTimeout, UndeclaredError, nearest
-from ravestate.policy.plan import RulePlan, SlotPlan
+from ravestate.policy.model import RulePlan, SlotPlan
 from ravestate.policy.policy import Policy
 
 __all__ = ["DEFAULT_PATIENCE", "Engine"]
@@ -32,16 +32,16 @@ __all__ = ["DEFAULT_PATIENCE", "Engine"]
 OUTCOMES = get_args(events.OutcomeKind)
 
 DEFAULT_PATIENCE = 1.0
-"""Seconds that a rival under pressure has to become ready (L16)."""
+"""The patience of a rival under pressure, in seconds (L16)."""
 
 
-class Engine(Waves):
-    """One running automaton over a policy that it shares with others.
+class Engine(Agenda):
+    """A running automaton. Any number of them share one policy.
 
     Args:
-        policy: What ``rs.compile`` made.
-        patience: Seconds that rivals have under pressure where their rule does not say (L16).
-        report_ends: Whether each settled run makes an `Ended` effect.
+        policy: A policy from ``rs.compile``.
+        patience: The patience of rivals under pressure, in seconds, where their rule does not say (L16).
+        report_ends: Whether each run ends with an `Ended` effect.
 
     Example:
         >>> import ravestate as rs
@@ -64,8 +64,8 @@ class Engine(Waves):
         """Take an event at a time (seconds, not before the last one).
 
         Raises:
-            UndeclaredError: It names a signal or slot that the policy does not have.
-            EngineError: It comes from a run that is over.
+            UndeclaredError: The event names a signal or slot that the policy does not have.
+            EngineError: The event comes from a run that is over.
         """
         if not now >= self.now:  # NaN is neither before nor after
             if now != now:
@@ -80,7 +80,7 @@ class Engine(Waves):
         handler(self, event)
 
     def advance(self, now: float) -> None:
-        """Let time pass until `now`, deadline by deadline. Doing so twice, or too early, changes nothing."""
+        """Let time pass until `now`, deadline by deadline. A second call, or a call too early, changes nothing."""
         entry = self._deadlines.pop(now)
         while entry is not None:
             self.now = max(self.now, entry[0])
@@ -89,25 +89,36 @@ class Engine(Waves):
         self.now = max(self.now, now)
 
     def next_deadline(self) -> float | None:
-        """When to call `advance` next (seconds), if nothing else happens before."""
+        """Return when to call `advance` next (seconds), if no event comes before."""
         return self._deadlines.next()
 
+    @property
+    def late_turns(self) -> int:
+        """The number of further turns that loops have had in this instant behind all other ready rules (L23)."""
+        return self._loops.late
+
     def effects(self) -> list[Effect]:
-        """What is to be done now; ask again after doing it, until there is nothing."""
-        # Until there is something to do: what only tells (of spikes, ends, failures) must not change the waves.
+        """Return the effects to perform now. Ask again after performing them, until there are none."""
+        # Reports (of spikes, ends, failures) do not end the loop: only work for the runtime does.
         while not self._acts:
             if self._deadlines.pending(self.now):
                 self.advance(self.now)
             elif self._errors:
                 error = self.policy.signal_of["core:error"]
-                self._birth(error, self._errors.pop(0), (), self._new_group(), None)
+                failure, lineage = self._errors.pop(0)
+                self._birth(error, failure, (), self._new_group(), None, lineage)
             elif self._busy and not self.read(self._activity.index):
                 self._set_flag(self._activity, True)
             elif self._free:
                 self._start_free()
-            elif self._line or self._asking or self._dirty or self._stirred:
+            elif self._queue or self._asking or self._dirty or self._stirred:
                 self._consent_round()
-            elif not self._settle_flags():
+            elif self._settle_flags():
+                pass
+            elif (turn := self._loops.next()) is not None:
+                self._enqueue(turn)
+            else:
+                self._loops.rest()
                 break
         out = self._out
         self._out = []
@@ -138,13 +149,13 @@ class Engine(Waves):
         slot = self._collection(event.slot)
         run = self._run(event.run)
         self._mark_write(slot, run)
-        self._change_item(slot, event.key, event.item, run, self._origin(run))
+        self._change_item(slot, event.key, event.item, run)
 
     def on_discard(self, event: events.Discard) -> None:
         slot = self._collection(event.slot)
         run = self._run(event.run)
         self._mark_write(slot, run)
-        self._change_item(slot, event.key, ABSENT, run, self._origin(run))
+        self._change_item(slot, event.key, ABSENT, run)
 
     def on_emit(self, event: events.Emit) -> None:
         signal = self.policy.signal_of.get(event.signal)
@@ -173,7 +184,7 @@ class Engine(Waves):
         known, plans = self.policy.rule_plans, event.policy.rule_plans
         if [plan.rule for plan in plans[: len(known)]] != [plan.rule for plan in known]:
             raise EngineError(
-                "the policy does not continue the one that is running: make it by with_rule() of that one"
+                "the new policy does not extend the running one: make it with policy.with_rule(rule)"
             )
         self.unfold_all()
         clauses = event.policy.clause_plans
@@ -201,7 +212,7 @@ class Engine(Waves):
             raise EngineError(f"a run ends by one of {', '.join(OUTCOMES)}, not by {event.kind!r}")
         run = self.running.pop(event.run, None)
         if run is None:
-            raise EngineError(f"run {event.run} is over, or never was")
+            raise EngineError(f"run {event.run} is over, or never began")
         rule = run.clause.rule
         told = run.told
         outcome, exception = event.kind, event.exception
@@ -215,14 +226,14 @@ class Engine(Waves):
             )
         elif told and outcome != "failed":
             outcome = told if outcome != "retired" else outcome
-        # What it stood on was withdrawn before it had said anything: whoever stands on the rest may answer.
+        # A run that is wiped before it wrote has answered nothing: others may answer the spikes that are left.
         unheard = told == "wiped" and not run.wrote
         fired = (outcome not in ("resigned", "failed") and not unheard) or run.wrote or told == "interrupted"
         if rule.cooldown and fired:
             self.ran[rule.index] = self.now
             self._asking.update(
                 (a, None) for a in self.waiting if rule.name in a.waits_for
-            )  # it is worth less now
+            )  # the rule is worth less now
         spikes = run.stands_on
         for clause in rule.until:
             watch = self._watches[clause].pop(run)
@@ -237,7 +248,7 @@ class Engine(Waves):
             self._substitute(run)
         if self.tracer is not None:
             text = reason or (said(exception) if exception is not None else "")
-            self.tracer(trace.Settled(self.now, run.id, rule.name, outcome, text, fired))
+            self.tracer(trace.Settled(self.now, run.id, rule.name, outcome, text, fired, exception))
         if self.report_ends:
             self._out.append(Ended(run.id, rule.name, outcome, fired))
         on_error = event.kind == "failed" and any(
@@ -247,7 +258,8 @@ class Engine(Waves):
         if event.kind == "retired":
             self._retire(rule)
         if outcome == "failed":
-            self._fail(rule, exception or RuleError(f"rule {rule.name} failed"), signal=not on_error)
+            failure = exception or RuleError(f"rule {rule.name} failed")
+            self._fail(rule, failure, signal=not on_error, lineage=run.lineage)
 
     def _slot(self, name: str) -> SlotPlan:
         slot = self.policy.slot_of.get(name)
@@ -258,7 +270,7 @@ class Engine(Waves):
     def _collection(self, name: str) -> SlotPlan:
         slot = self._slot(name)
         if not slot.is_collection:
-            raise EngineError(f"{name} is no collection: tell the engine Write({name!r}, value)")
+            raise EngineError(f"{name} is no collection: use Write({name!r}, value)")
         return slot
 
     def _run(self, number: int | None) -> Activation | None:
@@ -266,7 +278,7 @@ class Engine(Waves):
             return None
         run = self.running.get(number)
         if run is None:
-            raise EngineError(f"run {number} is over, or never was")
+            raise EngineError(f"run {number} is over, or never began")
         return run
 
     def _unknown(self, what: str, name: str, names: Iterable[str]) -> str:
@@ -278,7 +290,7 @@ class Engine(Waves):
     # ------------------------------------------------------------------------------------ outcomes
 
     def _consume(self, run: Activation, spikes: tuple[Spike, ...]) -> None:
-        """Done: the slots are consumed in its groups, and everybody else gives up these spikes for them (L18)."""
+        """Settle Done: the slots are consumed in its groups, and other activations give these spikes up for them (L18)."""
         rule = run.clause.rule
         if rule.slots:
             groups = _roots(run)
@@ -300,7 +312,7 @@ class Engine(Waves):
             self._give_up(run, spikes, "consumed")
 
     def _relinquish(self, run: Activation, spikes: tuple[Spike, ...]) -> None:
-        """Resigned, or failed before a write: the slots are free again, the rule gives up these spikes (L18)."""
+        """Settle Resign, or Error before a write: the slots are free again, and the rule gives these spikes up (L18)."""
         for group in _roots(run):
             for slot in run.clause.rule.slots:
                 group.free(slot, run)
@@ -308,9 +320,9 @@ class Engine(Waves):
         self._give_up(run, spikes, "resigned")
 
     def _give_up(self, run: Activation, spikes: tuple[Spike, ...], reason: str) -> None:
-        """Every other activation of the rule gives up these spikes, and it never takes them again."""
+        """Let the rule give spikes up for good, in all its other activations."""
         rule = run.clause.rule
-        for spike in spikes:  # all of them first: whoever loses one looks for others at once
+        for spike in spikes:  # all of them first: an activation that loses one looks for others at once
             if spike.claims is not None and rule.index in spike.claims:
                 spike.claims[rule.index] = None
             spike.refuse(rule.index)
@@ -320,16 +332,18 @@ class Engine(Waves):
                     self._lose(other, self._of_spike(other, spike), reason, run)
 
     def _retire(self, rule: RulePlan) -> None:
+        """Take a rule out of the context (L18)."""
         self.unfold_all()
         self.retired.add(rule.index)
         for activation in list(self.active.get(rule.index, ())):
             if activation.state < RUNNING:
                 self._end(activation, "retired")
-        self._asking.update(self.waiting)  # any of them may have waited for what it might have caused
+        self._asking.update(self.waiting)  # they may have waited for signals of this rule
 
     # ------------------------------------------------------------------------------------ deadlines
 
     def _due(self, entry: Entry) -> None:
+        """Handle a deadline that falls due."""
         time, kind, _, owner = entry
         if kind is EXPIRE:
             self._expire(owner, time)
@@ -370,7 +384,7 @@ class Engine(Waves):
 
 
 def _roots(run: Activation) -> list[Group]:
-    """The groups of a run as they are now."""
+    """Return the present groups of a run."""
     return list(dict.fromkeys(group.root() for group in run.groups))
 
 

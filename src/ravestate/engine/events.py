@@ -1,4 +1,4 @@
-"""What an engine is told. A closed union of records; the journal keeps them, replay feeds them again."""
+"""Events: the inputs of an engine. A closed union of records; the journal keeps them, and a replay feeds them again."""
 
 from __future__ import annotations
 
@@ -26,17 +26,17 @@ OutcomeKind = Literal["done", "resigned", "failed", "retired"]
 
 @dataclass(slots=True)
 class Start:
-    """The context begins: ``core:startup``."""
+    """Begin the context: ``core:startup`` occurs."""
 
 
 @dataclass(slots=True)
 class Stop:
-    """The context is asked to end: ``core:shutdown``."""
+    """Ask the context to end: ``core:shutdown`` occurs."""
 
 
 @dataclass(slots=True)
 class Write:
-    """A slot gets a value; by a run, or (``run=None``) from outside. A collection gets a whole mapping."""
+    """Write a slot, by a run or (``run=None``) from outside. The value of a collection is a whole mapping."""
 
     slot: str
     value: Any
@@ -45,7 +45,7 @@ class Write:
 
 @dataclass(slots=True)
 class Store:
-    """An item is set in a collection."""
+    """Store an item in a collection."""
 
     slot: str
     key: str
@@ -55,7 +55,7 @@ class Store:
 
 @dataclass(slots=True)
 class Discard:
-    """An item is removed from a collection; nothing happens if it is not there."""
+    """Remove an item from a collection, if it is there."""
 
     slot: str
     key: str
@@ -64,7 +64,7 @@ class Discard:
 
 @dataclass(slots=True)
 class Emit:
-    """A signal occurs; by a run, or from outside."""
+    """Raise a signal, by a run or from outside."""
 
     signal: str
     payload: Any = None
@@ -73,7 +73,7 @@ class Emit:
 
 @dataclass(slots=True)
 class Wipe:
-    """The live spikes of a signal and all their descendants are withdrawn (L20)."""
+    """Withdraw the live spikes of a signal and all their descendants (L20)."""
 
     signal: str
     run: int | None = None
@@ -81,7 +81,7 @@ class Wipe:
 
 @dataclass(slots=True)
 class Finish:
-    """A run has ended (L18)."""
+    """Report the end of a run (L18)."""
 
     run: int
     kind: OutcomeKind
@@ -91,7 +91,7 @@ class Finish:
 
 @dataclass(slots=True)
 class AddRule:
-    """The policy is replaced by one with a rule more."""
+    """Replace the policy by one that has more rules."""
 
     policy: Policy
 

@@ -1,4 +1,7 @@
-"""Why a rule runs, waits, or did not fire (L25), in data and in words."""
+"""Explanations of a rule: why it runs, waits, or did not fire (L25), as data and as text.
+
+`ravestate.board.why_not` explains one input in detail and builds on the phrases here.
+"""
 
 from __future__ import annotations
 
@@ -7,14 +10,16 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from ravestate.engine.activation import GATHERING, NEVER, WAITING, Activation
-from ravestate.engine.trace import Born, GaveUp, Held, Passed, Pressed, Record, Settled, Started, Waits
-from ravestate.policy.plan import Clause, RulePlan
+from ravestate.engine.reasons import LossReason, Outcome, PassReason, StopReason
+from ravestate.engine.trace import Born, GaveUp, Held, Passed, Pressed, Record, Settled, Started, Told, Waits
+from ravestate.policy.model import Clause, RulePlan
 
 if TYPE_CHECKING:
     from ravestate.engine.engine import Engine
 
 __all__ = [
-    "GAVE_UP", "PASSED", "ActivationState", "ClauseState", "Explanation", "explain", "how_ended", "why_given_up",
+    "ActivationState", "ClauseState", "Explanation", "explain", "join", "latest", "seconds", "why_given_up", "without",
+    "words_of",
 ]  # fmt: skip
 
 
@@ -32,14 +37,14 @@ class ClauseState:
 
 @dataclass(frozen=True, slots=True)
 class ActivationState:
-    """An activation: what it holds, what it lacks, whom it waits for.
+    """An activation: the spikes that it holds, the signals that it lacks, and the rules that it waits for.
 
     Attributes:
         state: ``gathering``, ``ripening``, ``gated``, ``ready``, ``waiting``, ``running`` or ``cancelling``.
         holds: Signal and age (seconds) of each spike.
         lacks: The signals that are missing.
-        waits_for: The rules that it waits for, each with how many nats it loses by (0: slot taken, or a tie).
-        until: When it will be given consent or give up at the latest, if that is bounded (seconds).
+        waits_for: The rules that it waits for, and by how many nats each is ahead (0: a taken slot, or a tie).
+        until: The latest time at which it runs or gives up (seconds); None without a bound.
     """
 
     id: int
@@ -53,16 +58,17 @@ class ActivationState:
 
 @dataclass(frozen=True, slots=True, repr=False)
 class Explanation:
-    """What can be said of a rule at a moment. Printed, or looked at in an interpreter, it says it in words.
+    """The state of a rule at one moment. Printed, it reads as text.
 
     Attributes:
         rule: The rule's name.
-        retired: Whether it has left the context.
+        now: The time (seconds).
+        retired: Whether the rule has left the context.
         clauses: Its clauses.
-        activations: What is alive of it.
-        missing: For each of its signals that has not occurred while the trace was kept: who may raise it, and how that
-            ended last; empty when nothing is traced.
-        history: What the trace has of it lately, in words; empty when nothing is traced.
+        activations: Its live activations.
+        missing: A sentence for each of its signals that the trace lacks: the rules that may raise it, and how each ended
+            last. Empty without a trace.
+        history: Its latest records in the trace, as text. Empty without a trace.
     """
 
     rule: str
@@ -74,7 +80,7 @@ class Explanation:
     history: tuple[str, ...]
 
     def __str__(self) -> str:
-        lines = [f"{self.rule} at {self.now:.3f} s" + (": has retired" if self.retired else "")]
+        lines = [f"{self.rule} at {self.now:.3f} s" + (": retired" if self.retired else "")]
         for clause in self.clauses:
             sums = " or ".join(" + ".join(pathway) for pathway in clause.pathways[:3])
             lines.append(f"  when {clause.condition}")
@@ -84,7 +90,7 @@ class Explanation:
                 for gate, open_ in clause.gates
             ]
         if not self.activations:
-            lines.append("  stands by: it holds no spike")
+            lines.append("  idle: it holds no spike")
         for one in self.activations:
             lines.append(f"  {one.state} (activation {one.id})")
             lines += [f"    holds {signal}, {age:.3f} s old" for signal, age in one.holds]
@@ -97,7 +103,7 @@ class Explanation:
                 lines.append(f"    until {one.until:.3f} s at the latest")
         lines += [f"  {line}" for line in self.missing]
         if self.history:
-            lines.append("  lately:")
+            lines.append("  recently:")
             lines += [f"    {line}" for line in self.history]
         return "\n".join(lines)
 
@@ -105,16 +111,21 @@ class Explanation:
 
 
 def explain(engine: Engine, rule: RulePlan, records: Iterable[Record] = (), limit: int = 12) -> Explanation:
-    """Explain a rule of an engine; `records` is the trace to tell its recent history from."""
+    """Explain a rule of an engine. `records` is the trace, for the rule's history; `limit` is the most lines of it."""
     engine.look()
+    records = [*records]
     return Explanation(
         rule.name,
         engine.now,
         rule.index in engine.retired,
         tuple(_clause(engine, clause) for clause in rule.clauses),
         tuple(_activation(engine, activation) for activation in engine.active.get(rule.index, ())),
-        tuple(_missing(engine, rule, list(records))),
-        tuple(_history(rule.name, records))[-limit:],
+        tuple(_missing(engine, rule, records)),
+        tuple(
+            f"{seconds(record.time)}: {words}"
+            for record in records
+            if getattr(record, "rule", None) == rule.name and (words := words_of(record))
+        )[-limit:],
     )
 
 
@@ -122,7 +133,10 @@ def _clause(engine: Engine, clause: Clause) -> ClauseState:
     return ClauseState(
         clause.source,
         tuple(signal.name for signal in clause.signals),
-        tuple(tuple(sorted(signal.name for signal in pathway)) for pathway in clause.pathways),
+        tuple(
+            tuple(sorted(signal.name for signal in pathway))
+            for pathway in engine.policy.pathways.of_clause(clause)
+        ),
         clause.utility,
         engine.effective(clause),
         tuple((str(guard), engine.opens(slot, guard)) for slot, guard in clause.guards),
@@ -161,21 +175,74 @@ def _activation(engine: Engine, activation: Activation) -> ActivationState:
     )
 
 
-def how_ended(settled: Settled) -> str:
-    """How a run ended, as a verb of the past: ``was done``, ``resigned``, ``failed``, ``was interrupted``, ..."""
-    past = settled.outcome in ("resigned", "failed", "retired")
-    return settled.outcome if past else f"was {settled.outcome}"
+def words_of(record: Record, others: str = "", behind: str = "") -> str:
+    """Say what a record means for the rule that it names; empty for a record that names none.
+
+    Args:
+        record: From a trace.
+        others: The rules that a waiting activation waits for, if more is known of them than their names.
+        behind: The rule that raised what another rule took, if that is known.
+    """
+    match record:
+        case Held():
+            lacks = f", still lacking {join(record.lacks)}" if record.lacks else " and has all it needs"
+            return f"took {record.signal}{lacks}"
+        case GaveUp():
+            return f"gave up {record.signal}: {why_given_up(record, behind)}"
+        case Passed():
+            return f"did not take {record.signal}: {PassReason.say(record.reason)}"
+        case Waits():
+            return f"was ready and waited for {others or join(record.for_)}{latest(record.until)}"
+        case Pressed():
+            lacks = join(record.lacks)
+            return (
+                f"{record.by} waited for it; lacking {lacks}, it had patience until {seconds(record.until)}"
+            )
+        case Started():
+            return "started"
+        case Told():
+            return f"was asked to stop: {StopReason.say(record.reason)}"
+        case Settled():
+            return Outcome.say(record.outcome) + (f": {record.reason}" if record.reason else "")
+        case _:
+            return ""
 
 
 def why_given_up(lost: GaveUp, behind: str = "") -> str:
-    """Why a spike was given up: as ``rule answered it``, or ``behind → rule answered it``, if another rule did."""
-    if lost.reason != "consumed" or not lost.by:
-        return GAVE_UP.get(lost.reason, lost.reason)
+    """Say why a spike was given up, naming the rule that answered it: ``behind → rule answered it``."""
+    if lost.reason != LossReason.CONSUMED or not lost.by:
+        return LossReason.say(lost.reason)
     return f"{f'{behind} → ' if behind else ''}{lost.by} answered it"
 
 
+def without(rule: str, ended: Settled) -> str:
+    """Say that a run ended and had not raised the signal in question."""
+    return f"{rule} {Outcome.say(ended.outcome)} without raising it, at {seconds(ended.time)}"
+
+
+def seconds(time: float) -> str:
+    """Return a time as text."""
+    return f"{time:.3f} s"
+
+
+def latest(until: float | None) -> str:
+    """Return a bound as the end of a sentence; empty for none."""
+    return "" if until is None else f", until {seconds(until)} at the latest"
+
+
+def join(names: Iterable[str]) -> str:
+    """Join names to a list in a sentence.
+
+    Example:
+        >>> join(["a", "b", "c"])
+        'a, b and c'
+    """
+    *first, last = [*names] or [""]
+    return f"{', '.join(first)} and {last}" if first else last
+
+
 def _missing(engine: Engine, rule: RulePlan, records: Sequence[Record]) -> Iterator[str]:
-    """What has not occurred of the signals of a rule, and why not."""
+    """Yield, for each signal of a rule that has not occurred, why it has not."""
     if not records:
         return
     occurred = {record.signal for record in records if isinstance(record, Born)}
@@ -184,61 +251,9 @@ def _missing(engine: Engine, rule: RulePlan, records: Sequence[Record]) -> Itera
         if signal.name in occurred:
             continue
         raisers = [
-            f"{cause.name} may raise it, and "
-            + (
-                f"{how_ended(end)} at {end.time:.3f} s without"
-                if (end := ends.get(cause.name))
-                else "has not run"
-            )
+            without(cause.name, ends[cause.name])
+            if cause.name in ends
+            else f"{cause.name} may raise it but has not run"
             for cause in engine.policy.causes.all_causes[signal.index]
         ]
         yield f"{signal.name} has not occurred" + (f": {'; '.join(raisers)}" if raisers else "")
-
-
-def _history(rule: str, records: Iterable[Record]) -> Iterator[str]:
-    """The story of a rule, from a trace."""
-    for record in records:
-        match record:
-            case Held(rule=name) if name == rule:
-                lacking = (
-                    f", still lacking {', '.join(record.lacks)}" if record.lacks else ": it has all it needs"
-                )
-                yield f"{record.time:.3f} s: took {record.signal}{lacking}"
-            case GaveUp(rule=name) if name == rule:
-                yield f"{record.time:.3f} s: gave {record.signal} up: {why_given_up(record)}"
-            case Passed(rule=name) if name == rule:
-                yield f"{record.time:.3f} s: did not take {record.signal}: {PASSED[record.reason]}"
-            case Waits(rule=name) if name == rule:
-                until = f" until {record.until:.3f} s at the latest" if record.until is not None else ""
-                yield f"{record.time:.3f} s: was ready, and waited for {', '.join(record.for_)}{until}"
-            case Pressed(rule=name) if name == rule:
-                yield (
-                    f"{record.time:.3f} s: {record.by} waited for it; lacking {', '.join(record.lacks)}, it had patience "
-                    f"until {record.until:.3f} s"
-                )
-            case Started(rule=name) if name == rule:
-                yield f"{record.time:.3f} s: ran"
-            case Settled(rule=name) if name == rule:
-                yield f"{record.time:.3f} s: {how_ended(record)}" + (
-                    f": {record.reason}" if record.reason else ""
-                )
-            case _:
-                pass
-
-
-PASSED = {
-    "payload": "its payload did not fit the predicate",
-    "consumed": "another rule had answered its cause",
-    "caused": "the rule itself was among its causes",
-}
-"""Why a rule did not take a spike."""
-
-GAVE_UP = {
-    "age": "the spike was too old",
-    "consumed": "another rule answered it",
-    "resigned": "the rule resigned for it",
-    "eliminated": "its patience ran out while others waited",
-    "withdrawn": "the spike was withdrawn",
-    "retired": "the rule retired",
-}
-"""Why an activation gave a spike up. The board's page says it in the same words (``frontend/src/board/words.ts``)."""

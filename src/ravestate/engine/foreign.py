@@ -1,4 +1,4 @@
-"""What a designer's values and exceptions say of themselves: foreign code, which may fail while it does."""
+"""Texts of values and exceptions: their `repr` and `str` are foreign code, which may fail."""
 
 from __future__ import annotations
 
@@ -6,16 +6,16 @@ __all__ = ["said", "shown"]
 
 
 def shown(value: object) -> str:
-    """The value's `repr`, or, if that fails, what it is."""
+    """Return the value's `repr` or, if that fails, its type."""
     try:
         return repr(value)
-    except Exception:  # any value's own code may raise anything, and a message about it must still be told
+    except Exception:  # the value's own code may raise anything, and the message is needed all the same
         return f"<{type(value).__name__} without a repr>"
 
 
 def said(exception: BaseException) -> str:
-    """The exception's message, or, if that fails, what it is."""
+    """Return the exception's message or, if that fails, its type."""
     try:
         return str(exception)
-    except Exception:  # any exception's own code may raise anything, and the failure must still be told
+    except Exception:  # the exception's own code may raise anything, and the report is needed all the same
         return shown(exception)

@@ -1,60 +1,60 @@
-"""What may still come (L16): whether a rival's missing constraints may yet be met.
+"""The horizon (L16): whether the missing constraints of a rival may yet be met.
 
-The theory. A signal is in the horizon of a group if some rule of the group may yet cause it: a rule that
-runs, or one whose own constraints are met or may still be met. That is a least fixed point over an and-or
-graph, and it is asked for few signals at a time; so it is derived backwards, from the missing signal over
-its causes to live activations, and a static closure (`Causes.ancestors`) cuts off what no live rule of the
-group can reach.
+A signal is in the horizon of a group if some rule of the group may yet cause it. Such a rule runs, or its own
+constraints are met or may still be met. This is a least fixed point over an and-or graph. Few signals matter at a
+time, so each is derived backwards: over its causes, to live activations. A static closure (`Causes.ancestors`) cuts
+off the causes that no live rule of the group can reach.
 
 A derivation has one of three strengths:
 
-``FIRM``         it rests on what is in progress: runs, ripening spikes, ready activations
+``FIRM``         it rests on work in progress: runs, ripening spikes, ready activations
 ``SPECULATIVE``  some step of it needs an input, or a live rule of another group: it may never come, and
                  only patience bounds it
-``NO``           nothing leads there
+``NO``           nothing leads to the signal
 
 A rule that would take a slot of the rival's own cannot help it: in one group a slot is written once (L19).
+
+A derivation may be as deep as the policy has signals. So each of its steps is a generator, a `Step`: it yields the
+steps whose strengths it needs, and `_solve` keeps those that wait on a stack of its own.
 """
 
 from __future__ import annotations
 
-import sys
-from typing import TYPE_CHECKING
+from collections.abc import Generator
+from typing import TYPE_CHECKING, Any
 
 from ravestate.engine.activation import RUNNING, Activation
-from ravestate.policy.plan import Clause, Need
+from ravestate.policy.model import Clause, Need
 
 if TYPE_CHECKING:
+    from ravestate.engine.agenda import Agenda as Engine
     from ravestate.engine.group import Group
-    from ravestate.engine.waves import Waves as Engine
 
 __all__ = ["FIRM", "NO", "SPECULATIVE", "Horizon"]
 
 NO, SPECULATIVE, FIRM = 0, 1, 2
 
-FRAMES = 8
-"""More than the calls by which a derivation gets from one signal to the next. None of them passes through a function in
-C that calls back, which would use up the interpreter's stack."""
-
-Path = frozenset[int]
 Slots = frozenset[int]
+Step = Generator[Any, int, int]
+"""A step of a derivation: it yields further steps, is sent the strength of each, and returns its own."""
 
 
 class Horizon:
-    """The horizons of the engine's groups at one moment; made for one question of consent, then thrown away.
+    """The horizons of the engine's groups at one moment.
 
     Attributes:
         roots: The live activations on which the latest firm derivation rests.
         visited: The groups that were looked at.
-        hopes: Whether something was found that only a live rule of another group may bring.
+        hopes: Whether a live rule of another group is the only one that may bring something.
     """
 
-    __slots__ = ("_by_rule", "_cuts", "_judged", "_known", "engine", "hopes", "roots", "visited")
+    __slots__ = ("_by_rule", "_cuts", "_judged", "_known", "_path", "engine", "hopes", "roots", "visited")
 
     def __init__(self, engine: Engine) -> None:
         self.engine = engine
         engine.unfold_all()
         self._cuts = 0  # how often a cycle was cut
+        self._path: set[int] = set()  # the signals that are being derived
         self._known: dict[tuple[int, Group, Slots], tuple[int, tuple[Activation, ...]]] = {}
         self.hopes = False
         self.roots: list[Activation] = []
@@ -63,27 +63,16 @@ class Horizon:
         self._judged: dict[tuple[Clause, Activation | None, Group], tuple[int, dict[Activation, None]]] = {}
 
     def viable(self, clause: Clause, activation: Activation | None, group: Group, slots: Slots) -> int:
-        """How firmly a clause, by an activation of it or (None) in stand-by, may still become ready in a group.
+        """Return how firmly a clause may still become ready in a group: an activation of it, or (None) one in stand-by.
 
         A clause in stand-by has a stake in the group only if a signal of the group's horizon is among its needs.
         """
-        mark = len(self.roots)
-        try:
-            return self._viable(clause, activation, group, slots, frozenset())
-        except RecursionError:  # hundreds of pending rules that wait for each other in a row
-            del self.roots[mark:]
-            limit = sys.getrecursionlimit()
-            # Calls from Python to Python take no room on the interpreter's own stack.
-            sys.setrecursionlimit(limit + FRAMES * len(self.engine.policy.signal_plans))
-            try:
-                return self._viable(clause, activation, group, slots, frozenset())
-            finally:
-                sys.setrecursionlimit(limit)
+        return _solve(self._viable(clause, activation, group, slots))
 
     def judge(
         self, clause: Clause, activation: Activation | None, group: Group
     ) -> tuple[int, dict[Activation, None]]:
-        """How viable a rival is, and on whose progress that depends: the same whoever asks."""
+        """Return how viable a rival is, and on whose progress that depends. All that ask get the same answer."""
         known = self._judged.get((clause, activation, group))
         if known is None:
             self.roots.clear()
@@ -91,16 +80,14 @@ class Horizon:
             known = self._judged[clause, activation, group] = strength, dict.fromkeys(self.roots)
         return known
 
-    def _viable(
-        self, clause: Clause, activation: Activation | None, group: Group, slots: Slots, path: Path
-    ) -> int:
+    def _viable(self, clause: Clause, activation: Activation | None, group: Group, slots: Slots) -> Step:
         rule = clause.rule
         if rule.index in self.engine.retired:
             return NO
         mark = len(self.roots)
         if activation is None:
             missing = clause.all_bits
-            if group.finished(rule.slots):
+            if group.taken and group.finished(rule.slots):
                 return NO
         else:
             missing = activation.missing
@@ -114,20 +101,22 @@ class Horizon:
             if not need.bit & missing or need.bit & answered:
                 continue
             if need.detached:
-                mine, other = NO, self._detached(need, group, slots, path)
+                mine, other = NO, (yield from self._detached(need, group, slots))
             elif need.kin == need.bit:
-                mine = self.comes(need.signal.index, group, slots, path)
+                mine = self._at_once(need.signal.index, group, slots)
+                if mine is None:
+                    mine = yield self._caused(need.signal.index, group, slots)
                 other = NO if mine == FIRM else self._anywhere(need, group)
             else:
                 answered |= need.kin
-                mine, other = self._kin(need, activation, missing, group, slots, path)
+                mine, other = yield from self._kin(need, activation, missing, group, slots)
             if mine == NO and other == NO:
                 del self.roots[mark:]
                 return NO
             here.append(mine)
             best.append(max(mine, other))
         strength = min(best, default=FIRM)
-        if activation is None:  # one of them must be met here: what comes from elsewhere gives no stake
+        if activation is None:  # the group must meet one of them itself: help from elsewhere gives no stake
             strength = max(
                 (
                     min(mine, *best[:k], *best[k + 1 :]) if len(best) > 1 else mine
@@ -135,48 +124,45 @@ class Horizon:
                 ),
                 default=NO,
             )
-        if strength == NO or not self._guards(clause, group, slots, path):
+        if strength == NO or (clause.guards and not (yield from self._guards(clause, group, slots))):
             del self.roots[mark:]
             return NO
         return strength
 
     def _anywhere(self, need: Need, group: Group) -> int:
-        """How firmly what is live, an input, or a rule of another group may meet a need."""
+        """Return how firmly a live spike, an input, or a rule of another group may meet a need."""
         if self._live(need):
             return FIRM
         return SPECULATIVE if self._elsewhere(need, group) else NO
 
-    def _detached(self, need: Need, group: Group, slots: Slots, path: Path) -> int:
-        """A need that looks only."""
+    def _detached(self, need: Need, group: Group, slots: Slots) -> Step:
+        """Return how firmly a detached need may be met."""
         if self._live(need):
             return FIRM
-        return self.comes(need.signal.index, group, slots, path) or self._anywhere(need, group)
+        return (yield from self._comes(need.signal.index, group, slots)) or self._anywhere(need, group)
 
     def _kin(
-        self,
-        need: Need,
-        activation: Activation | None,
-        missing: int,
-        group: Group,
-        slots: Slots,
-        path: Path,
-    ) -> tuple[int, int]:
-        """Needs that one causal group must meet together (coherence, L12)."""
+        self, need: Need, activation: Activation | None, missing: int, group: Group, slots: Slots
+    ) -> Generator[Any, int, tuple[int, int]]:
+        """Return how firmly this group, and any other, may meet needs that one group must meet together (L12)."""
         kin = [n for n in need.clause.needs if n.bit & need.kin & missing]
         held = activation.held(need.kin) if activation is not None else None
         home = group if held is None else held.group.root()
-        mine = min([self.comes(n.signal.index, home, slots, path) for n in kin])  # a list: see `FRAMES`
+        mine = FIRM
+        for one in kin:
+            comes = yield from self._comes(one.signal.index, home, slots)
+            mine = min(mine, comes)
         if held is not None or mine == FIRM:
             return mine, NO
         return mine, (SPECULATIVE if all(self._elsewhere(n, group) for n in kin) else NO)
 
-    def _guards(self, clause: Clause, group: Group, slots: Slots, path: Path) -> bool:
-        """Whether its predicates on slots hold, or a slot may yet change in this group."""
+    def _guards(self, clause: Clause, group: Group, slots: Slots) -> Generator[Any, int, bool]:
+        """Return whether each predicate on a slot holds, or the slot may yet change in this group."""
         engine = self.engine
         for slot, guard in clause.guards:
             if engine.holds(slot, guard, clause.rule):
                 continue
-            if self.comes(slot.signals[0].index, group, slots, path) != FIRM:
+            if (yield from self._comes(slot.signals[0].index, group, slots)) != FIRM:
                 return False
         return True
 
@@ -187,44 +173,49 @@ class Horizon:
             self.visited[spike.group.root()] = None
         return spike is not None
 
-    def comes(self, signal: int, group: Group, slots: Slots, path: Path) -> int:
-        """How firmly a signal lies in the horizon of a group."""
-        if signal in path:
+    def _comes(self, signal: int, group: Group, slots: Slots) -> Step:
+        """Return how firmly a signal lies in the horizon of a group."""
+        strength = self._at_once(signal, group, slots)
+        return (yield self._caused(signal, group, slots)) if strength is None else strength
+
+    def _at_once(self, signal: int, group: Group, slots: Slots) -> int | None:
+        """Return how firmly a signal lies in the horizon of a group, or None if that is still to be derived."""
+        if signal in self._path:
             self._cuts += 1
             return NO
-        by_rule = self._rules(group)
-        if by_rule.keys().isdisjoint(self.engine.policy.causes.ancestors(signal)):
+        if self._rules(group).keys().isdisjoint(self.engine.policy.causes.ancestors(signal)):
             return NO
         known = self._known.get((signal, group, slots))
-        if known is not None:
-            self.roots.extend(known[1])
-            return known[0]
-        cuts, mark = self._cuts, len(self.roots)
-        best = self._caused(signal, by_rule, group, slots, path | {signal})
-        if self._cuts == cuts:  # it does not depend on the way by which it was reached
-            self._known[signal, group, slots] = best, tuple(self.roots[mark:])
-        return best
+        if known is None:
+            return None
+        self.roots.extend(known[1])
+        return known[0]
 
-    def _caused(
-        self, signal: int, by_rule: dict[int, list[Activation]], group: Group, slots: Slots, path: Path
-    ) -> int:
-        """How firmly one of the rules that raise a signal may do so."""
+    def _caused(self, signal: int, group: Group, slots: Slots) -> Step:
+        """Return how firmly one of the rules that raise a signal may do so."""
+        cuts, mark = self._cuts, len(self.roots)
+        by_rule, retired = self._by_rule[group], self.engine.retired
+        self._path.add(signal)
         best = NO
         for rule in self.engine.policy.causes.causes[signal]:
-            if not rule.slotset.isdisjoint(slots) or rule.index in self.engine.retired:
+            if not rule.slotset.isdisjoint(slots) or rule.index in retired:
                 continue
-            inner = slots | rule.slotset
-            for activation in by_rule.get(rule.index, ()):
-                if activation.state >= RUNNING:
+            inner = slots | rule.slotset if rule.slots else slots
+            live = by_rule.get(rule.index, ())
+            for clause, activation in [*((a.clause, a) for a in live), *((c, None) for c in rule.clauses)]:
+                if activation is not None and activation.state >= RUNNING:
                     self.roots.append(activation)
-                    return FIRM
-                best = max(best, self._viable(activation.clause, activation, group, inner, path))
+                    best = FIRM
+                else:
+                    strength = yield self._viable(clause, activation, group, inner)
+                    best = max(best, strength)
                 if best == FIRM:
-                    return FIRM
-            for clause in rule.clauses:
-                best = max(best, self._viable(clause, None, group, inner, path))
-                if best == FIRM:
-                    return FIRM
+                    break
+            if best == FIRM:
+                break
+        self._path.discard(signal)
+        if self._cuts == cuts:  # it does not depend on the way that led here
+            self._known[signal, group, slots] = best, tuple(self.roots[mark:])
         return best
 
     def _rules(self, group: Group) -> dict[int, list[Activation]]:
@@ -250,3 +241,20 @@ class Horizon:
                     self.hopes = True
                     return True
         return False
+
+
+def _solve(step: Step) -> int:
+    """Return the strength of a derivation."""
+    waiting: list[Step] = []
+    strength: Any = None
+    while True:
+        try:
+            further = step.send(strength)
+        except StopIteration as end:
+            strength = end.value
+            if not waiting:
+                return strength
+            step = waiting.pop()
+        else:
+            waiting.append(step)
+            step, strength = further, None

@@ -1,4 +1,4 @@
-"""Writing slots: values change, and their signals are raised (L2, L13)."""
+"""Slots: values change, and signals are raised (L2, L13)."""
 
 from __future__ import annotations
 
@@ -9,19 +9,19 @@ from typing import Any, cast
 from ravestate.declare.slot import Entry
 from ravestate.engine import trace
 from ravestate.engine.activation import Activation
-from ravestate.engine.group import Group
-from ravestate.engine.pool import Pool
+from ravestate.engine.matching import Matching
 from ravestate.engine.spike import Spike
 from ravestate.errors import RuleError, UndeclaredError
-from ravestate.policy.plan import SlotPlan
+from ravestate.policy.model import SlotPlan
 
 __all__ = ["ABSENT", "Slots", "equal"]
 
 
-class Slots(Pool):
-    """The pool, and the slots whose changes feed it."""
+class Slots(Matching):
+    """The matching, and the slots whose changes feed it."""
 
     def _mark_write(self, slot: SlotPlan, run: Activation | None) -> None:
+        """Note that a run writes a slot, which it must have declared (L3)."""
         if run is not None:
             if slot.index not in run.clause.rule.slotset:
                 raise UndeclaredError(
@@ -35,7 +35,7 @@ class Slots(Pool):
         if self.tracer is not None:
             self.tracer(trace.Set(self.now, slot.name, value, 0 if run is None else run.id))
         if len(parents) > 1:
-            self._group_of(parents)  # they merge (L11), whether anybody hears of it or not
+            self._group_of(parents)  # they merge (L11), even if no rule hears the slot
         if slot.heard or self.tracer is not None or (self.watched and self._watched(slot)):
             if slot.keep_latest:
                 for signal in slot.signals:
@@ -55,8 +55,8 @@ class Slots(Pool):
         key: str,
         item: Any,
         run: Activation | None,
-        origin: tuple[tuple[Spike, ...], Group],
     ) -> None:
+        """Store or remove an item, and signal. An item that is equal to the one there changes nothing (L2)."""
         items = self._unseen.get(slot.index)
         old: Mapping[str, Any] = self.read(slot.index) if items is None else items
         known = old.get(key, ABSENT)
@@ -80,28 +80,30 @@ class Slots(Pool):
             self._unseen.pop(slot.index, None)
             self.tracer(trace.Set(self.now, slot.name, items, 0 if run is None else run.id))
         entry = Entry(key, known if item is ABSENT else item)
+        parents, group = self._origin(run)
         for signal in raised:
             if signal.keep_latest:
                 self._withdraw(signal, "superseded")
-            self._birth(signal, entry, origin[0], origin[1], run)
+            self._birth(signal, entry, parents, group, run)
         if slot.index in self.policy.guarded:
             self._regate(slot)
 
     def _replace(self, slot: SlotPlan, value: Any, run: Activation | None) -> None:
-        """Give a collection all its items at once: as if each difference had been written."""
+        """Give a collection all its items at once; each difference counts as a write of its own."""
         if not isinstance(value, Mapping):
             raise RuleError(f"{slot.name} is a collection: write a mapping of keys to items, not {value!r}")
         self._mark_write(slot, run)
         items = cast("Mapping[str, Any]", value)
         old: Mapping[str, Any] = self.read(slot.index)
         for key in [*(k for k in old if k not in items), *items]:
-            self._change_item(slot, key, items.get(key, ABSENT), run, self._origin(run))
+            self._change_item(slot, key, items.get(key, ABSENT), run)
 
     def _watched(self, slot: SlotPlan) -> bool:
+        """Return whether the runtime wants reports of one of the slot's signals."""
         return any(signal.name in self.watched for signal in slot.signals)
 
     def _regate(self, slot: SlotPlan) -> None:
-        """A slot has changed: predicates on it may have become true, or false."""
+        """Reconsider the predicates on a slot that has changed."""
         for activation in list(self.gated):
             if activation in self.gated and any(guarded is slot for guarded, _ in activation.clause.guards):
                 del self.gated[activation]
@@ -122,10 +124,10 @@ ABSENT: Any = _Absent()
 
 
 def equal(old: Any, new: Any) -> bool:
-    """Whether a write changes nothing; values that cannot be compared (arrays, say) are different."""
+    """Return whether a write changes nothing. Values that cannot be compared (arrays, say) are different."""
     if old is new:
         return True
     try:
         return bool(old == new)
-    except Exception:  # a value's comparison is foreign code: it may fail in any way
+    except Exception:  # a value's comparison is foreign code: it may raise anything
         return False

@@ -15,8 +15,9 @@ __all__ = ["snapshot"]
 
 
 def snapshot(engine: Engine) -> dict[str, Any]:
-    """Everything that is alive, as dictionaries, lists, texts and numbers; payloads and values that are something else
-    appear as their ``repr``.
+    """Return everything that is alive as dictionaries, lists, texts and numbers.
+
+    Any other payload or value appears as its ``repr``.
 
     Returns:
         ``now`` (seconds), ``slots``, ``spikes``, ``activations``, ``groups``, ``dropped``, ``retired``,
@@ -74,7 +75,7 @@ def snapshot(engine: Engine) -> dict[str, Any]:
 
 
 def plain(value: Any) -> Any:
-    """The value as data that JSON can carry."""
+    """Return a value as data that JSON can carry."""
     if value is None or isinstance(value, (bool, int, float, str)):
         return value
     if isinstance(value, Mapping):

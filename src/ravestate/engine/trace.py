@@ -1,12 +1,12 @@
-"""What can be observed (L25): a closed union of records. The debugger, the recorder and the tests live from them.
+"""The trace (L25): a closed union of records, from which the debugger, the recorder and the tests live.
 
-The engine makes a record only when somebody listens.
+The engine makes a record only while it has a tracer.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 __all__ = [
@@ -92,13 +92,16 @@ class GaveUp:
     spike: int
     signal: str
     reason: str
-    by: str = ""  # the rule that consumed it, or resigned for it, if one did
-    run: int = 0  # the number of its run; 0: of none, or not known
+    by: str = ""  # the rule that consumed it, or resigned on it
+    run: int = 0  # the number of its run; 0 if there is none, or it is unknown
 
 
 @dataclass(frozen=True, slots=True)
 class Passed:
-    """A spike passed a rule by: its ``payload`` did not fit, its cause was ``consumed``, or the rule had ``caused`` it."""
+    """A rule did not take a spike.
+
+    Its ``payload`` did not fit, its cause was ``consumed``, or the rule itself had ``caused`` it.
+    """
 
     time: float
     rule: str
@@ -106,13 +109,13 @@ class Passed:
     spike: int
     signal: str
     reason: str
-    by: str = ""  # the rule that had consumed its cause, if that is known
-    run: int = 0  # the number of its run; 0: of none, or not known
+    by: str = ""  # the rule that had consumed its cause, if known
+    run: int = 0  # the number of its run; 0 if there is none, or it is unknown
 
 
 @dataclass(frozen=True, slots=True)
 class Waits:
-    """A ready activation is kept waiting, for rivals or for holders of a slot (L15)."""
+    """A ready activation waits for rivals, or for runs that hold a slot (L15)."""
 
     time: float
     activation: int
@@ -145,7 +148,7 @@ class Started:
 
 @dataclass(frozen=True, slots=True)
 class Told:
-    """A run was told to end: ``interrupted``, ``timeout``, ``wiped``."""
+    """The engine asked a run to end: ``interrupted``, ``timeout``, ``wiped``."""
 
     time: float
     run: int
@@ -163,6 +166,9 @@ class Settled:
     outcome: str
     reason: str
     fired: bool
+    error: BaseException | str | None = field(
+        default=None, repr=False, compare=False
+    )  # in a file: its traceback
 
 
 Record = Born | Dropped | Merged | Set | Held | GaveUp | Passed | Waits | Pressed | Started | Told | Settled

@@ -1,16 +1,16 @@
-"""What watches for the end of a run: its `until` condition (L21)."""
+"""A watch over a run: its `until` condition (L21)."""
 
 from __future__ import annotations
 
 from ravestate.engine.activation import NEVER, Activation
 from ravestate.engine.spike import Spike
-from ravestate.policy.plan import Clause
+from ravestate.policy.model import Clause
 
 __all__ = ["Watch"]
 
 
 class Watch:
-    """One clause of an `until`, and the spikes born since the run began that meet it. It consumes nothing."""
+    """One clause of an `until`, and the spikes that meet it, all born since the run began. It consumes nothing."""
 
     __slots__ = ("clause", "due", "run", "spikes")
 
@@ -21,7 +21,7 @@ class Watch:
         self.spikes: list[Spike | None] = [None] * len(clause.needs)
 
     def met_at(self, now: float) -> float | None:
-        """When the clause is met by what it has, or None as long as something is missing or too old."""
+        """Return when the spikes meet the clause (seconds), or None while one is missing or too old."""
         due = now
         for need, spike in zip(self.clause.needs, self.spikes, strict=True):
             if spike is None or spike.born + need.max_age < now:
@@ -30,6 +30,6 @@ class Watch:
         return due
 
     def lose(self, spike: Spike) -> None:
-        """A spike has been withdrawn (L20)."""
+        """Drop a withdrawn spike (L20)."""
         self.spikes = [None if held is spike else held for held in self.spikes]
         self.due = NEVER

@@ -1,8 +1,8 @@
-"""The built-in modules: platforms, modalities, meta modules and skills, each loaded when it is first used.
+"""The built-in modules: platforms, modalities, meta modules and skills. Each loads at its first use.
 
-``from ravestate.modules import rawio`` imports the package that holds the module's `Module` value
-(``rawio.module``) and, by name, its signals and slots (``rawio.input``). Wherever a `Module` is wanted, the
-package itself may be given.
+``from ravestate.modules import rawio`` imports the package of a module. The package holds the `Module` value
+(``rawio.module``) and its signals and slots by name (``rawio.input``). It may stand for the `Module` itself in
+every argument.
 """
 
 from __future__ import annotations
@@ -56,10 +56,14 @@ BUILT_IN = {
     "persqa": "skill",
     "wildtalk": "skill",
 }
-"""Every built-in module, and the folder in which it stands."""
+"""The name of every built-in module, with its folder."""
 
 
 def __getattr__(name: str) -> Any:
     if name not in BUILT_IN:
         raise AttributeError(f"there is no built-in module {name!r}{nearest(name, BUILT_IN)}", name=name)
     return import_module(f"ravestate.modules.{BUILT_IN[name]}.{name}")
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

@@ -1,4 +1,4 @@
-"""What people put before what they mean: thanks, okay, well."""
+"""The courtesies before a sentence: thanks, okay, well."""
 
 from __future__ import annotations
 
@@ -8,5 +8,7 @@ COURTESY = (
     r"(?:(?:ok|okay|well|alright|all right|right|so(?! long)|then|oh|great|fine|anyway|(?:many )?thanks|thank you)\b"
     r"(?: (?:very much|much|a lot|again|for (?:the |your )?\w++(?!\s+\w)))*+[\s,.!;:-]*+)*+"
 )
-"""A regular expression of what may stand before a farewell. It is possessive: what can be matched in two ways would take a
-time that doubles with each word."""
+"""A regular expression of the words that may stand before a farewell.
+
+It is possessive: a pattern that could match in two ways would double its time with each word.
+"""

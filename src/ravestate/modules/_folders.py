@@ -1,4 +1,4 @@
-"""Where a user's files are kept, as the platform has it."""
+"""The folders for a user's files, as the platform has them."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ __all__ = ["user_folder"]
 
 
 def user_folder(kind: Literal["data", "state"]) -> Path:
-    """Return Ravestate's folder among the user's own, which may not be there yet.
+    """Return Ravestate's folder among the user's own; it may not exist yet.
 
     Args:
-        kind: ``data``: what must not be lost; ``state``: what is merely kept from session to session. Only the XDG
+        kind: ``data`` for files that must not be lost, ``state`` for files that only outlast a session. Only the XDG
             base directory specification tells them apart.
     """
     if sys.platform == "win32":
@@ -22,9 +22,7 @@ def user_folder(kind: Literal["data", "state"]) -> Path:
     elif sys.platform == "darwin":
         base = Path.home() / "Library" / "Application Support"
     else:
-        given = os.environ.get(
-            f"XDG_{kind.upper()}_HOME", ""
-        )  # a relative one does not count, says its standard
+        given = os.environ.get(f"XDG_{kind.upper()}_HOME", "")  # the standard ignores a relative path
         default = Path.home() / ".local" / ("share" if kind == "data" else "state")
         base = Path(given) if Path(given).is_absolute() else default
     return base / "ravestate"

@@ -1,4 +1,4 @@
-"""Large libraries are imported one after the other."""
+"""A lock for the import of large libraries, one at a time."""
 
 from __future__ import annotations
 
@@ -7,9 +7,8 @@ import threading
 __all__ = ["LOADING"]
 
 LOADING = threading.RLock()
-"""Held while a large library is imported, and by whoever loads what may import parts of one on the way.
+"""A lock to hold during the import of a large library, and during a load that may import parts of one.
 
-Of two threads that import parts of one library at the same time, one may be given a module that is only half there: the
-interpreter resolves what would be a deadlock of its import locks in this way. (numpy is such a library, and spaCy, onnxruntime
-and others import it.)
+Two threads that import parts of one library at the same time may deadlock. The interpreter then hands one of them a
+module that is only half loaded. This happens with numpy, which spaCy, onnxruntime and others import.
 """

@@ -1,4 +1,4 @@
-"""Room in memory that was only needed while something was loaded."""
+"""Memory that the process needed only while it loaded a model."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ __all__ = ["give_back"]
 
 
 def give_back() -> None:
-    """Give the system back what the C library keeps of freed memory; where it is not glibc, do nothing.
+    """Return freed memory from the C library to the system; without glibc, do nothing.
 
-    Loading models leaves tens of megabytes behind in the heaps of the threads that did it.
+    A load of a model leaves tens of megabytes in the heap of its thread.
     """
     try:
         trim = ctypes.CDLL(None).malloc_trim

@@ -1,4 +1,4 @@
-"""What may be shown to a person or to a model: text without control characters."""
+"""Text without control characters, fit to show to a person or to a model."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ _SURROGATES = re.compile(r"[\ud800-\udfff]")
 
 
 def without_controls(text: str) -> str:
-    """Return `text` without control characters, each seen for itself: fit for pieces of a text.
+    """Return `text` without control characters; fit for a piece of a longer text.
 
-    Line feeds and tabs stay. Lone surrogates, which is how Python smuggles bytes that are not UTF-8, become
-    U+FFFD, so that the result can always be encoded.
+    Line feeds and tabs stay. Lone surrogates, by which Python carries bytes that are not UTF-8, become U+FFFD, so that
+    the result can always be encoded.
 
     Example:
         >>> without_controls("a\\x00b\\udcff")
@@ -29,9 +29,9 @@ def without_controls(text: str) -> str:
 
 
 def printable(text: str) -> str:
-    """Return `text` without terminal escape sequences and control characters: fit for whole texts.
+    """Return `text` without terminal escape sequences and control characters; fit for a whole text.
 
-    Like `without_controls`, but a sequence goes as a whole, and ``\\r\\n`` and a lone ``\\r`` become line feeds.
+    Like `without_controls`, but it removes a sequence as a whole, and turns ``\\r\\n`` and ``\\r`` into line feeds.
 
     Example:
         >>> printable("\\x1b[31mred\\x1b[0m\\x00")

@@ -1,1 +1,1 @@
-"""What can be known before running: compile, pathways, utility, conflicts, findings, diagram. Pure."""
+"""The analysis of modules before they run: compile, pathways, utility, conflicts, findings, diagram. Pure."""

@@ -1,10 +1,10 @@
-"""Who may cause what (L7): the static graph of effects, and its closures.
+"""The static graph of causes (L7) and its closures.
 
-Edges run from a signal, over a rule that hears it, to the signals that the rule raises. Effects of a
-detached rule have no causes: they appear in the wide closures only.
+An edge leads from a signal, through a rule that hears it, to a signal that the rule raises. Effects of a detached
+rule have no causes: they appear in the wide closures only.
 
-Sets of signals that are only intersected and counted are integers, with bit *n* for signal *n*: a closure over
-a thousand signals costs a hundred bytes, and is intersected in no time.
+A closure is an integer with bit *n* for signal *n*: a thousand signals take a hundred bytes, and an intersection
+takes no time.
 """
 
 from __future__ import annotations
@@ -12,34 +12,20 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from ravestate.policy.components import components
-from ravestate.policy.plan import Clause, Need, RulePlan, SignalPlan
+from ravestate.policy.model import Clause, Need, RulePlan, SignalPlan
 
 __all__ = ["Causes"]
 
 
 class Causes:
-    """Closures over the rules of one policy; each is computed when first asked for.
+    """The causes and closures of one policy; each closure is computed at its first use.
 
     Attributes:
         causes: For each signal the non-detached rules that may raise it.
         all_causes: For each signal all rules that may raise it.
         direct: For each signal the signals of the non-detached constraints of the rules in `causes`.
-        components: The cycles of `direct`: signals of one component lead to each other.
+        components: The cycles of `direct`; signals of one component lead to each other.
     """
-
-    __slots__ = (
-        "_ancestors",
-        "_closures",
-        "_downstream",
-        "_roots",
-        "_wide",
-        "all_causes",
-        "causes",
-        "components",
-        "direct",
-        "rules",
-        "signals",
-    )
 
     def __init__(self, signals: Sequence[SignalPlan], rules: Sequence[RulePlan]) -> None:
         self.signals = signals
@@ -65,10 +51,10 @@ class Causes:
         self._downstream: dict[int, tuple[Clause, ...]] = {}
 
     def roots(self, signal: int) -> int:
-        """Where the signal's pathways begin, as bits of numbers of their own.
+        """Return the roots of the signal's pathways, as bits; roots have numbers of their own.
 
-        A root is a signal without causes, or a cycle without causes from outside of it. Two signals share a signal
-        of their pathways if and only if they share a root.
+        A root is a signal without causes, or a cycle without causes from outside. Two signals share a signal of their
+        pathways if and only if they share a root.
         """
         return self._roots[self.components.of[signal]]
 
@@ -89,7 +75,7 @@ class Causes:
         return found
 
     def closure(self, signal: int) -> int:
-        """The signal and all that may lead to it, without detachment: what its pathways consist of; as bits."""
+        """Return the signal and all signals that lead to it without detachment, as bits: the content of its pathways."""
         of, members = self.components.of, self.components.members
         wanted = of[signal]
         if wanted not in self._closures:
@@ -113,15 +99,15 @@ class Causes:
         return self._closures[wanted]
 
     def ancestors(self, signal: int) -> frozenset[int]:
-        """The rules from which a chain of non-detached effects leads to the signal: it is in their reach."""
-        component = self.components.of[signal]  # in which all have the same ancestors
+        """Return the rules from which a chain of non-detached effects leads to the signal."""
+        component = self.components.of[signal]  # all its signals have the same ancestors
         found = self._ancestors.get(component)
         if found is None:
             found = self._ancestors[component] = self._climb(signal, self.causes, wide=False)
         return found
 
     def wide_ancestors(self, signal: int) -> frozenset[int]:
-        """The same over detached effects too, but not through an input: an input may come at any time anyway."""
+        """Return the same over detached effects too, but not through an input, which may come at any time anyway."""
         found = self._wide.get(signal)
         if found is None:
             found = self._wide[signal] = self._climb(signal, self.all_causes, wide=True)
@@ -145,7 +131,7 @@ class Causes:
         return frozenset(rules)
 
     def downstream(self, rule: RulePlan) -> tuple[Clause, ...]:
-        """The clauses that write a slot and lie in the non-detached reach of the rule, best first (static)."""
+        """Return the clauses in the non-detached reach of the rule that write a slot, the best first."""
         found = self._downstream.get(rule.index)
         if found is None:
             clauses: dict[Clause, None] = {}
@@ -167,7 +153,7 @@ class Causes:
         return found
 
     def grounded(self, given: Iterable[int]) -> frozenset[int]:
-        """The signals that may ever occur if those in `given` do: a least fixed point over all rules."""
+        """Return the signals that may ever occur if those in `given` do: a least fixed point over all rules."""
         reached = set(given)
         lacking = {
             clause: {n.signal.index for n in clause.needs} - reached

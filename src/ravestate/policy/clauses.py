@@ -14,27 +14,24 @@ from ravestate.errors import DeclarationError
 __all__ = ["MAX_CLAUSES", "Conjunction", "normal_form"]
 
 MAX_CLAUSES = 256
-"""A condition with more conjunctions than this is a mistake of the designer's, and is refused."""
+"""The greatest number of conjunctions of a condition; more are surely a mistake of the designer."""
 
 Atoms = tuple[Constraint | Holds, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class Conjunction:
-    """One clause: constraints that want spikes, and predicates on slots that gate it."""
+    """A conjunction: constraints on signals, and predicates on slots that gate it."""
 
     constraints: tuple[Constraint, ...]
     guards: tuple[Holds, ...]
 
 
 def normal_form(condition: Condition) -> tuple[Conjunction, ...]:
-    """Bring a condition into disjunctive normal form, in declaration order, without doubles.
-
-    Args:
-        condition: Of any depth.
+    """Bring a condition of any depth into disjunctive normal form, in declaration order, without doubles.
 
     Raises:
-        DeclarationError: More than `MAX_CLAUSES` conjunctions, or a part that is no condition.
+        DeclarationError: The condition has more than `MAX_CLAUSES` conjunctions, or a part that is no condition.
 
     Example:
         >>> import ravestate as rs
@@ -60,7 +57,7 @@ def normal_form(condition: Condition) -> tuple[Conjunction, ...]:
 
 
 def _inner_first(condition: Condition) -> Iterator[Condition]:
-    """Every part of a condition once, behind its own parts."""
+    """Yield each part of a condition once, after its own parts."""
     seen: set[int] = set()
     stack = [(condition, False)]
     while stack:
@@ -75,7 +72,7 @@ def _inner_first(condition: Condition) -> Iterator[Condition]:
 
 
 def _check(condition: Condition, parts: list[Condition]) -> None:
-    """Refuse what is no condition, or has too many conjunctions, before any is made."""
+    """Refuse a part that is no condition, or a condition with too many conjunctions, before making any of them."""
     counts: dict[int, int] = {}
     for part in parts:
         key = id(part)
@@ -85,8 +82,8 @@ def _check(condition: Condition, parts: list[Condition]) -> None:
             if count > MAX_CLAUSES:
                 whole = "condition" if part is condition else "condition has a part that"
                 raise DeclarationError(
-                    f"its {whole} has {_shown(count)} alternatives, more than {MAX_CLAUSES}: raise a signal of its own "
-                    "for a part of it"
+                    f"its {whole} has {_shown(count)} alternatives, more than {MAX_CLAUSES}: move a part of it to a rule "
+                    "that emits a signal"
                 )
             counts[key] = count
         elif isinstance(part, (Signal, Constraint, Holds)):
@@ -100,13 +97,13 @@ def _shown(count: int) -> str:
 
 
 def _expanded(part: Condition, forms: dict[int, list[Atoms]]) -> list[Atoms]:
-    """The conjunctions of a part whose own parts have been expanded."""
+    """Return the conjunctions of a part, from those of its own parts."""
     if isinstance(part, AnyOf):
         return [atoms for inner in part.parts for atoms in forms[id(inner)]]
     if isinstance(part, Signal):
         return [(Constraint(cast("Signal[Any]", part)),)]
     if not isinstance(part, AllOf):
-        return [(cast("Constraint | Holds", part),)]  # as checked
+        return [(cast("Constraint | Holds", part),)]  # `_check` has refused any other
     found: list[Atoms] = [()]
     for inner in part.parts:
         found = [left + right for left in found for right in forms[id(inner)]]

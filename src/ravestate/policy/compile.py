@@ -1,4 +1,4 @@
-"""Compiling: modules become one immutable `Policy`, or every fault is reported at once (L6)."""
+"""Compiling: modules become one immutable `Policy`, or one exception reports every fault (L6)."""
 
 from __future__ import annotations
 
@@ -23,16 +23,16 @@ __all__ = ["build", "compile_policy"]
 
 
 def compile_policy(*modules: Module | ModuleType) -> Policy:
-    """Compile modules, and whatever they require, into a policy.
+    """Compile modules, and the modules that they require, into a policy.
 
     Args:
         modules: `Module` values, or Python modules that hold one.
 
     Returns:
-        The policy; any number of contexts may share it.
+        The policy, which any number of contexts may share.
 
     Raises:
-        DeclarationErrors: All faults that were found.
+        DeclarationErrors: The modules have faults; the exception holds all of them.
 
     Example:
         >>> import ravestate as rs
@@ -58,16 +58,16 @@ def build(
     settings: Mapping[str, Any],
     faults: Sequence[DeclarationError] = (),
 ) -> Policy:
-    """Number everything, and find out what can be known before running.
+    """Number all signals, slots and rules, and make the policy.
 
     Args:
         modules: The modules, in order.
-        rules: The rules, in order; a module need not hold them.
-        settings: For each module's name the values of its settings; the defaults for one that is not there.
-        faults: What is known to be wrong already.
+        rules: The rules, in order. A rule that a context added is in none of the modules.
+        settings: By a module's name, the values of its settings; a module that is missing has the defaults.
+        faults: Faults from before.
 
     Raises:
-        DeclarationErrors: There are faults.
+        DeclarationErrors: There are faults, new ones or old ones.
     """
     found = list(faults)
     names = Names(modules, found)
@@ -81,7 +81,7 @@ def build(
     if found:
         raise DeclarationErrors(found)
     find_kin(numbered.plans, causes)
-    assign_utilities(names.signals, numbered.plans, causes)
+    completion = assign_utilities(names.signals, numbered.plans, causes)
     find_contests(names.signals)
     return Policy(
         modules=tuple(modules),
@@ -90,6 +90,7 @@ def build(
         slot_plans=tuple(names.slots),
         rule_plans=tuple(numbered.plans),
         causes=causes,
+        completion=completion,
         refers=numbers.refers,
         settings=settings,
     )

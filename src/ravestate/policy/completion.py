@@ -1,11 +1,11 @@
 """The graph in which clauses are completed (L8), in bits.
 
-Each signal is completed by one of its *alternatives*: a conjunction of signals that may cause it, or nothing, if it
-is an input or has no causes. A pathway of a clause is thus a set of signals that holds the clause's own, and with
-each signal one of its alternatives; where a cycle closes, the set holds what is asked for already.
+One of its *alternatives* completes each signal: a conjunction of signals that may cause it, or nothing, if it is an
+input or has no causes. A pathway of a clause is a set of signals. It holds the clause's own signals, and with each
+signal one of its alternatives. Where a cycle closes, the set holds these signals already.
 
-Sets of signals are integers here. Bit *n* stands for the *n*-th signal in an order in which causes come before their
-effects, so that the highest bit is the signal that nothing else of the set can lead to, cycles apart.
+Sets of signals are integers here. Bit *n* stands for the *n*-th signal in an order with causes before their effects.
+Cycles apart, no other signal of a set leads to the signal of its highest bit.
 """
 
 from __future__ import annotations
@@ -16,36 +16,25 @@ from collections.abc import Iterator, Sequence
 from ravestate.declare.signal import Signal
 from ravestate.policy.causes import Causes
 from ravestate.policy.components import components
-from ravestate.policy.plan import RulePlan, SignalPlan
+from ravestate.policy.model import RulePlan, SignalPlan
 
 __all__ = ["UNIT", "Completion", "each"]
 
 UNIT = 1 << 60
-"""Information is summed in integers of nats / `UNIT`: equal sums compare equal whatever the order of summation."""
+"""The unit of information: sums are integers of nats / `UNIT`, so that the order of summation does not matter."""
 
 
 class Completion:
-    """The alternatives of every signal, and the information that each carries.
+    """The alternatives and the information of every signal.
 
     Attributes:
-        place: For each signal, by its index, its place in the order.
-        alternatives: For each place the alternatives, each as places.
-        bare: For each place whether it may stand without causes.
-        information: For each place its self-information in nats / `UNIT` (L9).
-        components: The places that lead to each other once what may stand bare does so; causes first.
-        cycle: For each place the set of those that lead to it and to which it leads; 0 if there are none.
+        place: The place in the order, by the index of a signal.
+        alternatives: The alternatives by place, each as places.
+        bare: Whether a signal may be on a pathway without causes, by place.
+        information: The self-information in nats / `UNIT`, by place (L9).
+        components: The places that lead to each other without passing a bare signal; causes first.
+        cycle: The set of signals on a cycle with the signal, by place; 0 for a signal on none.
     """
-
-    __slots__ = (
-        "_alike",
-        "_signals",
-        "alternatives",
-        "bare",
-        "components",
-        "cycle",
-        "information",
-        "place",
-    )
 
     def __init__(self, signals: Sequence[SignalPlan], rules: Sequence[RulePlan], causes: Causes) -> None:
         found = [_alternatives(signal, causes) for signal in signals]
@@ -68,7 +57,7 @@ class Completion:
         self.information = [
             round(-math.log(counts[s] / len(rules)) * UNIT) if counts[s] else 0 for s in order
         ]
-        self._alike: dict[int, int] = {}  # the sets of signals that carry the same information
+        self._alike: dict[int, int] = {}  # sets of signals by the information of each
         for place, information in enumerate(self.information):
             self._alike[information] = self._alike.get(information, 0) | 1 << place
         self._signals: list[Signal[object]] = [signals[s].signal for s in order]
@@ -80,18 +69,18 @@ class Completion:
                     self.cycle[self.place[member]] = cycle
 
     def weigh(self, bits: int) -> int:
-        """The information of a set of signals."""
+        """Return the information of a set of signals."""
         if bits.bit_count() < len(self._alike):
             return sum(self.information[place] for place in each(bits))
         return sum(information * (bits & alike).bit_count() for information, alike in self._alike.items())
 
     def signals(self, bits: int) -> frozenset[Signal[object]]:
-        """The set itself."""
+        """Return the signals of a set."""
         return frozenset(self._signals[place] for place in each(bits))
 
 
 def each(bits: int) -> Iterator[int]:
-    """The places in a set, the highest first."""
+    """Yield the places in a set, the highest first."""
     while bits:
         place = bits.bit_length() - 1
         yield place
@@ -107,11 +96,9 @@ def _alternatives(signal: SignalPlan, causes: Causes) -> dict[frozenset[int], No
 
 
 def _counts(signals: Sequence[SignalPlan], rules: Sequence[RulePlan], causes: Causes) -> list[int]:
-    """For each signal how many rules have it on any of their pathways: those to whose signals it leads."""
+    """Return for each signal the number of rules with the signal on a pathway."""
     of, members = causes.components.of, causes.components.members
-    completed = [0] * len(
-        members
-    )  # for each component the rules to whose non-detached needs it leads, as bits
+    completed = [0] * len(members)  # by component, the rules to whose non-detached needs it leads, as bits
     looked_at = [0] * len(signals)
     for rule in rules:
         bit = 1 << rule.index

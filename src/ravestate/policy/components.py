@@ -13,7 +13,7 @@ class Components:
     """The components of a graph.
 
     Attributes:
-        members: The nodes of each component; it stands behind every other component that it leads to.
+        members: The nodes of each component; a component comes after the others that it leads to.
         of: For each node the number of its component.
     """
 
@@ -30,8 +30,8 @@ def components(edges: Sequence[Sequence[int]]) -> Components:
     """
     members: list[list[int]] = []
     of = [-1] * len(edges)
-    number = [-1] * len(edges)  # in the order in which the nodes are come upon
-    low = [0] * len(edges)  # the least number of an unfinished node that is led back to
+    number = [-1] * len(edges)  # the order of discovery
+    low = [0] * len(edges)  # the least number of an unfinished node within reach
     unfinished: list[int] = []
     count = 0
     for root in range(len(edges)):

@@ -1,10 +1,10 @@
-"""Conflicts between rules (L10): who excludes whom, and who wins."""
+"""Conflicts between rules (L10): pairs that exclude each other, and the winner of each."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ravestate.policy.plan import Clause, RulePlan
+from ravestate.policy.model import Clause, RulePlan
 from ravestate.policy.policy import Policy
 
 __all__ = ["Conflict", "Conflicts", "find_conflicts"]
@@ -12,16 +12,16 @@ __all__ = ["Conflict", "Conflicts", "find_conflicts"]
 
 @dataclass(frozen=True, slots=True)
 class Conflict:
-    """Two rules that exclude each other for a cause that they share.
+    """Two rules that exclude each other for a common cause.
 
     Attributes:
         first, second: The rules' names, in declaration order.
         slots: The slots that both write.
         causes: The signals that lie on pathways of both.
-        winner: The name of the rule that goes first when both are ready and recovered.
-        margin: By how many nats of effective utility (utility x weight) it wins. 0 where neither carries
+        winner: The name of the rule that goes first if both are ready and recovered.
+        margin: The winner's lead in nats of effective utility (utility x weight). It is 0 if neither rule carries
             information, even if a weight decides.
-        tie: Whether only the order of declaration decides.
+        tie: Whether the order of declaration decides.
     """
 
     first: str
@@ -34,12 +34,12 @@ class Conflict:
 
     @property
     def rules(self) -> tuple[str, str]:
-        """Both names."""
+        """The names of both rules."""
         return (self.first, self.second)
 
 
 def find_conflicts(policy: Policy) -> tuple[Conflict, ...]:
-    """All conflicts, in declaration order of the first rule, then of the second."""
+    """Return all conflicts in the order of declaration: of the first rule, then of the second."""
     conflicts = Conflicts(policy)
     writers: dict[int, list[RulePlan]] = {}
     found: list[Conflict] = []
@@ -56,7 +56,7 @@ def find_conflicts(policy: Policy) -> tuple[Conflict, ...]:
 
 
 class Conflicts:
-    """Answers for pairs of rules of one policy."""
+    """The conflicts of one policy, pair by pair."""
 
     __slots__ = ("_names", "_roots", "policy")
 
@@ -66,7 +66,7 @@ class Conflicts:
         self._names: dict[int, tuple[str, ...]] = {}
 
     def roots(self, clause: Clause) -> int:
-        """Where the causal groups that the clause joins may begin, as bits (`Causes.roots`)."""
+        """Return the roots of the causal groups that the clause may join, as bits (`Causes.roots`)."""
         found = self._roots.get(clause)
         if found is None:
             found = 0
@@ -77,7 +77,7 @@ class Conflicts:
         return found
 
     def best(self, first: RulePlan, second: RulePlan) -> tuple[Clause, Clause] | None:
-        """The best clause of each by which they exclude each other, if they do."""
+        """Return the best clauses by which two rules exclude each other, or None if they do not."""
         if first.slotset.isdisjoint(second.slotset):
             return None
         common = self._of_rule(first) & self._of_rule(second)
@@ -86,7 +86,7 @@ class Conflicts:
         return self._best(first, common), self._best(second, common)
 
     def between(self, first: RulePlan, second: RulePlan) -> Conflict | None:
-        """The conflict of two rules, the first of which is declared first."""
+        """Return the conflict of two rules in declaration order, or None if there is none."""
         best = self.best(first, second)
         if best is None:
             return None

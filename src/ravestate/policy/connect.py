@@ -1,17 +1,17 @@
-"""What the parts of a policy are to each other: who hears whom, which needs belong together, who competes."""
+"""The relations between the records of a policy: listeners, coherent needs, contests."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
 from ravestate.policy.causes import Causes
-from ravestate.policy.plan import Clause, Need, RulePlan, SignalPlan, SlotPlan
+from ravestate.policy.model import Clause, Need, RulePlan, SignalPlan, SlotPlan
 
 __all__ = ["connect", "find_contests", "find_kin"]
 
 
 def connect(signals: Sequence[SignalPlan], slots: Iterable[SlotPlan], rules: Iterable[RulePlan]) -> None:
-    """Fill in who hears what, and which signals are inputs (L8)."""
+    """Fill in the listeners of each signal, and mark the inputs (L8)."""
     raised = {signal for rule in rules for signal in rule.raises}
     listeners: list[list[Need]] = [[] for _ in signals]
     watchers: list[list[Need]] = [[] for _ in signals]
@@ -36,7 +36,7 @@ def find_kin(rules: Iterable[RulePlan], causes: Causes) -> None:
     """Join the needs of a clause whose pathways share a signal (coherence, L12)."""
     for rule in rules:
         for clause in rule.clauses:
-            families: list[tuple[int, int]] = []  # of needs, as bits: their roots, themselves
+            families: list[tuple[int, int]] = []  # the roots and the needs of each, as bits
             for need in clause.needs:
                 if need.detached:
                     continue
@@ -53,11 +53,11 @@ def find_kin(rules: Iterable[RulePlan], causes: Causes) -> None:
 
 
 def find_contests(signals: Iterable[SignalPlan]) -> None:
-    """Set apart the needs of clauses that differ in nothing but who comes first.
+    """Collect the clauses that compete for each spike of a signal in a fixed order.
 
-    If several clauses are ready with one spike of the same signal, write the same slots, and keep their
-    order for good, then only the first can have consent, until it resigns or fails. The engine need not make
-    activations of the others before that (``engine/contests.py``).
+    Such clauses are ready with one spike of the signal, write the same slots, and never change their order. Only the
+    first can have consent, until it resigns or fails. The engine makes no activations of the others before that
+    (``engine/contests.py``).
     """
     for signal in signals:
         contests: dict[tuple[frozenset[int], bool], list[Clause]] = {}

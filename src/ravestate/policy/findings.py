@@ -1,4 +1,4 @@
-"""Findings: what compiles, but is probably not meant."""
+"""Findings: declarations that compile, but are probably a mistake."""
 
 from __future__ import annotations
 
@@ -9,15 +9,19 @@ from itertools import islice
 from ravestate.declare.core import startup
 from ravestate.policy.completion import each
 from ravestate.policy.conflicts import Conflicts
-from ravestate.policy.plan import Clause, RulePlan
+from ravestate.policy.loops import endless_loops
+from ravestate.policy.model import Clause, RulePlan
 from ravestate.policy.policy import Policy
+from ravestate.policy.source import Source, acts_of, undeclared
 from ravestate.policy.wording import few
 
 __all__ = ["MAX_PEERS", "Finding", "find_all"]
 
 MAX_PEERS = 64
-"""Other rules with which a rule is compared in search of a tie: the first declared. Without it the time would grow with
-the square of the number of rules; ``policy.conflicts()`` compares them all."""
+"""The greatest number of other rules that the search for ties compares with a rule: the first declared.
+
+Without a limit the time would grow with the square of the number of rules; ``policy.conflicts()`` compares them all.
+"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,31 +29,79 @@ class Finding:
     """One remark on a policy.
 
     Attributes:
-        kind: ``"unreachable"``, ``"never-wins"``, ``"tie"``, ``"cooldown"`` or ``"unheard"``.
+        kind: ``"undeclared"``, ``"await"``, ``"unreachable"``, ``"unraised"``, ``"loop"``, ``"never-wins"``, ``"tie"``,
+            ``"cooldown"`` or ``"unheard"``.
         subject: The qualified name of the rule or signal.
-        message: What is the matter, and what to write instead.
+        message: The remark, with the text to write instead.
+        rules: The listeners of a signal that no rule raises.
     """
 
     kind: str
     subject: str
     message: str
+    rules: tuple[str, ...] = ()
 
     def __str__(self) -> str:
         return f"{self.kind}: {self.message}"
 
 
-def find_all(policy: Policy) -> tuple[Finding, ...]:
-    """All findings: unreachable rules first, then rules that never win, ties, cooldowns without effect, unheard signals.
+def find_all(policy: Policy, source: Source | None = None) -> tuple[Finding, ...]:
+    """Return all findings, those that break an agent first; at most one of each kind for a rule.
 
-    A rule has one finding of each kind at most, so that there are never more than a few for each rule.
+    Args:
+        policy: The policy.
+        source: Returns the source of a rule's function, such as ``inspect.getsource``; without it, no finding rests on
+            source.
     """
     return (
+        *(_in_source(policy, source) if source else ()),
         *_unreachable(policy),
+        *_unraised(policy),
+        *_loops(policy),
         *_never_wins(policy),
         *_ties(policy),
         *_cooldowns(policy),
         *_unheard(policy),
     )
+
+
+def _in_source(policy: Policy, source: Source) -> Iterator[Finding]:
+    for rule in policy.rule_plans:
+        acts = acts_of(rule, source)
+        where = f"rule {rule.name} ({rule.rule.origin})"
+        if faults := list(undeclared(rule, acts)):
+            yield Finding("undeclared", rule.name, f"{where} {'; it '.join(faults)}")
+        for method, line in islice(acts.forgotten.items(), 1):
+            mend = f"write await ctx.{method}(...)" + ("" if rule.rule.is_async else " in an async def")
+            yield Finding(
+                "await", rule.name, f"{where} calls ctx.{method} in line {line} without effect: {mend}"
+            )
+
+
+def _unraised(policy: Policy) -> Iterator[Finding]:
+    for signal in policy.signal_plans:
+        waiting = [need.clause.rule.name for need in (*signal.listeners, *signal.watchers)]
+        raised = signal.slot is not None or signal.signal.input or policy.causes.all_causes[signal.index]
+        if waiting and not raised:
+            yield Finding(
+                "unraised",
+                signal.name,
+                f"signal {signal.name} has listeners ({few(waiting)}), and no rule raises it; if it comes from outside, "
+                "declare it with input=True",
+                tuple(waiting),
+            )
+
+
+def _loops(policy: Policy) -> Iterator[Finding]:
+    for rules, signals in endless_loops(policy):
+        names = few(rule.name for rule in rules)
+        subject = f"rule {names} sets itself" if len(rules) == 1 else f"rules {names} set each other"
+        yield Finding(
+            "loop",
+            rules[0].name,
+            f"{subject} off by {few(signals)}, without end and without time passing (L23): write .min_age(seconds) behind "
+            "one of these signals",
+        )
 
 
 def _unreachable(policy: Policy) -> Iterator[Finding]:
@@ -62,22 +114,22 @@ def _unreachable(policy: Policy) -> Iterator[Finding]:
             yield Finding(
                 "unreachable",
                 rule.name,
-                f"rule {rule.name} runs only if {names} comes from outside: nothing leads there from an input; declare "
-                "it with input=True if it does",
+                f"rule {rule.name} runs only if {names} comes from outside: no input leads there; if it does come from "
+                "outside, declare it with input=True",
             )
         elif rule.slots and all(_starves(policy, clause, known) for clause in rule.clauses):
             slots = ", ".join(policy.slot_plans[s].name for s in rule.slots)
             yield Finding(
                 "unreachable",
                 rule.name,
-                f"rule {rule.name} waits for an effect of rules that write {slots} before it, and in one causal group a "
-                "slot is written once (L19): write .detached() behind that signal, or detached=True at the rule "
-                "that causes it",
+                f"rule {rule.name} waits for an effect of rules that write {slots} before it, and a causal group allows "
+                "one write of a slot (L19): write .detached() behind that signal, or detached=True at the rule that "
+                "causes it",
             )
 
 
 def _starves(policy: Policy, clause: Clause, known: dict[tuple[int, frozenset[int]], bool]) -> bool:
-    """Whether one of the clause's signals comes only from rules that take a slot the clause writes."""
+    """Return whether one of the clause's signals comes only from rules that write one of its slots before it."""
     slots = clause.rule.slotset
     for need in clause.needs:
         if need.detached or need.signal.input:
@@ -100,20 +152,20 @@ def _never_wins(policy: Policy) -> Iterator[Finding]:
         if all(losers):
             once = all(need.signal.signal is startup for clause in rule.clauses for need in clause.needs)
             advice = (
-                "core:startup comes once only: write rs.startup.detached() if both are to run"
+                "core:startup comes only once: if both should run, write rs.startup.detached()"
                 if once
-                else "give it a further signal, a weight, or the other a cooldown"
+                else "give it one more signal, a greater weight, or give the other rule a cooldown"
             )
             yield Finding(
                 "never-wins",
                 rule.name,
-                f"rule {rule.name} runs only when {few(w.rule.name for w in losers if w is not None)} resigns: whatever "
-                f"triggers it triggers that as well, and it has no greater utility; {advice}",
+                f"rule {rule.name} runs only when {few(w.rule.name for w in losers if w is not None)} resigns: the same "
+                f"signals trigger both, and its utility is no greater; {advice}",
             )
 
 
 def _winners(policy: Policy) -> dict[tuple[int, int], list[Clause]]:
-    """The clauses that nothing but their signals holds back, by a slot and the signal that the fewest clauses hear; best first."""
+    """Return the clauses that wait for their signals alone, by slot and rarest signal; the best first."""
     found: dict[tuple[int, int], list[Clause]] = {}
     for rule in policy.rule_plans:
         for clause in rule.clauses:
@@ -130,7 +182,7 @@ def _winners(policy: Policy) -> dict[tuple[int, int], list[Clause]]:
 
 
 def _winner(winners: dict[tuple[int, int], list[Clause]], loser: Clause) -> Clause | None:
-    """A clause that is ready whenever `loser` is, and goes first."""
+    """Return a clause that is ready whenever `loser` is, and goes first; None if there is none."""
     for slot in loser.rule.slots:
         for need in loser.needs:
             for winner in winners.get((slot, need.signal.index), ()):
@@ -146,7 +198,7 @@ def _order(clause: Clause) -> tuple[float, int]:
 
 
 def _covers(winner: Clause, loser: Clause) -> bool:
-    """Whether whatever makes `loser` ready makes `winner` ready."""
+    """Return whether `winner` is ready whenever `loser` is."""
     return all(
         any(
             not theirs.detached
@@ -161,7 +213,7 @@ def _covers(winner: Clause, loser: Clause) -> bool:
 
 def _ties(policy: Policy) -> Iterator[Finding]:
     conflicts = Conflicts(policy)
-    # Rules by a slot that they write, a cause (its root), and what a clause is worth there: only these may tie.
+    # Rules with the same slot, root and base may tie; no others can.
     peers: dict[tuple[int, int, float], list[RulePlan]] = {}
     for second in policy.rule_plans:
         keys = {
@@ -180,7 +232,7 @@ def _ties(policy: Policy) -> Iterator[Finding]:
                     "tie",
                     second.name,
                     f"rules {first.name} and {second.name} have the same utility for {few(slots)}: {first.name} goes "
-                    "first because it is declared first; a weight would say so",
+                    "first because its declaration comes first; write a weight to decide",
                 )
                 break
         for key in keys:
@@ -188,7 +240,7 @@ def _ties(policy: Policy) -> Iterator[Finding]:
 
 
 def _apart(first: RulePlan, second: RulePlan) -> bool:
-    """Whether payloads tell the rules apart: both ask for different ones of the same signal."""
+    """Return whether payloads tell the rules apart: their predicates on the same signal differ."""
     mine = {need.signal.index: need.predicates for clause in first.clauses for need in clause.needs}
     theirs = {need.signal.index: need.predicates for clause in second.clauses for need in clause.needs}
     return any(mine[s] and theirs[s] and mine[s] != theirs[s] for s in mine.keys() & theirs.keys())
@@ -209,9 +261,9 @@ def _cooldowns(policy: Policy) -> Iterator[Finding]:
             yield Finding(
                 "cooldown",
                 rule.name,
-                f"rule {rule.name} has a cooldown of {rule.cooldown:g} s, and no rival: a cooldown lets others go first, "
-                "it does not hold a rule back; to let the rule rest, write into a slot when it ran, and let it resign "
-                "when that was not long ago",
+                f"rule {rule.name} has a cooldown of {rule.cooldown:g} s, but no rival: a cooldown lets other rules go "
+                "first, and holds no rule back; to let the rule rest, write the time of each run to a slot, and resign "
+                "while that time is recent",
             )
 
 
@@ -228,5 +280,6 @@ def _unheard(policy: Policy) -> Iterator[Finding]:
                 yield Finding(
                     "unheard",
                     signal.name,
-                    f"signal {signal.name} is raised by {few(r.name for r in raisers)}, and no rule hears it",
+                    f"no rule hears signal {signal.name}, which {few(r.name for r in raisers)} may raise; remove it, or write a "
+                    "rule that hears it",
                 )

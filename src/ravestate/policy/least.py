@@ -1,14 +1,14 @@
-"""The least pathway of a clause (L9): which alternatives make the information of their union least.
+"""The least pathway of a clause (L9): the choice of alternatives with the least information in their union.
 
 A pathway is a set that holds an alternative of each of its signals (`Completion`). The search begins with the
-clause's own signals, and each step completes the highest signal that lacks an alternative, in every way. Two sets
-have the same future if they agree in what may still matter to the signals that lack one; only the cheaper of them is
-followed, so that choices which have nothing to do with each other do not multiply. In a chain, a ring or a tree the
-least pathway is known after a step or two from that of its causes.
+clause's own signals. Each step completes the highest signal that lacks an alternative, in every way. Two sets have
+the same future if they agree in all signals that may still matter; the search follows only the cheaper one. So
+independent choices do not multiply. In a chain, a ring or a tree, a step or two lead from the least pathway of the
+causes to that of the effect.
 
-To choose causes that have causes in common is the weighted set cover problem: nobody knows a way that is quick on every
-policy. If after a step more sets are left than there is room for, the cheapest are followed. Until then, and that is
-for policies of any size whose choices are not entangled by the dozen, what is found is exact.
+A choice among causes with common causes is the weighted set cover problem, for which no quick method is known. If a
+step leaves more sets than there is room for, the search follows the cheapest. Up to there the result is exact. That
+holds for policies of any size, unless dozens of their choices depend on each other.
 """
 
 from __future__ import annotations
@@ -21,10 +21,13 @@ from ravestate.policy.components import components
 __all__ = ["EFFORT", "Least"]
 
 EFFORT = 100_000
-"""Sets that may be looked at, for a whole policy, beyond the first `FREE` of each search. A search makes itself as much
-room as a tenth of what is left allows it for each step."""
+"""The number of sets that all searches of a policy may examine beyond the first `FREE` of each.
+
+A search divides a tenth of the rest among its steps.
+"""
 
 FREE = 100
+"""The number of sets that each search may examine in any case."""
 
 
 class Least:
@@ -36,34 +39,34 @@ class Least:
         self.completion = completion
         self._effort = EFFORT
         self._open = 0
-        """The signals that have several alternatives: there the choices are."""
+        """The signals with several alternatives, as a set."""
         self._whole = [1 << place for place in range(len(completion.bare))]
-        """For each signal itself and what it cannot do without, as far as the next choices."""
+        """For each signal, the set of itself and the causes that it must have, up to the next choice."""
         self._price = completion.information[:]
-        """What that costs."""
+        """The information of these sets."""
         self._reach: dict[int, int] = {}
-        """For each signal that is open, or that leads to one, what its pathways may consist of."""
+        """For each signal with an open signal on its pathways, the union of its pathways."""
         self._masks: dict[int, list[int]] = {}
-        """For each open signal its alternatives, as sets."""
+        """For each open signal, its alternatives as sets."""
         self._known: dict[int, tuple[int, int]] = {}
-        """For what may matter still: what its completion costs, and that completion."""
+        """For a set of signals that still matter, the information of its completion, and the completion."""
         self._follow()
         for members in completion.components:
             self._settle([place for place in members if not completion.bare[place]])
 
     def pathway(self, firm: Iterable[int], looked_at: Iterable[int]) -> tuple[int, int]:
-        """The least pathway of a clause: its information, and the set.
+        """Return the least pathway of a clause: its information, and the set.
 
         Args:
-            firm: The places of the signals that are to be completed.
-            looked_at: The places of those that are detached: they are on the pathway as they are.
+            firm: The places of the non-detached signals.
+            looked_at: The places of the detached signals, which need no completion.
         """
         free = _set(looked_at)
         cost, found = self._search(firm, free)
         return cost + self.completion.weigh(free), found | free
 
     def _follow(self) -> None:
-        """Find what signals with a single alternative cannot do without."""
+        """Find the causes that signals with a single alternative must have."""
         graph = self.completion
         forced = [
             found[0] if len(found) == 1 and not bare else ()
@@ -78,7 +81,7 @@ class Least:
                 self._whole[place], self._price[place] = whole, price
 
     def _settle(self, members: list[int]) -> None:
-        """Find the least pathways of signals that lead to each other, all other causes being settled."""
+        """Find the least pathways of signals that lead to each other, after those of all other causes."""
         graph = self.completion
         choices = [place for place in members if len(graph.alternatives[place]) > 1]
         causes = {cause for place in members for found in graph.alternatives[place] for cause in found}
@@ -98,7 +101,7 @@ class Least:
             self._known[alone] = cost - graph.information[place], found ^ alone
 
     def _search(self, firm: Iterable[int], free: int) -> tuple[int, int]:
-        """The least set that holds `firm` and an alternative of each signal, where those in `free` cost nothing."""
+        """Return the cost and the set of the least completion of `firm`; signals in `free` cost nothing."""
         found, cost = self._joined(0, 0, firm, free)
         lacking = found & self._open
         if not lacking:
@@ -136,7 +139,7 @@ class Least:
         return best
 
     def _joined(self, found: int, cost: int, places: Iterable[int], free: int) -> tuple[int, int]:
-        """A set and what it costs, with signals added whose pathway is known."""
+        """Return a set and its cost after the addition of signals and their known causes."""
         for place in places:
             whole = self._whole[place]
             more = whole & ~found
@@ -156,7 +159,7 @@ class Least:
         return reach
 
     def _lacking(self, lacking: int, before: int, found: int) -> int:
-        """The signals that lack an alternative, of those that lacked one and those that are new since `before`."""
+        """Return the signals without an alternative, among those of `lacking` and the new ones since `before`."""
         new = found & ~before
         left = lacking | new & self._open
         for place in each(left):

@@ -1,4 +1,4 @@
-"""The names of a policy: signals and slots, numbered and found again."""
+"""The names of a policy: numbered signals and slots, by name."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from ravestate.declare.module import Module
 from ravestate.declare.signal import Signal
 from ravestate.declare.slot import Slot
 from ravestate.errors import DeclarationError, nearest
-from ravestate.policy.plan import SignalPlan, SlotPlan
+from ravestate.policy.model import SignalPlan, SlotPlan
 
 __all__ = ["Names"]
 
@@ -22,7 +22,7 @@ class Names:
     Attributes:
         signals: The numbered signals, those of slots included.
         slots: The numbered slots.
-        faults: Where names that are used twice, or that nobody declares, are put down.
+        faults: The list for faults: names that occur twice, and unknown names.
     """
 
     __slots__ = ("_modules", "_signal_of", "_slot_of", "faults", "signals", "slots")
@@ -49,11 +49,11 @@ class Names:
                 try:
                     if slot.kind != "collection":
                         copy.deepcopy(slot.default)
-                except Exception as error:  # whatever the value's own code raises
+                except Exception as error:  # a value's own code may raise anything
                     self.faults.append(
                         DeclarationError(
-                            f"slot {slot.name} ({slot.origin}): its default cannot be copied for each context ({error}): "
-                            "write default=None, and set it in a rule on rs.startup"
+                            f"slot {slot.name} ({slot.origin}) has a default that a context cannot copy ({error}): "
+                            "write default=None, and set the slot in a rule on rs.startup"
                         )
                     )
                 self._slot_of[slot.name] = plan
@@ -70,14 +70,14 @@ class Names:
         return plan
 
     def twice(self, what: str, name: str, first: str, second: str) -> None:
-        """Put down that two things (`what`: signal, slot, rule) share a name; and where they were declared."""
-        if self._modules[name.split(":")[0]] < 2:  # else the modules' names are the fault
+        """Add the fault that two signals, slots or rules (`what`) have one name, with the places of both."""
+        if self._modules[name.split(":")[0]] < 2:  # else the fault is the name of the modules
             self.faults.append(
                 DeclarationError(f"two {what}s are named {name!r}: {first} and {second}; rename one")
             )
 
     def signal(self, signal: Signal[Any], where: str) -> SignalPlan | None:
-        """The numbered form of a signal that is named at `where`; None, and a fault, if no module declares it."""
+        """Return the record of a signal that a declaration (`where`) names. For an unknown signal, add a fault and return None."""
         plan = self._signal_of.get(signal.name)
         if plan is not None and plan.signal is signal:
             return plan
@@ -85,7 +85,7 @@ class Names:
         return None
 
     def slot(self, slot: Slot[Any], where: str) -> SlotPlan | None:
-        """The numbered form of a slot, likewise."""
+        """Return the record of a slot; arguments and faults as for `signal`."""
         plan = self._slot_of.get(slot.name)
         if plan is not None and plan.slot is slot:
             return plan
@@ -95,9 +95,9 @@ class Names:
     def _unknown(self, what: str, name: str, origin: str, names: Iterable[str], where: str) -> None:
         module = name.split(":")[0]
         if name in names:
-            hint = f"another {what} of that name is in the policy: two modules are named {module!r}"
+            hint = f"the policy has another {what} of that name: two modules are named {module!r}; rename one"
         elif module in self._modules:
-            hint = f"module {module} does not hold it{nearest(name, names)}"
+            hint = f"module {module} has no such {what}{nearest(name, names)}"
         else:
             hint = f"write requires=[{module}] in the module of the rule, or compile module {module} as well"
         self.faults.append(DeclarationError(f"{where}: unknown {what} {name} (declared at {origin}): {hint}"))

@@ -1,4 +1,4 @@
-"""Numbers of rules: checked, and looked up where a setting is named instead."""
+"""The numbers of rules: checks, and the values of settings that stand for numbers."""
 
 from __future__ import annotations
 
@@ -9,17 +9,18 @@ from typing import Any
 from ravestate.declare.module import Module
 from ravestate.declare.rule import Rule
 from ravestate.declare.settings import Number, SettingRef
+from ravestate.declare.wording import short
 from ravestate.errors import DeclarationError, nearest
 
 __all__ = ["Numbers"]
 
 
 class Numbers:
-    """What the numbers of rules come to under some settings.
+    """The values of the numbers of rules under some settings.
 
     Attributes:
-        refers: Whether any was a setting's name.
-        faults: Where numbers out of range, and settings that are not there, are put down.
+        refers: Whether any number so far was a setting.
+        faults: The list for faults: numbers out of range, and missing settings.
     """
 
     __slots__ = ("_modules", "_named", "_settings", "faults", "refers")
@@ -36,14 +37,14 @@ class Numbers:
     def number(
         self, rule: Rule[Any, Any], number: Number, what: str, valid: Callable[[float], bool], wanted: str
     ) -> float:
-        """The number, or 1 if it has a fault.
+        """Return the value of a number, or 1 if it has a fault.
 
         Args:
-            rule: Whose it is.
-            number: The number, or the setting that it is.
-            what: What it is, for the message.
-            valid: Whether a number is in range.
-            wanted: The range in words.
+            rule: The rule that has the number.
+            number: The number, or a setting.
+            what: The argument's name, for the message.
+            valid: Returns whether a number is in range.
+            wanted: The range in words, for the message.
         """
         where = f"rule {rule.name} ({rule.origin}): {what}"
         source = repr(number)
@@ -60,7 +61,7 @@ class Numbers:
         return float(number)
 
     def _setting(self, rule: Rule[Any, Any], ref: SettingRef, where: str) -> float | None:
-        """The value of a named setting: of the class it was taken from, else of the rule's own module."""
+        """Return the value of a setting: of the class that it comes from, else of the rule's own module."""
         own = self._named.get(rule.name.split(":")[0])
         module = own
         if ref.owner is not None and (own is None or own.settings is not ref.owner):
@@ -90,7 +91,7 @@ class Numbers:
         if isinstance(value, bool) or not isinstance(value, (int, float)):
             self.faults.append(
                 DeclarationError(
-                    f"{where}={ref!r}: the setting is {value!r}, not a number; give it a number as its default"
+                    f"{where}={ref!r}: the setting is {short(value)}, not a number; give it a number as its default"
                 )
             )
             return None

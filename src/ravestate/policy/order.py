@@ -1,4 +1,4 @@
-"""The order of modules: core first, then every module behind those that it requires; otherwise as given."""
+"""The order of modules: core first, then each module after those that it requires; otherwise as given."""
 
 from __future__ import annotations
 
@@ -12,16 +12,16 @@ __all__ = ["in_order"]
 
 
 def in_order(given: Iterable[Module], faults: list[DeclarationError]) -> list[Module]:
-    """The given modules and all that they require, in order.
+    """Return the given modules and all that they require, in order.
 
     Args:
-        given: The modules that a user named.
-        faults: Here cycles of `requires`, and names that two modules share, are put down.
+        given: The modules in the order of the user.
+        faults: The list for faults: cycles of `requires`, and names that two modules share.
     """
     ordered: dict[Module, None] = {core: None}
     names = {core.name: core}
     for wanted in given:
-        way = {wanted: iter(wanted.requires)}  # each is required by the one before it
+        way = {wanted: iter(wanted.requires)}  # each requires the next one
         while way:
             module, ahead = next(reversed(way.items()))
             required = next(ahead, None)
@@ -30,8 +30,8 @@ def in_order(given: Iterable[Module], faults: list[DeclarationError]) -> list[Mo
                 cycle = [*members[members.index(required) :], required]
                 faults.append(
                     DeclarationError(
-                        f"modules require each other in a cycle: {' -> '.join(m.name for m in cycle)}; take one `requires` "
-                        "out, or put what both need into a module of its own"
+                        f"modules require each other in a cycle: {' -> '.join(m.name for m in cycle)}; remove one `requires`, "
+                        "or move the common names to a module of their own"
                     )
                 )
             elif required is not None:

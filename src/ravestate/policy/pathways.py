@@ -1,9 +1,9 @@
-"""All pathways of a clause (L8), for whoever asks: explanations, diagnosis, curiosity.
+"""All pathways of a clause (L8), for explanations.
 
 The pathways of a signal are, for each of its alternatives, the signal and every union of pathways of the
-alternative's signals. On a cycle it matters what is on the way already; there, a signal has pathways for each way on
-which it is come to. Nothing else needs pathways one by one: the count of rules that have a signal on any of them is a
-question of reachability (`Completion`), and the least is searched for (`Least`).
+alternative's signals. A cycle ends at a signal that is on the way already, so its signals have pathways of their own
+for each way. Nothing but an explanation needs the pathways one by one: `Completion` counts rules by reachability, and
+`Least` searches for the least pathway.
 """
 
 from __future__ import annotations
@@ -14,22 +14,21 @@ from typing import Any
 
 from ravestate.declare.signal import Signal
 from ravestate.policy.completion import Completion
-from ravestate.policy.plan import Clause, Need
+from ravestate.policy.model import Clause, Need
 
 __all__ = ["MAX_PATHWAYS", "MAX_UNIONS", "Pathways"]
 
 MAX_PATHWAYS = 256
-"""Pathways of one clause, and of one signal, that are carried on: the cheapest. There may be exponentially many."""
+"""The greatest number of pathways of a clause, and of a signal: the cheapest. There may be exponentially many."""
 
 MAX_UNIONS = 200_000
-"""Unions that are made for one clause. Of a clause that wants more, whose causes are entangled beyond
-overview, only the least pathway is told."""
+"""The greatest number of unions for one clause. A clause that needs more shows its least pathway alone."""
 
 Costs = dict[int, int]
-"""Sets of signals, and what each costs."""
+"""Sets of signals, with the information of each."""
 
-Finding = Generator["Finding", Costs, Costs]
-"""A computation that asks for the results of others, so that no depth of causes is a depth of calls."""
+Search = Generator["Search", Costs, Costs]
+"""A computation that yields others and receives their results, so that a depth of causes is no depth of calls."""
 
 
 class _Entangled(Exception):
@@ -37,18 +36,21 @@ class _Entangled(Exception):
 
 
 class Pathways:
-    """The pathways of a policy; those of signals are remembered."""
+    """The pathways of a policy, with a cache."""
 
-    __slots__ = ("_known", "_unions", "_within", "completion")
+    __slots__ = ("_known", "_of_clauses", "_unions", "_within", "completion")
 
     def __init__(self, completion: Completion) -> None:
         self.completion = completion
+        self._of_clauses: dict[Clause, tuple[frozenset[Signal[Any]], ...]] = {}
         self._known: dict[int, Costs] = {}
-        self._within: dict[tuple[int, int], Costs] = {}  # by place and what of its cycle is on the way
+        self._within: dict[tuple[int, int], Costs] = {}  # by place and the part of its cycle on the way
         self._unions = 0
 
     def of_clause(self, clause: Clause) -> tuple[frozenset[Signal[Any]], ...]:
-        """The pathways of a clause, the least first, then the cheapest; at most `MAX_PATHWAYS`."""
+        """Return the pathways of a clause: the least first, then the cheapest; at most `MAX_PATHWAYS`."""
+        if clause in self._of_clauses:
+            return self._of_clauses[clause]
         self._unions = 0
         try:
             found = _run(self._of_needs(clause.needs))
@@ -58,20 +60,22 @@ class Pathways:
             self._within.clear()
         found[clause.least] = -1
         ordered = sorted(found, key=lambda pathway: (found[pathway], pathway))
-        return tuple(self.completion.signals(pathway) for pathway in ordered[:MAX_PATHWAYS])
+        pathways = tuple(self.completion.signals(pathway) for pathway in ordered[:MAX_PATHWAYS])
+        self._of_clauses[clause] = pathways
+        return pathways
 
-    def _of_needs(self, needs: Iterable[Need]) -> Finding:
+    def _of_needs(self, needs: Iterable[Need]) -> Search:
         found: Costs = {0: 0}
         for need in needs:
             place = self.completion.place[need.signal.index]
-            if need.detached:  # it is on the pathway as it is
+            if need.detached:  # it needs no completion
                 found = self._product(found, {1 << place: self.completion.information[place]})
             else:
                 found = self._product(found, (yield self._of_signal(place, 0)))
         return found
 
-    def _of_signal(self, place: int, way: int) -> Finding:
-        """The pathways of a signal when those of `way` are on the way already (cycles are cut there)."""
+    def _of_signal(self, place: int, way: int) -> Search:
+        """Find the pathways of a signal; a cycle ends at a signal of `way`."""
         graph = self.completion
         alone = 1 << place
         if way & alone:
@@ -95,7 +99,7 @@ class Pathways:
         return found
 
     def _product(self, left: Costs, right: Costs) -> Costs:
-        """Every union of one of `left` with one of `right`."""
+        """Return every union of a set of `left` with one of `right`."""
         self._unions += len(left) * len(right)
         if self._unions > MAX_UNIONS:
             raise _Entangled
@@ -117,9 +121,9 @@ def _cheapest(found: Costs) -> Costs:
     }
 
 
-def _run(finding: Finding) -> Costs:
-    """Carry a computation out, and those that it asks for."""
-    pending = [finding]
+def _run(search: Search) -> Costs:
+    """Run a computation and all that it yields."""
+    pending = [search]
     answer: Any = None
     while True:
         try:

@@ -1,4 +1,4 @@
-"""The policy: compiled modules, immutable, shared by any number of contexts (L6)."""
+"""The policy: compiled modules, immutable, for any number of contexts (L6)."""
 
 from __future__ import annotations
 
@@ -12,43 +12,27 @@ from ravestate.declare.signal import Signal
 from ravestate.declare.slot import Slot
 from ravestate.errors import DeclarationError, DeclarationErrors, nearest
 from ravestate.policy.causes import Causes
-from ravestate.policy.plan import Clause, RulePlan, SignalPlan, SlotPlan
+from ravestate.policy.completion import Completion
+from ravestate.policy.model import ClauseView, RulePlan, SignalPlan, SlotPlan
+from ravestate.policy.pathways import Pathways
 
 if TYPE_CHECKING:
     from ravestate.policy.conflicts import Conflict
     from ravestate.policy.findings import Finding
+    from ravestate.policy.source import Source
 
 __all__ = ["Policy"]
 
 
 class Policy:
-    """What is known of a set of modules before anything runs. Made by ``rs.compile``.
+    """A set of compiled modules, made by ``rs.compile``.
 
     Attributes:
-        modules: The modules, each behind those that it requires.
+        modules: The modules, each after those that it requires.
         rules: The rules by qualified name, in declaration order.
         signals: The signals by qualified name, those of slots included.
         slots: The slots by qualified name.
     """
-
-    __slots__ = (
-        "causes",
-        "clause_plans",
-        "declared",
-        "guarded",
-        "modules",
-        "plan_of",
-        "refers",
-        "rule_plans",
-        "rules",
-        "settings",
-        "signal_of",
-        "signal_plans",
-        "signals",
-        "slot_of",
-        "slot_plans",
-        "slots",
-    )
 
     def __init__(
         self,
@@ -59,6 +43,7 @@ class Policy:
         slot_plans: tuple[SlotPlan, ...],
         rule_plans: tuple[RulePlan, ...],
         causes: Causes,
+        completion: Completion,
         refers: bool,
         settings: Mapping[str, Any],
     ) -> None:
@@ -68,6 +53,7 @@ class Policy:
         self.slot_plans = slot_plans
         self.rule_plans = rule_plans
         self.causes = causes
+        self.pathways = Pathways(completion)
         self.refers = refers
         self.settings = settings
         clauses = [clause for rule in rule_plans for clause in (*rule.clauses, *rule.until)]
@@ -81,7 +67,7 @@ class Policy:
         self.slots: Mapping[str, Slot[Any]] = MappingProxyType({p.name: p.slot for p in slot_plans})
 
     def rule_plan(self, rule: str | Rule[Any, Any]) -> RulePlan:
-        """The numbered form of a rule.
+        """Return the record of a rule.
 
         Raises:
             DeclarationError: The policy has no such rule.
@@ -93,10 +79,10 @@ class Policy:
         return found
 
     def utility(self, rule: str | Rule[Any, Any]) -> float:
-        """The utility of a rule in nats: the greatest over its clauses (L9). Weight and cooldown apart.
+        """Return the utility of a rule in nats, without weight and cooldown: the greatest over its clauses (L9).
 
-        It is exact unless dozens of signals on a clause's pathways each have several causes which have causes in common
-        in turn; then it may be somewhat too great (``policy/least.py``).
+        It may be somewhat too great if dozens of signals on a pathway each have several causes with common causes; else
+        it is exact (``policy/least.py``).
 
         Args:
             rule: The rule, or its qualified name.
@@ -118,50 +104,69 @@ class Policy:
         """
         return max((clause.utility for clause in self.rule_plan(rule).clauses), default=0.0)
 
-    def clauses(self, rule: str | Rule[Any, Any]) -> tuple[Clause, ...]:
-        """The clauses of a rule: each with ``.signals`` (declared), ``.pathways`` (completed), ``.utility`` (nats).
+    def clauses(self, rule: str | Rule[Any, Any]) -> tuple[ClauseView, ...]:
+        """Return the clauses of a rule: for each its signals, its pathways and its utility.
 
-        There may be exponentially many pathways. They are worked out when they are asked for: the one with the least
-        information first, then the cheapest, 256 at most; only the first where cycles are too entangled for that.
+        Args:
+            rule: The rule, or its qualified name.
 
         Raises:
             DeclarationError: The policy has no such rule.
+
+        Example:
+            >>> import ravestate as rs
+            >>> demo = rs.Module("demo")
+            >>> heard, word = demo.signal("heard"), demo.signal("word")
+            >>> @demo.rule(when=heard, emits=word)
+            ... async def listen(ctx): ...
+            >>> @demo.rule(when=word)
+            ... async def answer(ctx): ...
+            >>> (clause,) = rs.compile(demo).clauses("demo:answer")
+            >>> clause.signals, [sorted(map(str, pathway)) for pathway in clause.pathways]
+            ((demo:word,), [['demo:heard', 'demo:word']])
         """
-        return self.rule_plan(rule).clauses
+        return tuple(
+            ClauseView(clause.signals, self.pathways.of_clause(clause), clause.utility)
+            for clause in self.rule_plan(rule).clauses
+        )
 
     def conflicts(self) -> tuple[Conflict, ...]:
-        """The pairs of rules that exclude each other for a common cause (L10): who wins, by how many nats.
+        """Return the pairs of rules that exclude each other for a common cause (L10), with the winner and its lead.
 
-        A thousand rules on one slot are half a million pairs.
+        A thousand rules on one slot make half a million pairs.
         """
         from ravestate.policy.conflicts import find_conflicts
 
         return find_conflicts(self)
 
-    def findings(self) -> tuple[Finding, ...]:
-        """What is allowed but probably not meant: rules that cannot run or win, ties, signals nobody hears.
+    def findings(self, source: Source | None = None) -> tuple[Finding, ...]:
+        """Return remarks on probable mistakes: rules that cannot run or win, endless loops, ties, signals without listeners.
 
-        A rule has one finding of a kind at most; of several ties that with the rule declared first.
+        A rule has at most one finding of each kind; of several ties, the one with the rule declared first.
+
+        Args:
+            source: Returns the source of a rule's function, such as ``inspect.getsource``. With it, the findings name
+                undeclared reads, writes and emits, and a forgotten ``await``.
         """
         from ravestate.policy.findings import find_all
 
-        return find_all(self)
+        return find_all(self, source)
 
     def diagram(self, format: Literal["svg", "dot", "mermaid"] = "svg") -> str:
-        """The Signal-Rule-Slot diagram in the paper's notation, as text of the format.
+        """Return the Signal-Rule-Slot diagram in the paper's notation, as text in the given format.
 
         Raises:
             ValueError: The format is unknown.
         """
-        from ravestate.policy.diagram import draw
+        from ravestate.draw import draw
 
         return draw(self, format)
 
     def with_settings(self, settings: Mapping[str, Any]) -> Policy:
-        """This policy with the numbers that settings name replaced; itself if it names none.
+        """Return this policy with the values of settings in place of the defaults; itself if no rule names a setting.
 
         Args:
-            settings: For each module its settings value (an instance of its ``rs.Settings`` subclass).
+            settings: By a module's name, an instance of its ``rs.Settings`` subclass.
 
         Raises:
             DeclarationErrors: The settings make a declaration impossible.
@@ -173,11 +178,11 @@ class Policy:
         return build(self.modules, self.declared, settings)
 
     def with_rule(self, rule: Rule[Any, Any], settings: Mapping[str, Any] | None = None) -> Policy:
-        """This policy and one more rule, over the signals and slots that it has.
+        """Return this policy with one more rule on its signals and slots.
 
         Args:
             rule: The rule.
-            settings: What the settings that it names are; by default what `with_settings` was given.
+            settings: The values of settings, as for `with_settings`; by default those of this policy.
 
         Raises:
             DeclarationErrors: The rule does not fit.

@@ -1,4 +1,4 @@
-"""Rules that could never run."""
+"""Rules that can never run."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ __all__ = ["check_reachable"]
 
 
 def check_reachable(causes: Causes, faults: list[DeclarationError]) -> None:
-    """Refuse rules that wait, directly or not, for an effect of their own, with no way in from outside.
+    """Refuse rules that wait for their own effects, directly or not, with no way in from outside.
 
-    Slots may be put from outside and detached effects make loops on purpose: those are findings.
+    Slots, which code outside may write, and detached effects, which make loops on purpose, lead to findings instead.
     """
     given = {s.index for s in causes.signals if s.input or s.slot is not None}
     given |= {signal for rule in causes.rules if rule.detached for signal in rule.raises}
@@ -28,8 +28,8 @@ def check_reachable(causes: Causes, faults: list[DeclarationError]) -> None:
         raisers = few(r.name for s in lacking for r in causes.all_causes[s.index])
         faults.append(
             DeclarationError(
-                f"rule {rule.name} ({rule.rule.origin}) is unreachable: it waits for "
-                f"{few(s.name for s in lacking)}, raised only by {raisers}, which wait for each "
-                f"other; if it comes from outside, declare it with input=True"
+                f"rule {rule.name} ({rule.rule.origin}) is unreachable: it waits for {few(s.name for s in lacking)}; "
+                f"only {raisers} may raise it, and they wait for each other; if it comes from outside, declare it "
+                "with input=True"
             )
         )

@@ -1,4 +1,4 @@
-"""Rules, numbered: what they may do, and the clauses by which they fire."""
+"""The numbering of rules: their slots, their signals and their clauses."""
 
 from __future__ import annotations
 
@@ -10,23 +10,26 @@ from ravestate.declare.core import activity, pressure
 from ravestate.declare.rule import Rule
 from ravestate.errors import DeclarationError
 from ravestate.policy.clauses import Conjunction, normal_form
+from ravestate.policy.model import Clause, Need, RulePlan, SignalPlan
 from ravestate.policy.names import Names
 from ravestate.policy.numbers import Numbers
-from ravestate.policy.plan import Clause, Need, RulePlan, SignalPlan
 
 __all__ = ["Rules"]
 
 FLAGS = (f"{activity.name}:", f"{pressure.name}:")
-"""How the signals of the built-in flags begin. An activation that stands on one of them is neither activity nor pressure:
-else it would withdraw what it stands on, come back, and so on, all in one instant."""
+"""The beginnings of the names of the built-in flags' signals.
+
+An activation on one of them counts neither as activity nor as pressure. Otherwise it would withdraw its own signal,
+come back, and so on, all in one instant.
+"""
 
 
 class Rules:
-    """The rules of a policy in their order, as they are added.
+    """The rules of a policy, in the order of their addition.
 
     Attributes:
-        plans: The numbered rules.
-        faults: Where what is wrong with them is put down.
+        plans: The records of the rules.
+        faults: The list for faults.
     """
 
     __slots__ = ("_count", "_named", "faults", "names", "numbers", "plans")
@@ -40,7 +43,7 @@ class Rules:
         self._count = 0  # of clauses
 
     def add(self, rule: Rule[Any, Any]) -> None:
-        """Number a rule; its faults are put down."""
+        """Number a rule, and add its faults to the list."""
         other = self._named.setdefault(rule.name, rule)
         if other is not rule:
             self.names.twice("rule", rule.name, other.origin, rule.origin)
@@ -99,7 +102,7 @@ class Rules:
         if not conjunction.constraints:
             self.faults.append(
                 DeclarationError(
-                    f"{where}: {source!r} waits for no signal; a predicate on a slot only gates: write "
+                    f"{where}: {source!r} waits for no signal, and a predicate on a slot only gates: write "
                     f"{conjunction.guards[0].slot.name.split(':')[-1]}.changed & ..."
                 )
             )
@@ -141,7 +144,7 @@ class Rules:
                 DeclarationError(
                     f"{where}: {constraint.signal} can never be at least {low:g} s and at most {high:g} s old: write "
                     f".min_age({low:g}).max_age(None)"
-                    + (" (max_age is 5 s unless you say otherwise)" if constraint.max_age_ == 5.0 else "")
+                    + (" (max_age is 5 s by default)" if constraint.max_age_ == 5.0 else "")
                 )
             )
-        return Need(clause, index, constraint, signal, low, high)
+        return Need(clause, index, signal, low, high, constraint.is_detached, constraint.predicates)

@@ -1,4 +1,4 @@
-"""Utility (L9): what a clause says about the situation, in nats, and what that makes of it in a contest."""
+"""Utility (L9): the information of a clause about the situation, in nats."""
 
 from __future__ import annotations
 
@@ -8,23 +8,28 @@ from collections.abc import Sequence
 from ravestate.policy.causes import Causes
 from ravestate.policy.completion import UNIT, Completion
 from ravestate.policy.least import Least
-from ravestate.policy.pathways import Pathways
-from ravestate.policy.plan import NO_INFORMATION, RulePlan, SignalPlan
+from ravestate.policy.model import RulePlan, SignalPlan
 
-__all__ = ["PREDICATE", "assign_utilities"]
+__all__ = ["NO_INFORMATION", "PREDICATE", "assign_utilities"]
 
 PREDICATE = math.log(2)
 """Nats that a ``where`` or ``holds`` predicate adds: it halves the prior (L9)."""
 
+NO_INFORMATION = 1e-9
+"""Nats at which a clause without information (U = 0) competes, so that its weight and cooldown still count."""
 
-def assign_utilities(signals: Sequence[SignalPlan], rules: Sequence[RulePlan], causes: Causes) -> None:
-    """Give every clause its utility, its base and the way to its pathways, and mark cyclic clauses."""
+
+def assign_utilities(signals: Sequence[SignalPlan], rules: Sequence[RulePlan], causes: Causes) -> Completion:
+    """Set the utility, the base and the least pathway of every clause, and mark cyclic clauses.
+
+    Returns:
+        The graph in which clauses are completed, for all other pathways.
+    """
     completion = Completion(signals, rules, causes)
     least = Least(completion)
-    pathways = Pathways(completion)
     of = causes.components.of
     for rule in rules:
-        # What a rule raises leads to what its clauses want: to raise what leads there too makes a cycle.
+        # A clause is cyclic if a signal that its rule raises leads to one of its needs.
         raised = set[int]() if rule.detached else {of[signal] for signal in rule.raises}
         for clause in rule.clauses:
             firm = [need.signal.index for need in clause.needs if not need.detached]
@@ -34,7 +39,7 @@ def assign_utilities(signals: Sequence[SignalPlan], rules: Sequence[RulePlan], c
             places = [completion.place[s] for s in firm]
             looked_places = [completion.place[s] for s in looked_at]
             cost, clause.least = least.pathway(places, looked_places)
-            # Rounded, as predicates add what is no multiple of the unit.
+            # Rounded, because the information of a predicate is no multiple of the unit.
             clause.utility = round(cost / UNIT + predicates * PREDICATE, 12)
             clause.base = (clause.utility or NO_INFORMATION) * rule.weight
-            clause.completed = pathways
+    return completion

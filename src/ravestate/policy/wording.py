@@ -1,4 +1,4 @@
-"""How messages list names."""
+"""The wording of lists of names in messages."""
 
 from __future__ import annotations
 
@@ -7,10 +7,11 @@ from collections.abc import Iterable
 __all__ = ["few"]
 
 SHOWN = 8
+"""The greatest number of names in a list."""
 
 
 def few(names: Iterable[str]) -> str:
-    """Names, each once, in a row; of many the first.
+    """Return names in a row, each once; after the first eight, a count.
 
     Example:
         >>> few(["m:a", "m:b", "m:a"]), few(f"m:r{number}" for number in range(100))

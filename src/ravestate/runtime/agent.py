@@ -1,4 +1,4 @@
-"""An agent apart from any conversation: of it any number of contexts can be made."""
+"""An agent apart from any conversation; each conversation gets a context of its own."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ __all__ = ["Agent"]
 
 
 class Agent:
-    """A policy and its settings, read and checked once, which all contexts made of it share.
+    """A policy and its settings, read and checked once, and shared by all contexts of the agent.
 
     Args:
         modules: As for `Context`.
@@ -32,10 +32,10 @@ class Agent:
         self._options: dict[str, Any] = {**options, "settings": self.settings}
 
     def context(self, **options: Any) -> Context:
-        """Make another context, which is to be entered once.
+        """Return a new context, to be started once.
 
         Args:
-            options: As for `Context`, where they differ from those of the agent; but for ``settings``.
+            options: As for `Context`, except ``settings``; they go before the agent's own.
         """
         merged: Any = self._options | options
         return Context(self.policy, **merged)

@@ -1,4 +1,4 @@
-"""A context's clock: its loop's, from zero. It can be halted, set forward while it stands, and started again."""
+"""A context's clock: it starts at zero with the loop's time, and can be halted, set forward and started again."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ __all__ = ["Clock"]
 
 
 class Clock:
-    """Seconds since the context began, without those for which it stood still.
+    """The seconds since a context started, without the time in which the clock was halted.
 
     Args:
-        loop: Whose time it follows.
+        loop: The loop whose time the clock follows.
     """
 
     __slots__ = ("_halted", "_loop", "_origin", "_sleepers")
@@ -23,23 +23,23 @@ class Clock:
         self._sleepers: dict[asyncio.Future[None], tuple[float, asyncio.TimerHandle | None]] = {}
 
     def now(self) -> float:
-        """The time (seconds)."""
+        """Return the time (seconds)."""
         return self._loop.time() - self._origin if self._halted is None else self._halted
 
     def on_loop(self, time: float) -> float:
-        """When it will be `time` (seconds) on the loop's clock, as long as this one is not halted."""
+        """Convert a time on this clock to the loop's time (seconds), unless this clock is halted until then."""
         return self._origin + time
 
     @property
     def halted(self) -> bool:
-        """Whether it stands still."""
+        """Whether the clock is halted."""
         return self._halted is not None
 
     async def sleep(self, seconds: float) -> None:
-        """Wait until so many seconds have passed on this clock; 0 or less lets others have a turn.
+        """Wait until so many seconds have passed on this clock; 0 or less gives other tasks a turn.
 
         Raises:
-            ValueError: NaN is no time.
+            ValueError: The number is NaN.
         """
         if seconds != seconds:
             raise ValueError("cannot sleep for nan seconds")
@@ -60,11 +60,11 @@ class Clock:
                 timer.cancel()
 
     def next_waking(self) -> float | None:
-        """When the first who sleeps will wake (seconds), if anybody sleeps."""
+        """Return the time (seconds) at which the first sleeper wakes, if there is one."""
         return min((until for until, _ in self._sleepers.values()), default=None)
 
     def halt(self) -> None:
-        """Stand still."""
+        """Halt the clock."""
         if self._halted is None:
             self._halted = self.now()
             for sleeper, (until, timer) in self._sleepers.items():
@@ -73,7 +73,7 @@ class Clock:
                 self._sleepers[sleeper] = until, None
 
     def set(self, time: float) -> None:
-        """While it stands: make it `time` (seconds, not before what it is), and wake whose time has come."""
+        """Set a halted clock forward to `time` (seconds), and wake the sleepers whose time has come."""
         if self._halted is not None:
             self._halted = max(self._halted, time)
             for sleeper, (until, _) in self._sleepers.items():
@@ -81,7 +81,7 @@ class Clock:
                     _wake(sleeper)
 
     def go(self) -> None:
-        """Go on from where it stands."""
+        """Start a halted clock again from its present time."""
         if self._halted is not None:
             self._origin = self._loop.time() - self._halted
             self._halted = None

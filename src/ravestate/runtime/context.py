@@ -15,15 +15,15 @@ from ravestate.declare.rule import Rule
 from ravestate.declare.signal import Signal
 from ravestate.declare.slot import Slot
 from ravestate.declare.wording import spelt
-from ravestate.engine.effects import Ended
 from ravestate.engine.engine import DEFAULT_PATIENCE, Engine
-from ravestate.engine.events import AddRule, Emit, Event, Start, Stop, Wipe, Write
+from ravestate.engine.events import Emit, Event, Start, Stop, Wipe, Write
 from ravestate.engine.explain import Explanation, explain
 from ravestate.engine.snapshot import snapshot
 from ravestate.engine.trace import Record
 from ravestate.errors import DeclarationError, EngineError, UndeclaredError, nearest
 from ravestate.policy.compile import compile_policy
 from ravestate.policy.policy import Policy
+from ravestate.runtime.hooks import Hooks
 from ravestate.runtime.journal import Taken
 from ravestate.runtime.runner import Runner
 from ravestate.settings import load_settings
@@ -33,7 +33,7 @@ __all__ = ["Context"]
 T = TypeVar("T")
 
 TRACE_LIMIT = 100_000
-"""Records of its trace that a context keeps."""
+"""Records that a context keeps in its trace."""
 
 
 class Context:
@@ -41,11 +41,11 @@ class Context:
 
     Args:
         modules: Modules to compile, or one compiled `Policy` to share.
-        settings: For each module's name the values of its settings; they go before the environment's.
-        seed: Of all random choices that rules make through ``ctx.random``; different every time by default.
+        settings: The settings of each module, by its name; they go before the environment's.
+        seed: The seed of all random choices that rules make through ``ctx.random``; different every time by default.
         patience: Seconds that a rival under pressure has, unless its rule says otherwise (L16).
-        trace: Whether to keep what happens, for ``trace`` and ``explain``; or a function to be told.
-        journal: Told of every event with its time, and of when effects were taken; e.g. a `Journal`.
+        trace: Whether to keep records of what happens, for ``trace`` and ``explain``; or a function that takes them.
+        journal: A function, e.g. a `Journal`. It takes every event, and `Taken` before effects, with the time.
 
     Raises:
         DeclarationErrors: The modules, or the settings, do not fit.
@@ -81,7 +81,7 @@ class Context:
         _check_seconds(patience)
         self.settings = load_settings(policy.modules, settings)
         self.trace: deque[Record] = deque(maxlen=TRACE_LIMIT)
-        """What has happened lately, if it is kept."""
+        """The records of what has happened lately, if the context keeps them."""
         self._policy = policy.with_settings(self.settings)
         self._seed = seed
         self._patience = patience
@@ -91,58 +91,65 @@ class Context:
         self._journal = journal
         self._runner: Runner | None = None
         self._stopping: asyncio.Event | None = None
-        self._on_ended: Callable[[Ended], None] | None = None
-        self._on_failed: Callable[[str, BaseException], None] | None = None
-        self._listeners: dict[str, Callable[[Any], None]] = {}
 
     # ------------------------------------------------------------------------------------ life
 
     async def __aenter__(self) -> Context:
+        await self.start()
+        return self
+
+    async def start(self, hooks: Hooks | None = None) -> None:
+        """Start the context, as ``async with`` does; `stop` ends it.
+
+        Args:
+            hooks: Functions that follow what happens, e.g. for a simulation.
+
+        Raises:
+            EngineError: The context was started before.
+        """
         if self._runner is not None:
             raise EngineError("a context runs once: make another one of the same policy")
-        engine = Engine(self._policy, patience=self._patience, report_ends=self._on_ended is not None)
+        hooks = hooks or Hooks()
+        engine = Engine(self._policy, patience=self._patience, report_ends=hooks.on_ended is not None)
         self._stopping = asyncio.Event()
         loop = asyncio.get_running_loop()
-        self._runner = Runner(engine, loop, self.settings, self._seed, self.ask_to_stop)
+        self._runner = Runner(engine, loop, self.settings, self._seed, self.ask_to_stop, hooks, self._journal)
         self._attach()
-        self._runner.on_event = self._journal
-        self._runner.on_ended = self._on_ended
-        self._runner.on_failed = self._on_failed
-        for signal, listener in self._listeners.items():
-            self._runner.listen(signal, listener)
         self._runner.receive(Start())
-        return self
 
     async def __aexit__(self, *_: object) -> None:
         await self.stop()
 
     async def stop(self, grace: float = 5.0) -> None:
-        """End in order: ``rs.shutdown`` is raised, what begins from then on may finish within `grace` seconds, the rest is
-        cancelled and may clean up. A loop that is to hold up nobody is declared ``background=True``. Cancelling this breaks
-        off: nothing is waited for any more."""
+        """End the context in order.
+
+        The context raises ``rs.shutdown``. Rules that start from then on have `grace` seconds to finish. Then all rules
+        are cancelled, and may clean up. A rule that runs for ever does not delay this if it says ``background=True``.
+        If this is cancelled, it waits for nothing any more.
+        """
         runner = self._running()
         self.ask_to_stop()
         runner.resume()
-        known = runner.alive()
+        known = runner.waits.alive()
         runner.receive(Stop())
         try:
-            await runner.wait_for_others(known, grace)
+            await runner.waits.until_others_end(known, grace)
             await runner.close()
         except asyncio.CancelledError:
             await runner.close(at_once=True)
             raise
 
     def ask_to_stop(self) -> None:
-        """Let `until_stopped` return; the context goes on until it is left. From any thread."""
+        """Let `until_stopped` return; the context goes on until its ``async with`` ends. From any thread."""
         if self._runner is not None and self._stopping is not None:
-            with contextlib.suppress(RuntimeError):  # the loop is closed: it has ended already
+            with contextlib.suppress(RuntimeError):  # the context has ended, and its loop is closed
                 self._runner.loop.call_soon_threadsafe(self._stopping.set)
 
     async def until_stopped(self) -> None:
-        """Wait until a rule (``ctx.stop()``) or somebody outside has asked the context to end.
+        """Wait until a rule (``ctx.stop()``) or other code (`ask_to_stop`) has asked the context to end.
 
         Raises:
-            RavestateError: What a rule has given as the reason (``ctx.stop(failure)``).
+            RavestateError: A rule has given this error as the reason (``ctx.stop(failure)``).
             EngineError: The engine has failed, which is a fault of this library's.
         """
         runner = self._running()
@@ -151,21 +158,28 @@ class Context:
         if runner.fault is not None:
             raise runner.fault
 
-    async def quiet(self) -> None:
-        """Wait until no rule, apart from those in the background, runs or is kept waiting."""
-        await self._running().quiet()
+    async def quiet(self, slot: Slot[Any] | None = None) -> None:
+        """Wait until no foreground rule runs or waits for consent.
+
+        Args:
+            slot: Wait only for rules that may write this slot, or cause another rule to write it.
+        """
+        await self._running().quiet(None if slot is None else slot.name)
 
     # ------------------------------------------------------------------------------------ its clock
 
     def pause(self) -> None:
-        """Halt the context's clock: what comes from outside is still taken, but no rule starts, nothing falls due, and
-        ``ctx.sleep`` does not end. A rule that computes, or waits for something else, goes on. On the context's loop
-        only, as are `step` and `resume`."""
+        """Halt the context's clock; call this, `step` and `resume` on the context's loop only.
+
+        The context still takes events from outside. No rule starts, nothing falls due, and ``ctx.sleep`` does not end. A
+        rule that computes, or waits for something else, goes on.
+        """
         self._running().pause()
 
     def step(self) -> bool:
-        """While it is paused: do one thing more, which may be that several rules start at once (one wave). If nothing is
-        due, set the clock forward to when something will be.
+        """Do the next thing in a paused context; several rules may start at once (one wave).
+
+        If nothing is due now, set the clock forward to the next time at which something is.
 
         Returns:
             Whether there was anything to do.
@@ -173,7 +187,7 @@ class Context:
         return self._running().step()
 
     def resume(self) -> None:
-        """Let the clock of a paused context go on from where it stands."""
+        """Start the clock of a paused context again from its present time."""
         self._running().resume()
 
     @property
@@ -184,7 +198,7 @@ class Context:
     # ------------------------------------------------------------------------------------ acting from outside
 
     def put(self, slot: Slot[T], value: T) -> None:
-        """Write a slot from outside; from any thread. Once the context has ended, nothing happens.
+        """Write a slot from outside; from any thread. After the context's end this does nothing.
 
         Raises:
             UndeclaredError: The policy does not have the slot.
@@ -195,7 +209,7 @@ class Context:
         self._running().receive(Write(slot.name, value))
 
     def emit(self, signal: Signal[T], payload: T | None = None) -> None:
-        """Raise a signal from outside; from any thread. Once the context has ended, nothing happens.
+        """Raise a signal from outside; from any thread. After the context's end this does nothing.
 
         Raises:
             UndeclaredError: The policy does not have the signal.
@@ -204,58 +218,47 @@ class Context:
         self._running().receive(Emit(signal.name, payload))
 
     def wipe(self, signal: Signal[Any]) -> None:
-        """Withdraw the live spikes of a signal and all that they have caused (L20); from any thread."""
+        """Withdraw the live spikes of a signal, and all spikes that they have caused (L20); from any thread."""
         self._known(signal, self.policy.signals, "signal")
         self._running().receive(Wipe(signal.name))
 
     def add_rule(self, rule: Rule[Any, Any]) -> None:
-        """Add a rule to this context alone, over the signals and slots that it has; on the context's loop only.
+        """Add a rule over this context's signals and slots, to this context alone; from any thread.
 
         Raises:
             DeclarationErrors: The rule does not fit.
         """
-        self._running().receive(AddRule(self.policy.with_rule(rule, self.settings)))
+        self._running().add_rule(rule)
 
     async def next(self, signal: Signal[T], timeout: float | None = None) -> T:  # noqa: ASYNC109  # the public name
-        """The payload of the next spike of a signal.
+        """Wait for the next spike of a signal, and return its payload.
 
         Args:
             signal: The signal, e.g. ``rawio.output.changed``.
             timeout: Seconds to wait; for ever by default.
 
         Raises:
-            TimeoutError: There was none in time.
-            EngineError: The context ended before there was one.
+            TimeoutError: No spike came in time.
+            EngineError: The context ended before a spike came.
             UndeclaredError: The policy does not have the signal.
         """
         self._known(signal, self.policy.signals, "signal")
         runner = self._running()
         if runner.closed:
             raise runner.fault or EngineError(f"the context has ended: there will be no {signal.name}")
-        future: asyncio.Future[Any] = runner.loop.create_future()
-        runner.futures.setdefault(signal.name, []).append(future)
-        runner.engine.watched[signal.name] = 1
         try:
-            return await (future if timeout is None else asyncio.wait_for(future, timeout))
+            async with asyncio.timeout(timeout):
+                return await runner.listeners.next(signal.name)
         except TimeoutError:
             raise TimeoutError(f"no {signal.name} within {timeout:g} s") from None
-        finally:
-            waiting = runner.futures.get(signal.name, [])
-            if future in waiting:
-                waiting.remove(future)
-                if not waiting:
-                    del runner.futures[signal.name]
-                    if signal.name not in runner.listeners:
-                        runner.engine.watched.pop(signal.name, None)
 
     # ------------------------------------------------------------------------------------ looking in
 
     def observe(self, observer: Callable[[Record], None]) -> Callable[[], None]:
-        """Have a function called with every record of what happens from now on, and return what ends that.
+        """Call a function with every record of what happens from now on, and return a function that ends this.
 
-        The function is called on the context's loop, in the midst of things: it must be quick, must not raise, and must
-        not act on the context. An engine that nobody observes makes no records, so that looking costs nothing when
-        nobody looks.
+        The observer runs on the context's loop, in the middle of an event. It must be quick, must not raise, and must not
+        act on the context. Without observers the engine makes no records, so a context pays only for what is observed.
         """
         self._observers.append(observer)
         self._attach()
@@ -275,48 +278,46 @@ class Context:
                 observer(record)
 
         if self._runner is not None:
-            self._runner.engine.tracer = (
-                tell_all if len(observers) > 1 else observers[0] if observers else None
-            )
+            self._runner.trace(tell_all if len(observers) > 1 else observers[0] if observers else None)
 
     @property
     def policy(self) -> Policy:
         """The policy, with the rules that were added to this context."""
-        return self._policy if self._runner is None else self._runner.engine.policy
+        return self._policy if self._runner is None else self._runner.policy
 
     @property
     def now(self) -> float:
-        """Seconds since the context began."""
-        return self._running().now()
+        """The seconds since the context started."""
+        return self._running().now
 
     def read(self, slot: Slot[T]) -> T:
-        """The present value of a slot.
+        """Return the present value of a slot.
 
         Raises:
             UndeclaredError: The policy does not have the slot.
         """
         self._known(slot, self.policy.slots, "slot")
-        return self._running().engine.read(self.policy.slot_of[slot.name].index)
+        return self._running().read(slot.name)
 
     def explain(self, rule: str | Rule[Any, Any]) -> Explanation:
-        """Why a rule runs, waits, or did not fire (L25); its history too if the context keeps its trace.
+        """Explain why a rule runs, waits, or did not fire (L25); with its history if the context keeps its trace.
 
         Raises:
             DeclarationError: The policy has no such rule.
         """
-        runner = self._running()
-        runner.engine.advance(max(runner.engine.now, runner.now()))
-        return explain(runner.engine, self.policy.rule_plan(rule), self.trace)
+        return explain(self._running().engine_now(), self.policy.rule_plan(rule), self.trace)
 
     def snapshot(self) -> dict[str, Any]:
-        """Everything that is alive, as plain data that JSON can carry."""
-        runner = self._running()
-        runner.engine.advance(max(runner.engine.now, runner.now()))
-        return snapshot(runner.engine)
+        """Return everything that is alive, as plain data for JSON."""
+        return snapshot(self._running().engine_now())
+
+    def plain_functions(self) -> list[str]:
+        """Return the names of the rules whose plain functions are at work, one for each run."""
+        return self._running().plain_functions()
 
     def _running(self) -> Runner:
         if self._runner is None:
-            raise EngineError("the context has not begun: write `async with rs.Context(...) as context:`")
+            raise EngineError("the context has not started: write `async with rs.Context(...) as context:`")
         return self._runner
 
     def _known(self, thing: Slot[Any] | Signal[Any], names: Mapping[str, Any], what: str) -> None:

@@ -1,4 +1,4 @@
-"""How a run ended, from what its function returned or raised (L18)."""
+"""The outcome of a run, from the value that its function returned or the exception that it raised (L18)."""
 
 from __future__ import annotations
 
@@ -8,42 +8,36 @@ from typing import Any, cast
 
 from ravestate.declare.outcome import Resign, Retire
 from ravestate.declare.rule import Rule
+from ravestate.declare.wording import short
 from ravestate.engine.events import Finish
-from ravestate.engine.foreign import shown
 from ravestate.errors import RuleError
 
-__all__ = ["ending", "short"]
+__all__ = ["ending"]
 
 
-def ending(run: int, rule: Rule[Any, Any], told: Any, raised: bool) -> Finish:
-    """The event that ends a run.
+def ending(run: int, rule: Rule[Any, Any], outcome: Any, raised: bool) -> Finish:
+    """Return the event that ends a run.
 
     Args:
-        run: Its number.
-        rule: Whose it was.
-        told: What the function returned or raised.
-        raised: Whether it raised that.
+        run: The number of the run.
+        rule: Its rule.
+        outcome: The value that the function returned, or the exception that it raised.
+        raised: Whether the outcome was raised.
     """
-    if told is None:
+    if outcome is None:
         return Finish(run, "done")
-    if isinstance(told, Resign):
-        return Finish(run, "resigned", told.reason)
-    if isinstance(told, Retire):
-        return Finish(run, "retired", told.reason)
-    failure = cast("BaseException", told) if raised else _nonsense(rule, told)
-    if isinstance(told, SystemExit):
+    if isinstance(outcome, Resign):
+        return Finish(run, "resigned", outcome.reason)
+    if isinstance(outcome, Retire):
+        return Finish(run, "retired", outcome.reason)
+    failure = cast("BaseException", outcome) if raised else _nonsense(rule, outcome)
+    if isinstance(outcome, SystemExit):
         failure = RuleError(
             f"rule {rule.name} ({rule.origin}) called sys.exit: a rule does not end the process; write ctx.stop() "
             "to end the agent"
         )
-        failure.__cause__ = told
+        failure.__cause__ = outcome
     return Finish(run, "failed", short(failure) + _place(rule, failure), failure)
-
-
-def short(value: object) -> str:
-    """The value's `repr`, cut to 60 characters."""
-    text = shown(value)
-    return text if len(text) <= 60 else text[:57] + "..."
 
 
 def _nonsense(rule: Rule[Any, Any], result: Any) -> RuleError:
@@ -60,7 +54,7 @@ def _nonsense(rule: Rule[Any, Any], result: Any) -> RuleError:
 
 
 def _place(rule: Rule[Any, Any], failure: BaseException) -> str:
-    """Where in the rule's own file it failed, e.g. `` (guide.py:42)``; nothing if that cannot be told."""
+    """Return the line of the rule's own file in which it failed, e.g. `` (guide.py:42)``; empty if there is none."""
     file = rule.origin.rpartition(":")[0]
     line, step = 0, failure.__traceback__
     while step is not None:

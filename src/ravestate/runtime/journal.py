@@ -1,4 +1,4 @@
-"""A journal of what an engine was told, and replay: the same events give the same effects (L24)."""
+"""A journal of an engine's events, and its replay: the same events give the same effects (L24)."""
 
 from __future__ import annotations
 
@@ -14,20 +14,20 @@ __all__ = ["Entry", "Journal", "Taken", "replay"]
 
 @dataclass(slots=True)
 class Taken:
-    """The runner took the engine's effects. It belongs into the journal because an engine decides only then: of two
-    events, what is between them matters."""
+    """The runner took the engine's effects. An engine decides only then, so the journal must tell whether this happened
+    between two events."""
 
 
 @dataclass(frozen=True, slots=True)
 class Entry:
-    """An event, or that effects were taken, and when (seconds since the context began)."""
+    """An event, or the taking of effects, with its time (seconds since the context started)."""
 
     time: float
     event: Event | Taken
 
 
 class Journal:
-    """Keeps every event in memory, in order. ``Context(..., journal=Journal())`` fills one."""
+    """A list of all events in memory, in order. ``Context(..., journal=Journal())`` fills it."""
 
     def __init__(self) -> None:
         self.entries: list[Entry] = []
@@ -37,7 +37,7 @@ class Journal:
 
 
 def replay(engine: Engine, entries: Iterable[Entry]) -> list[list[Effect]]:
-    """Feed a journal to an engine, and return what it asked for each time; no rule function is called."""
+    """Feed a journal to an engine, and return the effects of each time; no rule function is called."""
     done: list[list[Effect]] = []
     for entry in entries:
         if isinstance(entry.event, Taken):

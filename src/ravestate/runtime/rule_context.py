@@ -1,4 +1,4 @@
-"""What a rule function is given: its view of the context, and the only way to act (L3, L13)."""
+"""The argument of every rule function: its view of the context, and its only way to act (L3, L13)."""
 
 from __future__ import annotations
 
@@ -6,44 +6,80 @@ import logging
 import random
 from collections.abc import ItemsView, Iterator, KeysView, Mapping, ValuesView
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, Generic, NoReturn, TypeVar, overload
+from typing import Any, Generic, NoReturn, Protocol, TypeVar, overload
 
 from ravestate.declare.rule import Rule
 from ravestate.declare.signal import Signal
 from ravestate.declare.slot import Collection, Slot
 from ravestate.declare.wording import spelt
-from ravestate.engine.events import Discard, Emit, Store, Wipe, Write
+from ravestate.engine.effects import Run
+from ravestate.engine.events import Discard, Emit, Event, Store, Wipe, Write
 from ravestate.errors import RavestateError, RuleError, RunEnded, UndeclaredError, nearest
+from ravestate.policy.policy import Policy
+from ravestate.runtime.clock import Clock
 
-if TYPE_CHECKING:
-    from ravestate.engine.effects import Run
-    from ravestate.runtime.runner import Runner
-
-__all__ = ["Items", "RuleContext"]
+__all__ = ["Host", "Items", "RuleContext"]
 
 T = TypeVar("T")
 V = TypeVar("V")
 
 
-class RuleContext:
-    """Handed to every rule function.
+class Host(Protocol):
+    """The part of a running context that its rule contexts use.
 
-    ``ctx[slot]`` reads a slot as it stood when the rule started, own writes included; ``ctx[slot] = value``
-    writes it, which takes effect, and signals, at once.
+    Attributes:
+        settings: The settings of each module, by its name.
+        random: The source of random numbers for rules.
+        clock: The context's clock.
     """
 
-    __slots__ = ("_payloads", "_run", "_runner", "_values", "ended", "rule", "told")
+    settings: Mapping[str, Any]
+    random: random.Random
+    clock: Clock
 
-    def __init__(self, runner: Runner, effect: Run) -> None:
-        self._runner = runner
-        self._run = effect.run
+    @property
+    def policy(self) -> Policy:
+        """The policy, with the rules that were added."""
+        ...
+
+    def receive(self, event: Event) -> None:
+        """Give the engine an event; from any thread."""
+        ...
+
+    def add_rule(self, rule: Rule[Any, Any]) -> None:
+        """Add a rule to the policy; from any thread."""
+        ...
+
+    def stop(self, failure: RavestateError | None) -> None:
+        """Ask the context to end, perhaps because of a failure."""
+        ...
+
+    async def quiet(self) -> None:
+        """Wait until no rule of the foreground runs or is kept waiting."""
+        ...
+
+
+class RuleContext:
+    """The argument of a rule function: the function reads, writes and emits through it.
+
+    ``ctx[slot]`` reads a slot: its value when the rule started, or the rule's own last write. ``ctx[slot] = value``
+    writes it; the write takes effect, and signals, at once.
+    """
+
+    __slots__ = ("_host", "_payloads", "_values", "cancelled", "ended", "rule", "run")
+
+    def __init__(self, host: Host, effect: Run) -> None:
+        self._host = host
+        self.run = effect.run
+        """The number of the run."""
         self.rule = effect.rule
+        """The rule."""
         self._payloads = effect.payloads
         self._values: dict[str, Any] = effect.values  # type: ignore[assignment]  # made for this run alone
-        self.told = ""
-        """Why the function was told to end; it may still write while it cleans up."""
+        self.cancelled = ""
+        """Why the function was cancelled, if it was; it may still write while it cleans up."""
         self.ended = ""
-        """Why the run is over although the function is not (a thread cannot be stopped); empty while it is not."""
+        """Why the run is over, if it is. The function may go on, because a thread cannot be stopped."""
 
     @overload
     def __getitem__(self, slot: Collection[V]) -> Items[V]: ...
@@ -53,7 +89,7 @@ class RuleContext:
         """Read a slot.
 
         Raises:
-            UndeclaredError: The rule declares neither ``reads`` nor ``writes`` of it.
+            UndeclaredError: The rule declares neither ``reads`` nor ``writes`` of the slot.
         """
         try:
             value = self._values[slot.name]
@@ -86,14 +122,14 @@ class RuleContext:
         elif slot.kind == "flag":
             value = bool(value)  # type: ignore[assignment]  # its kind says so
         self._values[slot.name] = value
-        self._runner.receive(Write(slot.name, value, self._run))
+        self._host.receive(Write(slot.name, value, self.run))
 
     @overload
     def payload(self, signal: Signal[T]) -> T: ...
     @overload
     def payload(self, signal: Signal[Any]) -> Any: ...
     def payload(self, signal: Signal[Any]) -> Any:
-        """The payload of the signal that the rule stands on; None if another clause of its condition fired.
+        """Return the payload of a signal that started the rule; None if another clause of its condition did.
 
         Raises:
             UndeclaredError: The signal is not part of the rule's condition.
@@ -101,7 +137,7 @@ class RuleContext:
         try:
             return self._payloads[signal.name]
         except (KeyError, AttributeError):
-            plan = self._runner.engine.policy.rule_plan(self.rule)
+            plan = self._host.policy.rule_plan(self.rule)
             names = {need.signal.name for clause in plan.clauses for need in clause.needs}
             if getattr(signal, "name", None) in names:
                 return None
@@ -125,48 +161,47 @@ class RuleContext:
             self._refuse("emitted", "emits", signal, self.rule.emits)
         if self.ended:
             self._alive()
-        self._runner.receive(Emit(signal.name, payload, self._run))
+        self._host.receive(Emit(signal.name, payload, self.run))
 
     def wipe(self, signal: Signal[Any]) -> None:
-        """Withdraw the live spikes of a signal and all that they have caused (L20)."""
+        """Withdraw the live spikes of a signal, and all spikes that they have caused (L20)."""
         self._alive()
-        self._runner.receive(Wipe(signal.name, self._run))
+        self._host.receive(Wipe(signal.name, self.run))
 
     def add_rule(self, rule: Rule[Any, Any]) -> None:
-        """Add a rule to this context alone, over the signals and slots that it has.
+        """Add a rule over this context's signals and slots, to this context alone.
 
         Raises:
             DeclarationErrors: The rule does not fit.
         """
         self._alive()
-        self._runner.add_rule(rule)
+        self._host.add_rule(rule)
 
     async def sleep(self, seconds: float) -> None:
         """Wait on the context's clock."""
-        await self._runner.clock.sleep(seconds)
+        await self._host.clock.sleep(seconds)
 
     async def quiet(self) -> None:
         """Wait until no rule, apart from those in the background, runs or is kept waiting."""
-        await self._runner.quiet()
+        await self._host.quiet()
 
     def stop(self, failure: RavestateError | None = None) -> None:
-        """Ask the context to end: ``rs.shutdown`` is raised, and what runs is cancelled after it.
+        """Ask the context to end: it raises ``rs.shutdown``, and then cancels the rules that run.
 
         Args:
-            failure: Why it cannot go on, where that is no end in order; ``rs.run`` raises it when all has ended.
+            failure: The reason if the agent cannot go on; ``rs.run`` raises it after the end.
         """
-        self._runner.fault = self._runner.fault or failure
-        self._runner.ask_to_stop()
+        self._host.stop(failure)
 
     @property
     def now(self) -> float:
-        """Seconds since the context began."""
-        return self._runner.now()
+        """The seconds since the context started."""
+        return self._host.clock.now()
 
     @property
     def settings(self) -> Any:
         """The settings of the rule's module."""
-        return self._runner.settings.get(self.rule.name.split(":", 1)[0])
+        return self._host.settings.get(self.rule.name.split(":", 1)[0])
 
     @property
     def log(self) -> logging.Logger:
@@ -175,8 +210,8 @@ class RuleContext:
 
     @property
     def random(self) -> random.Random:
-        """Random numbers from the context's seed: the only ones that a rule should use."""
-        return self._runner.random
+        """Random numbers from the context's seed; a rule should use no others, so that runs can be repeated."""
+        return self._host.random
 
     def _alive(self) -> None:
         if self.ended:
@@ -210,9 +245,9 @@ class RuleContext:
 
 
 class Items(Mapping[str, V], Generic[V]):
-    """A collection as a rule sees it: a mapping of keys to items, with `add` and `remove`.
+    """A collection in a rule: a mapping of keys to items, with `add` and `remove`.
 
-    It shows what the rule itself has changed; who goes through it goes through what it was when that began.
+    It shows the rule's own changes. An iteration goes over the items as they were when it began.
     """
 
     __slots__ = ("_ctx", "_slot")
@@ -226,25 +261,25 @@ class Items(Mapping[str, V], Generic[V]):
         return self._ctx._values[self._slot.name]  # pyright: ignore[reportPrivateUsage]
 
     def add(self, key: str, item: V) -> None:
-        """Set an item; signals ``added`` if the key is new, and ``changed`` if anything is.
+        """Set an item. This signals ``added`` if the key is new, and ``changed`` if the item differs.
 
         Raises:
             UndeclaredError: The rule does not declare ``writes`` of the collection.
         """
         self._own()[key] = item
-        self._ctx._runner.receive(Store(self._slot.name, key, item, self._ctx._run))  # pyright: ignore[reportPrivateUsage]
+        self._ctx._host.receive(Store(self._slot.name, key, item, self._ctx.run))  # pyright: ignore[reportPrivateUsage]
 
     def remove(self, key: str) -> None:
-        """Remove an item if it is there; signals ``removed`` and ``changed``.
+        """Remove an item if it is there. This signals ``removed`` and ``changed``.
 
         Raises:
             UndeclaredError: The rule does not declare ``writes`` of the collection.
         """
         self._own().pop(key, None)
-        self._ctx._runner.receive(Discard(self._slot.name, key, self._ctx._run))  # pyright: ignore[reportPrivateUsage]
+        self._ctx._host.receive(Discard(self._slot.name, key, self._ctx.run))  # pyright: ignore[reportPrivateUsage]
 
     def _own(self) -> dict[str, V]:
-        """What may be changed: until the first change, the rule has what others have as well."""
+        """Return the rule's own copy of the items; the first change makes it."""
         ctx = self._ctx
         if self._slot not in ctx.rule.writes:  # pyright: ignore[reportPrivateUsage]
             ctx._refuse("wrote", "writes", self._slot, ctx.rule.writes)  # pyright: ignore[reportPrivateUsage]
@@ -274,15 +309,15 @@ class Items(Mapping[str, V], Generic[V]):
         return iter(tuple(self._items))
 
     def keys(self) -> KeysView[str]:
-        """The keys, as they are now."""
+        """Return the keys as they are now."""
         return dict(self._items).keys()
 
     def values(self) -> ValuesView[V]:
-        """The items, as they are now."""
+        """Return the items as they are now."""
         return dict(self._items).values()
 
     def items(self) -> ItemsView[str, V]:
-        """Keys and items, as they are now."""
+        """Return the keys and items as they are now."""
         return dict(self._items).items()
 
     def __len__(self) -> int:

@@ -1,4 +1,4 @@
-"""Running an agent until it is told to end."""
+"""Run an agent until a rule, a user or the system ends it."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from types import ModuleType
 from typing import Any
 
 from ravestate.declare.module import Module
+from ravestate.errors import EngineError
 from ravestate.policy.policy import Policy
 from ravestate.runtime.agent import Agent
 from ravestate.runtime.context import Context
@@ -20,18 +21,18 @@ __all__ = ["run", "run_context", "run_servers"]
 log = logging.getLogger("ravestate")
 
 INPUT = "rawio:input"
-"""What a user says. Whoever runs modules that know of it mostly wants to talk with them."""
+"""The slot of the user's words. An agent that has it is mostly meant to be talked with."""
 
 UNABLE = (NotImplementedError, RuntimeError, ValueError)
-"""What handling signals raises where the platform cannot, or outside of the main thread."""
+"""Errors of `add_signal_handler` on platforms that lack it, and outside of the main thread."""
 
 
 def run(*modules: Module | ModuleType | Policy, **options: Any) -> None:
-    """Run an agent until a rule calls ``ctx.stop()``, or Ctrl-C; then shut it down in order.
+    """Run an agent until a rule calls ``ctx.stop()``, or until Ctrl-C; then shut it down in order.
 
-    It runs as one context; or, with a platform among the modules that serves many users, as one for each of them.
+    It runs as one context. If a platform among the modules serves many users, each user gets a context of their own.
 
-    A warning says so if the modules use `rawio`, but none of them is a platform on which a user could talk.
+    A warning is logged if the modules use `rawio`, but no platform among them lets a user talk.
 
     Args:
         modules: As for `Context`.
@@ -39,7 +40,17 @@ def run(*modules: Module | ModuleType | Policy, **options: Any) -> None:
 
     Raises:
         DeclarationErrors: The modules, or the settings, do not fit.
+        EngineError: An event loop runs in this thread already, as in an async function or a notebook.
     """
+    try:
+        asyncio.get_running_loop()
+    except RuntimeError:
+        pass
+    else:
+        raise EngineError(
+            "rs.run starts an event loop, but this thread runs one already (an async function, a notebook): write "
+            "async with rs.Context(...) as context: await context.until_stopped()"
+        )
     agent = Agent(*modules, **options)
     servers = [module.serve for module in agent.policy.modules if module.serve is not None]
     if not servers:
@@ -48,24 +59,24 @@ def run(*modules: Module | ModuleType | Policy, **options: Any) -> None:
 
 
 def warn_if_mute(policy: Policy) -> None:
-    """Say so if the modules use `rawio`, but none of them is a platform on which a user could talk."""
+    """Log a warning if the modules use `rawio`, but no platform among them lets a user talk."""
     if INPUT in policy.slots and not any(INPUT in map(str, rule.writes) for rule in policy.rules.values()):
         log.warning(
             "nobody can talk to this agent: no rule writes %s; name a platform too, e.g. conio for the console. "
-            "Ctrl-C ends it",
+            "Ctrl-C ends the agent",
             INPUT,
         )
 
 
 async def run_context(context: Context) -> None:
-    """Run a context until it is asked to stop; SIGINT and SIGTERM ask it, a second time they break off."""
+    """Run a context until something asks it to stop. SIGINT and SIGTERM do; a second one breaks off the shutdown."""
     with asked_by_signals(context.ask_to_stop):
         async with context:
             await context.until_stopped()
 
 
 async def run_servers(agent: Agent, servers: Sequence[Callable[[Agent], Coroutine[Any, Any, None]]]) -> None:
-    """Run what serves an agent to many users until the first of them ends or fails; SIGINT and SIGTERM cancel them."""
+    """Run the servers of an agent until one of them ends or fails. SIGINT and SIGTERM cancel them all."""
     tasks = [asyncio.create_task(serve(agent)) for serve in servers]
     ends: list[BaseException | None] = []
 
@@ -74,9 +85,11 @@ async def run_servers(agent: Agent, servers: Sequence[Callable[[Agent], Coroutin
             task.cancel()
 
     with asked_by_signals(stop):
-        await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
-        stop()
-        ends = await asyncio.gather(*tasks, return_exceptions=True)
+        try:
+            await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
+        finally:
+            stop()
+            ends = await asyncio.gather(*tasks, return_exceptions=True)
     for end in ends:
         if isinstance(end, Exception):
             raise end
@@ -84,16 +97,19 @@ async def run_servers(agent: Agent, servers: Sequence[Callable[[Agent], Coroutin
 
 @contextlib.contextmanager
 def asked_by_signals(stop: Callable[[], None]) -> Generator[None]:
-    """Have SIGINT and SIGTERM call a function; a second one cancels the running task, which ends without a word."""
+    """Call a function at the first SIGINT or SIGTERM, and break off the body at the next one, without an error.
+
+    A cancellation from elsewhere goes on as usual.
+    """
     loop = asyncio.get_running_loop()
     main = asyncio.current_task()
-    asked = False
+    asked = 0
 
     def ask() -> None:
         nonlocal asked
         if asked and main is not None:
             main.cancel()
-        asked = True
+        asked += 1
         stop()
 
     signals = (signal.SIGINT, signal.SIGTERM)
@@ -103,7 +119,11 @@ def asked_by_signals(stop: Callable[[], None]) -> Generator[None]:
     try:
         yield
     except asyncio.CancelledError:
-        pass
+        if main is not None:
+            for _ in range(1, asked):  # a signal after the first has cancelled the task
+                main.uncancel()
+        if asked < 2 or main is None or main.cancelling():
+            raise
     finally:
         for number in signals:
             with contextlib.suppress(*UNABLE):

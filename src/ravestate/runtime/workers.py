@@ -1,23 +1,22 @@
 """Worker threads for rule functions that are plain functions.
 
-All contexts of a process share them, and none may take them all. They are daemons: a function that hangs must not keep
-the process from ending. (The standard library's pool joins its threads at exit.) But the end of the process waits a
-while for those that are at work: a thread that the interpreter ends in the midst of a C++ library, loading a model for
-instance, may take the whole process down with it.
+All contexts of a process share one pool of threads, and no context may take them all. The threads are daemons: a
+function that hangs must not keep the process from ending. (The standard library's pool joins its threads at exit.)
+
+The end of the process still waits a while for functions at work. A thread may be inside a C++ library, loading a model
+for instance; if the interpreter ends it there, the whole process may crash.
 """
 
 from __future__ import annotations
 
 import atexit
-import functools
 import os
 import threading
 from collections import deque
 from collections.abc import Callable
+from time import monotonic
 
-__all__ = ["CREW", "LAST_GRACE", "SHARE", "THREADS", "Crew", "Order", "Workers"]
-
-Job = Callable[[], None]
+__all__ = ["LAST_GRACE", "POOL", "SHARE", "THREADS", "Job", "JobQueue", "ThreadPool"]
 
 LAST_GRACE = 5.0
 """Seconds for which the end of the process waits for functions at work."""
@@ -26,38 +25,61 @@ SHARE = 32
 """Functions of one context that are at work at once; further ones wait until one of them ends."""
 
 THREADS = 256
-"""Threads of the process; with all of them busy, whoever comes waits for one."""
+"""Threads of the process; if all are busy, further jobs wait for one."""
 
 IDLE = 30.0
 """Seconds after which a thread with nothing to do ends."""
 
 
-class Crew:
+class Job:
+    """A function to call in a worker thread; it must not raise.
+
+    Args:
+        queue: The queue that submits it.
+        call: The function.
+        name: The name of its rule, for warnings.
+
+    Attributes:
+        made: When it was submitted (seconds on the monotonic clock).
+        began: When a thread took it (likewise); None before.
+    """
+
+    __slots__ = ("began", "call", "made", "name", "queue")
+
+    def __init__(self, queue: JobQueue, call: Callable[[], None], name: str) -> None:
+        self.queue = queue
+        self.call = call
+        self.name = name
+        self.made = monotonic()
+        self.began: float | None = None
+
+
+class ThreadPool:
     """The threads of the process: made when all others are busy, and kept for a while."""
 
     def __init__(self) -> None:
-        self.begin()
+        self.reset()
 
-    def begin(self) -> None:
-        """Be without threads."""
+    def reset(self) -> None:
+        """Forget all threads and jobs."""
         lock = threading.Lock()
         self.change = threading.Condition(lock)
         self.rest = threading.Condition(lock)
-        self.at_work = 0
         self.contexts = 0
+        self.at_work: set[Job] = set()
         self._jobs: deque[Job] = deque()
-        self._idle = 0
+        self._free = 0
         self._threads = 0
         self._number = 0
 
     def take(self, job: Job) -> None:
-        """Have a job done soon; the caller holds `change`.
+        """Do a job soon; the caller holds `change`.
 
         Raises:
-            RuntimeError: The system has no thread for it, and nobody is there who might do it later.
+            RuntimeError: The system refuses a thread, and the pool has none that could do the job later.
         """
         self._jobs.append(job)
-        if self._idle >= len(self._jobs):
+        if self._free >= len(self._jobs):
             self.change.notify()
         elif self._threads < THREADS:
             self._number += 1
@@ -70,115 +92,117 @@ class Crew:
                     raise
             else:
                 self._threads += 1
+                self._free += 1
+
+    def is_full(self) -> bool:
+        """Whether there are more jobs than free threads; the caller holds `change`."""
+        return len(self._jobs) > self._free
 
     def _live(self) -> None:
         while (job := self._next()) is not None:
             try:
-                job()
+                job.call()
             finally:
-                del job  # and with it what it holds: a context, perhaps
                 with self.change:
-                    self.at_work -= 1
+                    self._free += 1
+                    self.at_work.remove(job)
+                    self._jobs.extend(job.queue.done(job))  # this thread is free for it
                     if not self.at_work:
                         self.rest.notify_all()
+                del job  # it may hold a context
 
     def _next(self) -> Job | None:
-        """Wait for a job; None if the thread is to end."""
+        """Wait for a job; return None if the thread is to end."""
         with self.change:
             while not self._jobs:
-                self._idle += 1
                 in_time = self.contexts > 0 and self.change.wait(IDLE)
-                self._idle -= 1
                 if not self._jobs and not (in_time and self.contexts):
                     self._threads -= 1
+                    self._free -= 1
                     return None
-            self.at_work += 1
-            return self._jobs.popleft()
+            self._free -= 1
+            job = self._jobs.popleft()
+            job.began = monotonic()
+            self.at_work.add(job)
+            return job
 
 
-CREW = Crew()
+POOL = ThreadPool()
 if hasattr(os, "register_at_fork"):
-    os.register_at_fork(after_in_child=CREW.begin)  # a forked process has none of the threads
+    os.register_at_fork(after_in_child=POOL.reset)  # a forked process has none of the threads
 
 
 @atexit.register
 def _wait_for_work() -> None:
-    with CREW.rest:
-        CREW.rest.wait_for(lambda: not CREW.at_work, LAST_GRACE)
+    with POOL.rest:
+        POOL.rest.wait_for(lambda: not POOL.at_work, LAST_GRACE)
 
 
-class Order:
-    """A job that somebody waits for; told apart from others by what it is."""
-
-    __slots__ = ("job",)
-
-    def __init__(self, job: Job) -> None:
-        self.job = job
-
-
-class Workers:
-    """One context's share of the threads, until `close`.
+class JobQueue:
+    """The jobs of one context: at most `SHARE` at once are with the pool, the others wait here.
 
     Args:
-        crew: The threads.
+        pool: The threads.
     """
 
-    def __init__(self, crew: Crew = CREW) -> None:
-        self._crew = crew
-        self._at_work: set[Order] = set()
-        self._line: deque[Order] = deque()
+    def __init__(self, pool: ThreadPool = POOL) -> None:
+        self._pool = pool
+        self._begun: set[Job] = set()
+        self._waiting: deque[Job] = deque()
         self._open = True
-        with self._crew.change:
-            self._crew.contexts += 1
+        with self._pool.change:
+            self._pool.contexts += 1
 
-    def submit(self, job: Job) -> Order:
-        """Have a job done soon. The job must not raise.
+    def submit(self, call: Callable[[], None], name: str = "") -> Job:
+        """Do a job soon.
 
         Raises:
             RuntimeError: The system has no more threads.
         """
-        order = Order(job)
-        with self._crew.change:
-            if len(self._at_work) < SHARE:
-                self._begin(order)
+        job = Job(self, call, name)
+        with self._pool.change:
+            if len(self._begun) < SHARE:
+                self._pool.take(job)
+                self._begun.add(job)
             else:
-                self._line.append(order)
-        return order
+                self._waiting.append(job)
+        return job
 
-    def let_go(self, order: Order) -> None:
-        """Nobody waits for a job any more: if it hangs, another has its place."""
-        with self._crew.change:
-            if order in self._line:
-                self._line.remove(order)
-            elif order in self._at_work:
-                self._at_work.remove(order)
-                if self._line:
-                    self._begin(self._line.popleft())
+    def abandon(self, job: Job) -> None:
+        """Give the place of a job to the next one: nothing waits for its end any more, and it may hang."""
+        with self._pool.change:
+            if job in self._waiting:
+                self._waiting.remove(job)
+            else:
+                for following in self.done(job):
+                    self._pool.take(following)
+
+    def done(self, job: Job) -> list[Job]:
+        """Return the job that gets the place of this one, if any; the caller holds the pool's `change`."""
+        if job not in self._begun:  # it was abandoned, and its place has gone to another
+            return []
+        self._begun.remove(job)
+        following = [self._waiting.popleft()] if self._waiting else []
+        self._begun.update(following)
+        return following
+
+    def is_full(self) -> bool:
+        """Whether a job waits for another one to end."""
+        with self._pool.change:
+            return bool(self._waiting) or self._pool.is_full()
+
+    def holders(self) -> list[Job]:
+        """Return the jobs that keep others from a thread: this context's if its share is full, else the process's."""
+        with self._pool.change:
+            full = len(self._begun) >= SHARE
+            return [job for job in self._pool.at_work if not full or job in self._begun]
 
     def close(self) -> None:
-        """Do nothing more; what is being done goes on. If no other context is there, idle threads end."""
-        with self._crew.change:
-            self._line.clear()
+        """Drop the jobs that have not begun. If no other context is left, idle threads end."""
+        with self._pool.change:
+            self._waiting.clear()
             if self._open:
                 self._open = False
-                self._crew.contexts -= 1
-                if not self._crew.contexts:
-                    self._crew.change.notify_all()
-
-    def _begin(self, order: Order) -> None:
-        self._crew.take(functools.partial(self._work, order))
-        self._at_work.add(order)
-
-    def _work(self, order: Order) -> None:
-        following: Order | None = order
-        while following is not None:
-            order, following = following, None
-            try:
-                order.job()
-            finally:
-                with self._crew.change:
-                    if order in self._at_work:  # else another has its place already
-                        self._at_work.remove(order)
-                        if self._line:
-                            following = self._line.popleft()
-                            self._at_work.add(following)
+                self._pool.contexts -= 1
+                if not self._pool.contexts:
+                    self._pool.change.notify_all()

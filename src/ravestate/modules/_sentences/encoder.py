@@ -1,4 +1,4 @@
-"""What sentences mean, as vectors."""
+"""The meanings of sentences as vectors."""
 
 from __future__ import annotations
 
@@ -19,10 +19,9 @@ BUNDLED = "bge_small_en"
 
 
 class Encoder:
-    """Turns sentences into vectors that lie near each other where the sentences mean alike.
+    """An encoder of sentences: similar meanings give similar vectors.
 
-    An encoder costs nothing to make: the model behind it is shared by the whole process, and loaded (0.3 s) when
-    it is first asked. It may be asked from any thread.
+    Making an encoder is free: the process shares its model, which the first use loads (0.3 s). Any thread may use it.
 
     Example:
         ::
@@ -32,18 +31,17 @@ class Encoder:
     """
 
     def __init__(self, folder: Path | str | None = None) -> None:
-        """Nothing is looked for or loaded yet.
+        """Choose a model; the first use finds and loads it.
 
         Args:
-            folder: Holds another model: ``model.onnx`` and ``tokenizer.json``, as exported for
-                sentence-transformers; ``1_Pooling/config.json`` is heeded. None takes the bundled bge-small-en-v1.5
-                (English, 384 dimensions).
+            folder: The folder of a model for sentence-transformers: ``model.onnx``, ``tokenizer.json``, and
+                ``1_Pooling/config.json`` if there is one. None: the bundled bge-small-en-v1.5 (English, 384 dimensions).
         """
         self._folder = folder
         self._mean: bool | None = None
 
     def load(self) -> None:
-        """Load the model, if nobody has; `encode` would do it.
+        """Load the model now; otherwise the first `encode` does.
 
         Raises:
             PlatformError: A package or the model is missing or broken. The message says what to do.
@@ -53,7 +51,7 @@ class Encoder:
     def encode(self, texts: Sequence[str]) -> NDArray[np.float32]:
         """Return a row for each text: shape (n, d), float32, each of length 1.
 
-        About 3 ms for a sentence on one core. What exceeds the model's window (512 tokens) is not seen.
+        A sentence takes about 3 ms on one core. The model reads the first 512 tokens of a text.
 
         Raises:
             PlatformError: See `load`.
@@ -71,8 +69,8 @@ class Encoder:
 
 
 def _pooled(hidden: NDArray[Any], mask: NDArray[Any], mean: bool) -> NDArray[Any]:
-    """One vector for each text from the vectors of its tokens, shape (n, tokens, d)."""
-    if hidden.ndim == 2:  # the model has done it
+    """Return one vector for each text, from its tokens' vectors of shape (n, tokens, d)."""
+    if hidden.ndim == 2:  # the model has pooled them
         return hidden
     if not mean:
         return hidden[:, 0]
@@ -81,7 +79,7 @@ def _pooled(hidden: NDArray[Any], mask: NDArray[Any], mean: bool) -> NDArray[Any
 
 
 def _pools_by_mean(folder: Path) -> bool:
-    """Whether the model averages over its tokens; otherwise it takes the first one, as bge does."""
+    """Return whether the model averages over its tokens. Otherwise it takes the first, as bge does."""
     try:
         config = json.loads((folder / "1_Pooling" / "config.json").read_text(encoding="utf-8"))
         return bool(config["pooling_mode_mean_tokens"])

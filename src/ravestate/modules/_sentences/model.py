@@ -1,4 +1,4 @@
-"""A model in a folder: found, loaded once per process, run over texts or pairs of texts."""
+"""Find, load and run a sentence model; each process loads a model once."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ if TYPE_CHECKING:
 __all__ = ["SentenceModel", "folder_of", "model_in"]
 
 TOKENS = 512
-"""What the models see of a text or a pair."""
+"""The tokens of a text or a pair that the models read."""
 CHARACTERS = 10_000
-"""More of a text is not even cut into tokens: no 512 tokens of running text are longer."""
+"""The characters of a text that the tokenizer reads; 512 tokens of running text are shorter."""
 BATCH_TOKENS = 256
-"""So many tokens, padding included, are run at once: memory stays small, whatever is asked."""
+"""The tokens of a batch, with padding. Small batches need little memory."""
 
 _INSTALL = f"pip install 'ravestate[sentences]' and {requirement(SENTENCE_MODELS)}"
 
@@ -31,11 +31,11 @@ _loading = threading.Lock()
 
 
 def model_in(folder: Path | str | None, bundled: str) -> SentenceModel:
-    """Return the model in `folder`, loaded once however many ask.
+    """Return the model in `folder`; the first call loads it.
 
     Args:
-        folder: The user's, ``~`` allowed; None for a bundled one.
-        bundled: The name of that one.
+        folder: The user's folder, ``~`` allowed; None for a bundled model.
+        bundled: The name of the bundled model.
 
     Raises:
         PlatformError: A package or a file is missing or broken.
@@ -60,7 +60,7 @@ def folder_of(folder: Path | str | None, bundled: str) -> Path:
         path = Path(folder).expanduser().absolute()
         if not path.is_dir():
             raise PlatformError(
-                f"the sentence model {str(folder)!r} is no folder: name one that holds model.onnx"
+                f"the sentence model {str(folder)!r} is not a folder: name one with model.onnx"
             )
         return path
     for place in folders_of(SENTENCE_MODELS):
@@ -68,21 +68,20 @@ def folder_of(folder: Path | str | None, bundled: str) -> Path:
         if path.is_dir():
             return path
     raise ModelMissing(
-        f"the sentence models are not installed: {_INSTALL} , or name a folder of your "
-        "own that holds model.onnx and tokenizer.json"
+        f"the sentence models are not installed: {_INSTALL} , or name a folder with model.onnx and tokenizer.json"
     )
 
 
 class SentenceModel:
-    """A tokenizer and an ONNX session. Running it is safe from any thread."""
+    """A tokenizer with an ONNX session. Any thread may run it."""
 
     def __init__(self, folder: Path) -> None:
-        """Load what `folder` holds.
+        """Load the model in `folder`.
 
         Raises:
             PlatformError: A package or a file is missing or broken.
         """
-        # The library reports its use to its makers unless it is told not to before it is imported.
+        # The library reports its use to its makers unless this is set before the import.
         os.environ.setdefault("ORT_DISABLE_TELEMETRY", "1")
         try:
             with LOADING:
@@ -99,15 +98,15 @@ class SentenceModel:
         options = runtime.SessionOptions()
         options.intra_op_num_threads = min(2, _cores())
         options.inter_op_num_threads = 1
-        # Between two questions its threads sleep: they would take the cores from whoever else works.
+        # Without this its threads spin between two runs, and take the cores from other work.
         options.add_session_config_entry("session.intra_op.allow_spinning", "0")
-        options.log_severity_level = 4  # what goes wrong is raised
+        options.log_severity_level = 4  # errors are raised
         try:
             self._session: Any = runtime.InferenceSession(
                 str(files[0]), options, providers=["CPUExecutionProvider"]
             )
             self._tokenizer: Any = Tokenizer.from_file(str(files[1]))
-        except Exception as error:  # each library has its own, and they say too much
+        except Exception as error:  # each library has its own exceptions, with long messages
             broken = str(error).partition("\n")[0][:200]
             raise PlatformError(f"the sentence model {str(folder)!r} cannot be loaded: {broken}") from error
         self._tokenizer.no_padding()
@@ -116,19 +115,19 @@ class SentenceModel:
 
     @property
     def width(self) -> int:
-        """The last dimension of what it puts out."""
+        """The last dimension of the output."""
         return int(self._session.get_outputs()[0].shape[-1])
 
     def run(
         self, texts: Sequence[str] | Sequence[tuple[str, str]]
     ) -> Iterator[tuple[list[int], NDArray[Any], NDArray[Any]]]:
-        """Yield the model's first output batch by batch: indices of texts, output, mask of real tokens (1) and padding.
+        """Yield the model's first output in batches: indices of texts, output, mask (1 for tokens, 0 for padding).
 
-        Texts of like length go together, so that little is padding.
+        A batch holds texts of similar length, so it needs little padding.
         """
         import numpy as np
 
-        # One by one: a batch would be cut by threads of the tokenizer's own, which a later fork complains about.
+        # One by one: for a batch the tokenizer starts threads, which a later fork warns about.
         codes = [self._encode(text) for text in texts]
         order = sorted(range(len(codes)), key=lambda index: len(codes[index].ids))
         start = 0
@@ -159,7 +158,7 @@ class SentenceModel:
 
 
 def _encodable(text: str) -> str:
-    """`text` cut, and without lone surrogates, which the tokenizer refuses."""
+    """Return the text, shortened and without lone surrogates, which the tokenizer refuses."""
     return text[:CHARACTERS].encode("utf-8", "replace").decode("utf-8")
 
 

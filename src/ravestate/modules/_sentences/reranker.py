@@ -1,4 +1,4 @@
-"""How well passages answer a question."""
+"""Scores of passages as answers to a question."""
 
 from __future__ import annotations
 
@@ -18,10 +18,9 @@ BUNDLED = "reranker_en"
 
 
 class Reranker:
-    """Reads a question together with each passage and says how well the passage answers it (a cross-encoder).
+    """A cross-encoder: it scores how well a passage answers a question.
 
-    Like an `Encoder` it costs nothing to make, is shared by the process, loaded when first asked, and may be asked
-    from any thread.
+    Making one is free: the process shares its model, which the first use loads. Any thread may use it.
 
     Example:
         ::
@@ -31,16 +30,16 @@ class Reranker:
     """
 
     def __init__(self, folder: Path | str | None = None) -> None:
-        """Nothing is looked for or loaded yet.
+        """Choose a model; the first use finds and loads it.
 
         Args:
-            folder: Holds another cross-encoder with one output: ``model.onnx`` and ``tokenizer.json``. None takes
-                the bundled ms-marco-MiniLM-L-12-v2 (English).
+            folder: The folder of a cross-encoder with one output: ``model.onnx`` and ``tokenizer.json``. None: the
+                bundled ms-marco-MiniLM-L-12-v2 (English).
         """
         self._folder = folder
 
     def load(self) -> None:
-        """Load the model, if nobody has; `score` would do it.
+        """Load the model now; otherwise the first `score` does.
 
         Raises:
             PlatformError: A package or the model is missing or broken. The message says what to do.
@@ -50,8 +49,8 @@ class Reranker:
     def score(self, query: str, passages: Sequence[str]) -> NDArray[np.float32]:
         """Return a score for each passage: shape (n,), float32, higher is better.
 
-        Scores are logits: for the bundled model about -11 (has nothing to do with it) to +11 (answers it). About
-        3 ms for a pair of short sentences. What exceeds the model's window (512 tokens for both) is not seen.
+        Scores are logits: for the bundled model from about -11 (unrelated) to +11 (an answer). A pair of short sentences
+        takes about 3 ms. The model reads the first 512 tokens of a pair.
 
         Raises:
             PlatformError: See `load`.

@@ -1,4 +1,4 @@
-"""Reading with spaCy: what comes out, what is missing, and what nobody should write."""
+"""The pipeline: its trees, odd texts, threads, and missing packages."""
 
 import builtins
 import subprocess
@@ -43,14 +43,14 @@ def test_like_is_a_verb_and_keeps_its_lemma(reader: Pipeline) -> None:
      "a\udcffb", "?" * 500, "and " * 500, "((((((((((", "\u202ehello\u202c", "http://example.org/?q=1&r=2", "'s 's 's n't n't", "-" * 3000,
      "who who who is is is", "what", "not not not", "that that that that is is that"],
 )  # fmt: skip
-def test_nothing_that_is_said_is_too_much(reader: Pipeline, text: str) -> None:
+def test_any_text_can_be_analysed(reader: Pipeline, text: str) -> None:
     seen = analyse(text, reader, ["Ravestate", "", "(?"])
     assert "".join(word.text for word in seen.tree.words).strip() == "".join(
         seen.tree.text.split()
     ).strip() or any(not character.isprintable() for character in text)
 
 
-def test_of_a_long_text_the_beginning_is_read(reader: Pipeline, caplog: pytest.LogCaptureFixture) -> None:
+def test_the_beginning_of_a_long_text_is_analysed(reader: Pipeline, caplog: pytest.LogCaptureFixture) -> None:
     seen = analyse("where do you live " * 6000, reader)
     assert seen.about_agent and seen.question is not None
     assert len(seen.tree.text) <= LONGEST and seen.tree.text.endswith(("where", "do", "you", "live"))
@@ -58,7 +58,7 @@ def test_of_a_long_text_the_beginning_is_read(reader: Pipeline, caplog: pytest.L
     assert len(reader.shorten("x" * 100_000)) == LONGEST
 
 
-def test_words_are_not_kept_for_ever(reader: Pipeline) -> None:
+def test_the_vocabulary_does_not_grow(reader: Pipeline) -> None:
     strings = reader._nlp.vocab.strings  # pyright: ignore[reportPrivateUsage]
     reader.read("warm up")
     before = len(strings)
@@ -83,10 +83,10 @@ def test_many_threads_may_read_at_once(reader: Pipeline) -> None:
     assert found == [["Where", "do", "you", "live", "?"]] * 20
 
 
-def test_who_wants_it_loaded_does_not_wait_for_those_who_read(reader: Pipeline) -> None:
+def test_load_does_not_wait_for_readers_of_a_loaded_pipeline(reader: Pipeline) -> None:
     reader.load()
     asking = threading.Thread(target=reader.load, daemon=True)
-    with reader._lock:  # somebody reads
+    with reader._lock:  # a reader holds the lock
         asking.start()
         asking.join(10)
         assert not asking.is_alive()
@@ -104,7 +104,7 @@ SAID = (
 
 @pytest.fixture
 def crowd(reader: Pipeline) -> Callable[[], list[Any]]:
-    """Have all of `SAID` read at once, each from a thread: what each of them gets, or the error."""
+    """A function that reads all of `SAID` at once, each in a thread, and returns results and errors."""
 
     def ask() -> list[Any]:
         found: list[Any] = [None] * len(SAID)
@@ -116,7 +116,7 @@ def crowd(reader: Pipeline) -> Callable[[], list[Any]]:
                 found[number] = error
 
         threads = [threading.Thread(target=read, args=(number,)) for number in range(len(SAID))]
-        with reader._lock:  # somebody reads: all of them wait
+        with reader._lock:  # a reader holds the lock: all of them wait
             for thread in threads:
                 thread.start()
             while len(reader._orders) < len(SAID):
@@ -129,7 +129,7 @@ def crowd(reader: Pipeline) -> Callable[[], list[Any]]:
     return ask
 
 
-def test_what_waits_is_read_together_and_no_otherwise_than_alone(
+def test_waiting_texts_are_read_in_one_batch_with_equal_results(
     reader: Pipeline, crowd: Callable[[], list[Any]], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     alone = [reader.read(text) for text in SAID]
@@ -142,7 +142,7 @@ def test_what_waits_is_read_together_and_no_otherwise_than_alone(
         assert (tree.text, tree.words, entities) == (other_tree.text, other_tree.words, other_entities)
 
 
-def test_one_text_that_cannot_be_read_takes_no_other_along(
+def test_a_failing_text_fails_alone(
     reader: Pipeline, crowd: Callable[[], list[Any]], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def stumble(text: str) -> str:
@@ -150,7 +150,7 @@ def test_one_text_that_cannot_be_read_takes_no_other_along(
             raise ArithmeticError("of all words")
         return text
 
-    monkeypatch.setattr(pipeline_module, "reading_copy", stumble)
+    monkeypatch.setattr(pipeline_module, "preprocess", stumble)
     found = crowd()
     assert [isinstance(one, ArithmeticError) for one in found] == [text == "no" for text in SAID]
     assert reader.read("I like tea")[0].text == "I like tea"
@@ -169,7 +169,7 @@ def test_an_unknown_pipeline_is_named() -> None:
         Pipeline("de_core_nonsense").read("Hallo")
 
 
-def test_a_broken_pipeline_is_told_of(tmp_path: Path) -> None:
+def test_a_broken_pipeline_is_an_error(tmp_path: Path) -> None:
     (tmp_path / "config.cfg").write_text("nonsense", encoding="utf-8")
     with pytest.raises(PlatformError, match="cannot be loaded"):
         Pipeline(str(tmp_path)).load()
@@ -189,7 +189,7 @@ def test_without_spacy_the_extra_is_named(monkeypatch: pytest.MonkeyPatch) -> No
         Pipeline().read("hello")
 
 
-def test_reading_takes_no_other_library_along() -> None:
+def test_optional_libraries_are_not_imported() -> None:
     code = (
         "import sys; from ravestate.modules.meta.nlp.pipeline import pipeline; pipeline('').read('hello'); "
         "print({'torch', 'tensorflow', 'mxnet', 'cupy'} & set(sys.modules))"

@@ -1,4 +1,4 @@
-"""The module in an agent: what it writes and raises, when, and how it fails."""
+"""The module in an agent: its slots, signals, and errors."""
 
 import subprocess
 import sys
@@ -51,7 +51,7 @@ def test_all_slots_are_written() -> None:
         assert [entity.text for entity in sim.read(nlp.entities)] == ["Berlin"]
 
 
-def test_what_is_said_at_once_is_read_in_its_order_however_long_each_takes(
+def test_simultaneous_utterances_are_analysed_in_order(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     later = threading.Event()
@@ -200,7 +200,7 @@ def test_two_utterances_are_not_mixed() -> None:
         assert sim.said == ["small talk", "small talk"]
 
 
-def test_a_fault_leaves_the_talk_to_others() -> None:
+def test_after_an_error_other_rules_answer() -> None:
     with simulate(agent(), settings={"nlp": {"pipeline": "nonsense"}}) as sim:
         sim.say("how are you")
         assert sim.said == ["small talk"]

@@ -1,7 +1,19 @@
 """A text as a tree of plain records."""
 
-from modules.meta.nlp.sentences import words
-from ravestate.modules.meta.nlp.tree import Tree
+from ravestate.modules.meta.nlp.tree import Tree, Word
+
+
+def words(notation: str) -> list[Word]:
+    """Words without a pipeline: ``my/PRON/poss>1 name/NOUN/nsubj>2``."""
+    found: list[Word] = []
+    start = 0
+    for index, item in enumerate(notation.split()):
+        text, pos, relation = item.rsplit("/", 2)
+        dep, _, head = relation.partition(">")
+        found.append(Word(index, text, text.lower(), pos, "", dep, int(head), start))
+        start += len(text) + 1
+    return found
+
 
 # my old dog sleeps here
 TREE = Tree(

@@ -1,6 +1,6 @@
-"""A real Bolt server (ArcadeDB), as a process: ``python bolt_server.py FOLDER BOLT_PORT HTTP_PORT PASSWORD DATABASE``.
+"""Run a real Bolt server (ArcadeDB): ``python bolt_server.py FOLDER BOLT_PORT HTTP_PORT PASSWORD DATABASE``.
 
-It says ``ready`` when it is, and ends when its standard input does, and so with the tests however these end.
+It prints ``ready``, and ends when its standard input does: with the tests, however they end.
 """
 
 import os
@@ -25,7 +25,7 @@ def main(folder: str, bolt_port: int, http_port: int, password: str, database: s
     server.create_database(database)
     print("ready", flush=True)
     sys.stdin.read()
-    os._exit(0)  # what it holds is thrown away; an orderly end sometimes waits for connections
+    os._exit(0)  # its data is not needed; an orderly end sometimes waits for connections
 
 
 if __name__ == "__main__":

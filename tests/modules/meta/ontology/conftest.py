@@ -15,7 +15,7 @@ from typing import Any
 import pytest
 
 from ravestate.modules import ontology
-from ravestate.modules.meta.ontology.places import open_memory
+from ravestate.modules.meta.ontology.opening import open_memory
 
 PASSWORD = "only-for-these-tests"
 DATABASE = "memory"
@@ -35,7 +35,7 @@ def free_ports(count: int) -> list[int]:
 
 @pytest.fixture(scope="session")
 def bolt_server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[dict[str, Any]]:
-    """Settings for a server that runs as long as the tests do."""
+    """The settings of a server that runs as long as the tests."""
     folder = tmp_path_factory.mktemp("bolt")
     ports = free_ports(2)
     with (folder / "server.txt").open("wb") as said:
@@ -65,7 +65,7 @@ def bolt_server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[dict[str, 
 
 @pytest.fixture(params=["file", "server"])
 def place(request: pytest.FixtureRequest, tmp_path: Path) -> dict[str, Any]:
-    """Settings for an empty memory, once in a file and once on a server."""
+    """The settings of an empty memory, once in a file and once on a server."""
     if request.param == "file":
         return {"path": tmp_path / "memory.lbug"}
     settings: dict[str, Any] = request.getfixturevalue("bolt_server")
@@ -81,7 +81,7 @@ def place(request: pytest.FixtureRequest, tmp_path: Path) -> dict[str, Any]:
 
 @pytest.fixture
 def open_here() -> Iterator[Open]:
-    """Open memory with settings; it is closed at the end, and it is an error if that fails."""
+    """A function that opens memory with settings. The fixture closes each memory at the end."""
     opened: list[ontology.Memory] = []
 
     def open_one(**settings: Any) -> ontology.Memory:

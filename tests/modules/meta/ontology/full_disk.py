@@ -1,4 +1,4 @@
-"""Writes until the file may not grow, and after: ``python full_disk.py FILE``. Prints one line of JSON."""
+"""Write until the file may not grow, and beyond; print one line of JSON: ``python full_disk.py FILE``."""
 
 import json
 import os
@@ -8,7 +8,7 @@ from pathlib import Path
 
 from ravestate.errors import PlatformError
 from ravestate.modules import ontology
-from ravestate.modules.meta.ontology.places import open_memory
+from ravestate.modules.meta.ontology.opening import open_memory
 
 
 def allow(size: int) -> None:

@@ -1,4 +1,4 @@
-"""What is said of servers that cannot be used, and that none of them stops anything."""
+"""Servers that cannot be used: each is a clear error, and none blocks memory."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ import pytest
 from modules.meta.ontology.conftest import DATABASE, PASSWORD, Open, free_ports
 from ravestate.errors import PlatformError
 from ravestate.modules import ontology
-from ravestate.modules.meta.ontology.places import open_memory
+from ravestate.modules.meta.ontology.opening import open_memory
 
 
 def failure(**settings: Any) -> str:
-    """Why memory cannot be opened; a password is never told."""
+    """Why memory cannot be opened; no message has the password."""
     memory = open_memory(ontology.Settings(**settings))
     with pytest.raises(PlatformError) as caught:
         memory.opened().result(60)
@@ -31,7 +31,7 @@ def failure(**settings: Any) -> str:
 
 
 class Proxy:
-    """Passes on what is said between a client and a server, until it is told to stall or to hang up."""
+    """A proxy between client and server that can stall and hang up."""
 
     def __init__(self, port: int) -> None:
         self._port = port

@@ -1,4 +1,4 @@
-"""What a file of memory stands, and what is said when it cannot be used."""
+"""Memory in a file: kills, full disks, damage, and clear errors."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from ravestate.errors import PlatformError, RuleError
 from ravestate.modules import ontology
 from ravestate.modules.meta.ontology import embedded
 from ravestate.modules.meta.ontology.embedded import EmbeddedStore
-from ravestate.modules.meta.ontology.places import open_memory
+from ravestate.modules.meta.ontology.opening import open_memory
 
 HERE = Path(__file__).parent
 
@@ -36,7 +36,7 @@ def failure(**settings: Any) -> str:
 
 @pytest.fixture
 def file(tmp_path: Path, open_here: Open) -> Path:
-    """A file of memory that knows Ada, and that nobody has open."""
+    """A closed file of memory with Ada in it."""
     path = tmp_path / "memory.lbug"
     memory = open_here(path=path)
     memory.create("Person", name="Ada").result()
@@ -46,7 +46,7 @@ def file(tmp_path: Path, open_here: Open) -> Path:
 
 @pytest.fixture
 def writer(tmp_path: Path) -> Iterator[tuple[Path, subprocess.Popen[str]]]:
-    """Another process that writes to a file of memory."""
+    """A process that writes to a file of memory."""
     path = tmp_path / "memory.lbug"
     process = subprocess.Popen([sys.executable, HERE / "writer.py", path], stdout=subprocess.PIPE, text=True)
     with process:
@@ -55,7 +55,7 @@ def writer(tmp_path: Path) -> Iterator[tuple[Path, subprocess.Popen[str]]]:
 
 
 @pytest.mark.parametrize("writes", [1, 7, 300])
-def test_what_was_acknowledged_survives_being_killed(
+def test_acknowledged_writes_survive_a_kill(
     writer: tuple[Path, subprocess.Popen[str]], open_here: Open, writes: int
 ) -> None:
     path, process = writer
@@ -74,7 +74,7 @@ def test_what_was_acknowledged_survives_being_killed(
 
 
 @pytest.mark.parametrize("times", [1, 4, 9])
-def test_being_killed_while_forgetting_brings_nobody_back_and_takes_nobody_else(
+def test_a_kill_during_forget_brings_nobody_back_and_takes_nobody_else(
     tmp_path: Path, open_here: Open, times: int
 ) -> None:
     path = tmp_path / "memory.lbug"
@@ -93,7 +93,9 @@ def test_being_killed_while_forgetting_brings_nobody_back_and_takes_nobody_else(
     assert set(names) <= {f"person {last}", f"person {last + 1}"}
 
 
-def test_a_second_process_is_told_who_has_the_file(writer: tuple[Path, subprocess.Popen[str]]) -> None:
+def test_a_second_process_learns_which_process_has_the_file(
+    writer: tuple[Path, subprocess.Popen[str]],
+) -> None:
     path, process = writer
     assert process.stdout is not None and process.stdout.readline() == "0\n"
     said = failure(path=path)
@@ -101,7 +103,7 @@ def test_a_second_process_is_told_who_has_the_file(writer: tuple[Path, subproces
     assert "--set ontology.path=FILE" in said
 
 
-def test_who_opens_a_memory_that_is_open_asks_nothing_of_the_file(
+def test_a_second_opening_runs_no_statement(
     tmp_path: Path, open_here: Open, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     open_here(path=tmp_path / "memory.lbug").opened().result()
@@ -130,9 +132,7 @@ def test_one_process_opens_a_file_once_however_it_is_named(tmp_path: Path, open_
 
 
 @pytest.mark.parametrize("ending", ["full", "room"])
-def test_a_full_disk_is_told_nothing_is_lost_and_it_goes_on(
-    tmp_path: Path, open_here: Open, ending: str
-) -> None:
+def test_a_full_disk_is_an_error_and_loses_nothing(tmp_path: Path, open_here: Open, ending: str) -> None:
     path = tmp_path / "memory.lbug"
     run = subprocess.run(
         [sys.executable, HERE / "full_disk.py", path, ending],
@@ -168,7 +168,7 @@ def test_nothing_is_written_when_there_is_hardly_space(
     assert len(memory.find("Thing").result()) == 2
 
 
-def test_the_log_is_worked_in_on_the_way(
+def test_a_long_log_is_moved_into_the_file(
     tmp_path: Path, open_here: Open, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(embedded, "LOG_LIMIT", 50_000)
@@ -184,7 +184,7 @@ def test_the_log_is_worked_in_on_the_way(
     assert len(open_here(path=path).find("Person").result()) == 60
 
 
-def test_a_log_that_cannot_be_worked_in_is_kept(
+def test_a_log_that_cannot_be_moved_is_kept(
     tmp_path: Path, open_here: Open, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     path = tmp_path / "memory.lbug"
@@ -198,7 +198,7 @@ def test_a_log_that_cannot_be_worked_in_is_kept(
     assert len(open_here(path=path).find("Person").result()) == 1
 
 
-def test_a_newer_file_is_told_and_left_alone(file: Path) -> None:
+def test_a_newer_file_is_refused_and_left_alone(file: Path) -> None:
     newer = bytearray(file.read_bytes())
     newer[4] = 200  # the version of ladybug's format
     file.write_bytes(newer)
@@ -209,7 +209,7 @@ def test_a_newer_file_is_told_and_left_alone(file: Path) -> None:
 
 
 @pytest.mark.parametrize("content", [b"no database at all " * 300, b"x", None])
-def test_a_broken_file_is_told_and_left_alone(file: Path, content: bytes | None) -> None:
+def test_a_broken_file_is_refused_and_left_alone(file: Path, content: bytes | None) -> None:
     broken = file.read_bytes()[:9000] if content is None else content
     file.write_bytes(broken)
     said = failure(path=file)
@@ -218,7 +218,7 @@ def test_a_broken_file_is_told_and_left_alone(file: Path, content: bytes | None)
 
 
 @pytest.mark.parametrize("damage", ["torn", "zeros", "rubbish"])
-def test_of_a_damaged_log_what_can_be_read_is_read_and_the_rest_kept(
+def test_a_damaged_log_is_read_up_to_the_damage_and_kept(
     tmp_path: Path,
     open_here: Open,
     caplog: pytest.LogCaptureFixture,
@@ -286,7 +286,7 @@ def test_a_property_does_not_change_its_kind(file: Path, tmp_path: Path, open_he
         memory.find("Person").result()
 
 
-def test_who_is_forgotten_leaves_no_byte_in_any_file(tmp_path: Path, open_here: Open) -> None:
+def test_a_forgotten_person_leaves_no_byte_in_any_file(tmp_path: Path, open_here: Open) -> None:
     path = tmp_path / "memory.lbug"
     types = tmp_path / "mine.yaml"
     types.write_text(
@@ -310,7 +310,7 @@ def test_who_is_forgotten_leaves_no_byte_in_any_file(tmp_path: Path, open_here: 
         assert not any(trace in content for trace in (b"Ada Aug", b"Countess", b"Ockham", ada.id.encode()))
     memory.create("Person", name="Eve").result()
     memory.close().result()
-    assert sorted(file.name for file in tmp_path.iterdir()) == ["memory.lbug", "mine.yaml"]
+    assert sorted(file.name for file in tmp_path.iterdir()) == ["memory.lbug", "memory.lbug.sum", "mine.yaml"]
 
     memory = open_here(path=path, types=(types,))
     [eve] = memory.find("Person", name="Eve").result()
@@ -319,7 +319,7 @@ def test_who_is_forgotten_leaves_no_byte_in_any_file(tmp_path: Path, open_here: 
     assert memory.export().result() == expected
 
 
-def test_what_cannot_be_written_anew_is_forgotten_all_the_same(
+def test_a_failed_rewrite_still_forgets(
     tmp_path: Path, open_here: Open, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     def fail(*_: Any) -> None:
@@ -330,7 +330,7 @@ def test_what_cannot_be_written_anew_is_forgotten_all_the_same(
     bob = memory.create("Person", name="Bob").result()
     monkeypatch.setattr(embedded, "copy_database", fail)
     assert memory.forget(ada).result() == [ada]
-    assert "the file still has its bytes: no more space" in caplog.text
+    assert "the file still has their bytes: no more space" in caplog.text
     assert memory.find("Person").result() == [bob]
     monkeypatch.undo()
     memory.update(bob, age=3).result()
@@ -350,7 +350,7 @@ def test_the_package_is_named_where_it_is_missing(tmp_path: Path, monkeypatch: p
     assert list(tmp_path.iterdir()) == []
 
 
-def test_tidying_up_works_the_log_into_the_file(tmp_path: Path, open_here: Open) -> None:
+def test_tidy_moves_the_log_into_the_file(tmp_path: Path, open_here: Open) -> None:
     memory = open_here(path=tmp_path / "memory.lbug")
     memory.create("Person", name="Ada").result()
     log = tmp_path / "memory.lbug.wal"

@@ -1,4 +1,4 @@
-"""What memory does, the same in a file and on a server."""
+"""The operations of memory, equal in a file and on a server."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def test_subtypes_are_found_with_their_type_oldest_first(memory: Memory) -> None
     assert memory.find("Thing", name="x").result() == [robot, person, thing, agent, city]
 
 
-def test_what_is_not_set_is_matched_by_none(memory: Memory) -> None:
+def test_none_matches_a_missing_value(memory: Memory) -> None:
     ada = memory.create("Person", name="Ada", age=36).result()
     bob = memory.create("Person", name="Bob").result()
     nobody = memory.create("Person", age=None).result()
@@ -118,7 +118,7 @@ def test_every_kind_of_value_comes_back_as_it_was(
         ("Person", {"born": "2020-01-01"}, "write for example datetime.date(1815, 12, 10)"),
     ],
 )
-def test_what_the_types_do_not_have_is_refused(
+def test_undeclared_names_are_refused(
     memory: Memory, type: str, properties: dict[str, Any], said: str
 ) -> None:
     before = memory.export().result()
@@ -150,7 +150,7 @@ def test_update_sets_and_none_removes(memory: Memory) -> None:
         memory.update(Node("Person"), age=3).result()
 
 
-def test_save_writes_what_is_new_and_what_is_known(memory: Memory) -> None:
+def test_save_writes_new_and_known_nodes(memory: Memory) -> None:
     ada = Node("Person", {"name": "Ada", "age": None})
     saved = memory.save(ada).result()
     assert saved.id == ada.id and dict(saved.properties) == {"name": "Ada"}
@@ -187,7 +187,7 @@ def test_nodes_are_related_once_and_in_one_direction(memory: Memory) -> None:
     assert memory.get(london.id).result() == london
 
 
-def test_what_was_known_on_account_of_a_relation_alone_goes_with_it(memory: Memory) -> None:
+def test_unrelate_may_forget_the_other_node(memory: Memory) -> None:
     ada, bob = (memory.create("Person", name=name).result() for name in ("Ada", "Bob"))
     london, kim = memory.create("City", name="London").result(), memory.create("Person", name="Kim").result()
     for person in (ada, bob):
@@ -297,7 +297,7 @@ def test_merging_keeps_the_properties_of_relations(
     assert dict(relation.properties) == {"hours": 2, "since": date(1833, 6, 5)}
 
 
-def test_what_cannot_be_merged_is_refused_and_stays(memory: Memory) -> None:
+def test_a_refused_merge_changes_nothing(memory: Memory) -> None:
     ada, agent = memory.create("Person", name="Ada").result(), memory.create("Agent", name="Ada").result()
     city = memory.create("City", name="Ada").result()
     before = memory.export().result()
@@ -343,7 +343,7 @@ def test_a_person_is_forgotten_with_everything_about_it(memory: Memory) -> None:
     assert memory.forget(ada).result() == memory.only_about(ada).result() == []
 
 
-def test_what_others_are_related_to_is_not_forgotten_even_in_a_ring(memory: Memory) -> None:
+def test_forget_keeps_nodes_that_others_need_even_in_a_ring(memory: Memory) -> None:
     ada = memory.create("Person", name="Ada").result()
     here, there = memory.create("City", name="here").result(), memory.create("City", name="there").result()
     for source, relation, target in (
@@ -482,7 +482,7 @@ def test_several_operations_are_one(memory: Memory) -> None:
     assert memory.together(lambda graph: graph.find("City", {})).result() == []
 
 
-def test_it_is_awaited_on_a_loop_and_what_was_begun_is_done(memory: Memory) -> None:
+def test_an_awaited_operation_goes_on_after_a_cancellation(memory: Memory) -> None:
     async def use() -> Node:
         ada = await memory.create("Person", name="Ada")
         for impatient in [asyncio.ensure_future(_wait(memory, age)) for age in range(5)]:
@@ -498,7 +498,7 @@ def test_it_is_awaited_on_a_loop_and_what_was_begun_is_done(memory: Memory) -> N
     assert len(memory.find("Person", name="late").result()) == 5
 
 
-def test_what_comes_after_the_end_is_refused(memory: Memory) -> None:
+def test_operations_after_the_end_are_refused(memory: Memory) -> None:
     ada = memory.create("Person", name="Ada")
     closing = memory.close()
     assert ada.result()["name"] == "Ada"
@@ -508,10 +508,10 @@ def test_what_comes_after_the_end_is_refused(memory: Memory) -> None:
         memory.create("Person", name="Bob")
 
 
-def test_what_is_newer_is_left_alone(open_here: Open, place: dict[str, Any]) -> None:
+def test_a_newer_layout_is_left_alone(open_here: Open, place: dict[str, Any]) -> None:
     memory = open_here(**place)
     memory.create("Person", name="Ada").result()
-    keeper = memory._keeper
+    keeper = memory._worker
     keeper.submit(
         lambda store: store.write("MATCH (m:`_ravestate` {`key`: 'format'}) SET m.`value` = 2", {})
     ).result()

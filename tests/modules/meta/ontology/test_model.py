@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from hypothesis.stateful import Bundle, RuleBasedStateMachine, initialize, invariant, rule
 
 from ravestate.modules import ontology
-from ravestate.modules.meta.ontology.places import open_memory
+from ravestate.modules.meta.ontology.opening import open_memory
 
 Node = ontology.Node
 
@@ -134,7 +134,7 @@ class MemoryAgainstModel(RuleBasedStateMachine):
 
     @rule()
     def carry_over(self) -> None:
-        """What was exported and loaded elsewhere is the same."""
+        """An export, loaded elsewhere, gives an equal memory."""
         document = self.memory.export().result(60)
         with tempfile.TemporaryDirectory() as folder:
             other = open_memory(ontology.Settings(path=Path(folder) / "other.lbug"))

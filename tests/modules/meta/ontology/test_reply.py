@@ -25,11 +25,11 @@ async def wait(reply: Reply[object]) -> object:
     return await reply
 
 
-def test_it_gives_its_result_to_all_who_ask() -> None:
+def test_each_caller_gets_the_result() -> None:
     reply = Reply(done(3), "Memory.find")
     assert reply.result() == reply.result(1) == asyncio.run(wait(reply)) == 3
-    assert repr(reply) == "<reply of Memory.find: there>"
-    assert repr(Reply(Future(), "Memory.find")) == "<reply of Memory.find: to come>"
+    assert repr(reply) == "<reply of Memory.find: done>"
+    assert repr(Reply(Future(), "Memory.find")) == "<reply of Memory.find: pending>"
 
 
 def test_it_raises_the_error() -> None:
@@ -62,7 +62,7 @@ def test_virtual_time_waits_for_it_and_says_for_what() -> None:
     task = loop.create_task(wait(Reply(future, "Memory.find")))  # type: ignore[arg-type]
 
     def finish() -> None:
-        assert loop.kept_by() == ["Memory.find"]
+        assert loop.running_functions() == ["Memory.find"]
         future.set_result(3)
 
     loop.call_soon(lambda: loop.call_soon(finish))
@@ -72,16 +72,16 @@ def test_virtual_time_waits_for_it_and_says_for_what() -> None:
 
 
 @pytest.mark.parametrize("late", [False, True])
-def test_an_error_that_nobody_asks_for_is_told(caplog: pytest.LogCaptureFixture, late: bool) -> None:
+def test_an_ignored_error_is_logged(caplog: pytest.LogCaptureFixture, late: bool) -> None:
     future: Future[object] = Future() if late else done(PlatformError("the disk is full"))
     reply = Reply(future, "Memory.save")
     del reply
     if late:
         future.set_exception(PlatformError("the disk is full"))
-    assert "Memory.save failed, and nobody has waited for it: the disk is full" in caplog.text
+    assert "Memory.save failed, and nobody waited for it: the disk is full" in caplog.text
 
 
-def test_an_error_that_was_asked_for_is_not_told_again(caplog: pytest.LogCaptureFixture) -> None:
+def test_a_seen_error_is_not_logged(caplog: pytest.LogCaptureFixture) -> None:
     reply = Reply(done(PlatformError("no")), "Memory.save")
     with pytest.raises(PlatformError):
         reply.result()

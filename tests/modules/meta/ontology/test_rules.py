@@ -96,7 +96,7 @@ def test_the_loop_does_not_wait_for_memory(tmp_path: Path) -> None:
             while memory is None:
                 await asyncio.sleep(0)
                 memory = context.read(ontology.memory)
-            blocker = memory._keeper.submit(lambda _: held.wait(20))
+            blocker = memory._worker.submit(lambda _: held.wait(20))
             context.emit(ask, "Ada")
             turns = 0
             while turns < 100:  # the loop goes round while memory is held up
@@ -129,7 +129,7 @@ def test_without_the_package_everything_else_goes_on(
     )
 
 
-def test_a_mistake_in_a_file_of_types_is_told(tmp_path: Path) -> None:
+def test_an_error_in_a_file_of_types_is_an_error_of_the_context(tmp_path: Path) -> None:
     types = tmp_path / "mine.yaml"
     types.write_text("Boat:\n  is: Thnig\n")
     with pytest.raises(rs.DeclarationErrors) as refused:
@@ -156,7 +156,7 @@ async def meet(ctx: rs.RuleContext) -> None:
         ctx[guest] = what
 
 
-def test_who_writes_a_bound_slot_writes_memory(tmp_path: Path, open_here: Open) -> None:
+def test_a_write_to_a_bound_slot_is_a_write_to_memory(tmp_path: Path, open_here: Open) -> None:
     with simulate(desk, settings=at(tmp_path / "m.lbug")) as sim:
         for number in range(20):
             sim.emit(said, {"name": f"Ada {number}", "age": number})
@@ -178,9 +178,7 @@ def test_none_in_a_bound_slot_forgets_nobody(tmp_path: Path, open_here: Open) ->
     assert [node["name"] for node in memory.find("Person").result()] == ["Ada", "Bob"]
 
 
-def test_what_is_written_before_memory_is_open_and_right_before_the_end_is_kept(
-    tmp_path: Path, open_here: Open
-) -> None:
+def test_writes_before_the_opening_and_right_before_the_end_are_kept(tmp_path: Path, open_here: Open) -> None:
     hasty = rs.Module("hasty", requires=[ontology])
     first, last = ontology.bound(hasty, "first", "Person"), ontology.bound(hasty, "last", "Person")
 

@@ -1,13 +1,13 @@
-"""Writes people to memory for ever, and says of each when it is acknowledged: ``python writer.py FILE [forget]``.
+"""Write people to memory without end, and print each acknowledged number: ``python writer.py FILE [forget]``.
 
-With ``forget`` the one before is forgotten each time, before that is said.
+With ``forget``, forget the previous person before each number.
 """
 
 import sys
 from pathlib import Path
 
 from ravestate.modules import ontology
-from ravestate.modules.meta.ontology.places import open_memory
+from ravestate.modules.meta.ontology.opening import open_memory
 
 
 def main(path: Path, *, forget: bool) -> None:

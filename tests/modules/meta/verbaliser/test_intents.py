@@ -1,4 +1,4 @@
-"""What is meant."""
+"""Intents as values."""
 
 from ravestate.modules.meta.verbaliser.intents import Intent
 

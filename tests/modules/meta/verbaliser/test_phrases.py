@@ -143,7 +143,7 @@ def test_braces_can_be_said() -> None:
         ),
     ],
 )
-def test_what_cannot_be_said(intent: str, parameters: dict[str, object], message: str) -> None:
+def test_impossible_intents(intent: str, parameters: dict[str, object], message: str) -> None:
     found = PhraseBook({"greet": {"en": ["Hi {name}!"]}, "only": {"fr": ["Oui."]}}, language="de-AT")
     with pytest.raises(RuleError, match=f"(?s){message}"):
         found.choose(intent, parameters, random.Random())
@@ -157,10 +157,10 @@ def test_what_cannot_be_said(intent: str, parameters: dict[str, object], message
 @pytest.mark.parametrize(
     ("text", "line", "message"),
     [
-        ("greet: [Hello", 1, "this is no YAML"),
-        ("greet:\n  en: Hello: you", 2, "this is no YAML .*wants quotes"),
+        ("greet: [Hello", 1, "not valid YAML"),
+        ("greet:\n  en: Hello: you", 2, "not valid YAML .*wants quotes"),
         ("a: b\n\x07", 2, "a control character"),
-        ("a: b\n---\nc: d", 2, "this is no YAML .*another document"),
+        ("a: b\n---\nc: d", 2, "not valid YAML .*another document"),
         ("- Hello!", 1, "maps intents to languages, and this is no mapping"),
         ("Hello!", 1, "maps intents to languages"),
         ("greet:\n  en:\n  de: Hallo", 2, "a phrase is empty"),
@@ -169,7 +169,7 @@ def test_what_cannot_be_said(intent: str, parameters: dict[str, object], message
         (
             "greet:\n  en:\n    - {name}, hello",
             3,
-            "a phrase is a text, and this is a mapping.*wants quotes|no YAML",
+            "a phrase is a text, and this is a mapping.*wants quotes|not valid YAML",
         ),
         ("greet:\n  en:\n    - {name}", 3, "a phrase is a text, and this is a mapping"),
         ("greet:\n  en:\n    - [a]", 3, "a phrase is a text, and this is a sequence"),
@@ -188,7 +188,7 @@ def test_what_cannot_be_said(intent: str, parameters: dict[str, object], message
         ("a: hi {x!r:>3}", 1, "{x!r:>3} is no parameter"),
     ],
 )
-def test_a_mistake_is_told_with_file_and_line(tmp_path: Path, text: str, line: int, message: str) -> None:
+def test_errors_name_file_and_line(tmp_path: Path, text: str, line: int, message: str) -> None:
     with pytest.raises(DeclarationError, match=f"(?s)phrases1.yaml:{line}: .*(?:{message})"):
         book(tmp_path, BASE, text)
 

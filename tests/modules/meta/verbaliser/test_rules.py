@@ -102,7 +102,7 @@ def test_a_package_brings_its_phrases(tmp_path: Path, monkeypatch: pytest.Monkey
     assert phrase_book("rav_test_phrases", (), "en").intents[0] == "greet"
 
 
-def test_what_cannot_be_said_is_an_error() -> None:
+def test_an_impossible_intent_is_an_error() -> None:
     assert isinstance(failure("gret"), RuleError)
     assert "did you mean 'greet'?" in str(failure("gret"))
     assert "there is no package 'no.where'" in str(failure(Intent("greet", package="no.where")))
@@ -111,7 +111,7 @@ def test_what_cannot_be_said_is_an_error() -> None:
 
 
 @pytest.mark.parametrize("value", [None, "", 3, ["greet"]])
-def test_what_is_no_intent_is_refused(value: object) -> None:
+def test_a_value_that_is_no_intent_is_refused(value: object) -> None:
     with pytest.raises(RuleError, match=r"verbaliser.Intent\('greet', "):
         as_intent(value)
 

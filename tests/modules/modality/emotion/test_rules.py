@@ -1,4 +1,4 @@
-"""What the agent feels shows once, behind the answer, whoever gives it."""
+"""A feeling shows once, after the answer of any rule."""
 
 import asyncio
 from collections import Counter, deque
@@ -20,7 +20,7 @@ CALM: dict[str, Any] = {"shy": 0.0, "surprised": 0.0, "happy": 0.0, "affectionat
 
 
 def module(name: str = "skill", seconds: float = 0.0, **declared: Any) -> rs.Module:
-    """A skill that answers everything by "Yes.", after some seconds."""
+    """A skill that answers everything with "Yes." after some seconds."""
     skill = rs.Module(name, requires=[rawio, emotion])
 
     @skill.rule(when=rawio.input.changed, writes=rawio.output, **declared)
@@ -49,7 +49,7 @@ def felt(sim: Simulation) -> list[str]:
         ("Wow!", "surprised"),
     ],
 )
-def test_what_the_user_says_raises_the_feelings_signal(text: str, feeling: str) -> None:
+def test_the_users_words_raise_a_feeling(text: str, feeling: str) -> None:
     with calm() as sim:
         sim.say(text)
         assert felt(sim) == [feeling]
@@ -57,7 +57,7 @@ def test_what_the_user_says_raises_the_feelings_signal(text: str, feeling: str) 
 
 
 @pytest.mark.parametrize("text", ["The train leaves at nine.", "You are not nice.", "", "How old are you?"])
-def test_neutral_words_move_nobody(text: str) -> None:
+def test_neutral_words_raise_no_feeling(text: str) -> None:
     with calm() as sim:
         sim.say(text)
         assert (felt(sim), sim.said) == ([], [])
@@ -223,7 +223,7 @@ def test_fillers_are_no_answer() -> None:
 
 
 def more_specific() -> rs.Module:
-    """Keeps others waiting for 3 s, and then has nothing to say."""
+    """A skill that makes others wait for 3 s, and then resigns."""
     slow = rs.Module("slow", requires=[rawio])
 
     @slow.rule(when=rawio.input.changed.where(bool), writes=rawio.output)
@@ -269,7 +269,7 @@ def test_contexts_share_no_feelings() -> None:
 
 
 class Model:
-    """A language model that says three pieces, one a second."""
+    """A language model that yields three pieces, one a second."""
 
     async def load(self, progress: object = None) -> None: ...
 
@@ -283,7 +283,7 @@ class Model:
 
 
 class Screen:
-    """A screen whose lines a test types; what shows is kept."""
+    """A screen with lines from a test; it keeps its output."""
 
     interactive = True
 
@@ -317,7 +317,7 @@ class Screen:
         self.lines += "\n"
 
 
-def test_on_the_console_it_follows_what_is_said_piece_by_piece(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_on_the_console_it_follows_a_streamed_answer(monkeypatch: pytest.MonkeyPatch) -> None:
     screen = Screen()
     monkeypatch.setattr(conio.rules, "Console", lambda **_: Console(screen))
     with calm(conio, interloc, wildtalk) as sim:

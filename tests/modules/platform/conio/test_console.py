@@ -1,4 +1,4 @@
-"""The console as an agent sees it, on a screen of ours, on real pipes and on a real terminal."""
+"""The console on a scripted screen, on pipes and on a terminal."""
 
 import asyncio
 import errno
@@ -34,7 +34,7 @@ asyncio.run(main())
 
 
 class Script:
-    """A screen with a script: lines and exceptions to be read; what is written is kept."""
+    """A screen with a script of lines and exceptions; it keeps its output."""
 
     interactive = True
 
@@ -87,7 +87,7 @@ def heard(screen: Script) -> tuple[list[str], Console]:
         (OSError(5, "Input/output error"), "closed"),
     ],
 )
-def test_lines_come_until_it_ends(last: BaseException, ending: str) -> None:
+def test_lines_come_until_the_input_ends(last: BaseException, ending: str) -> None:
     screen = Script("hello", "", "a\x1b[2Jb\x00\udcff", last, "never")
     lines, console = heard(screen)
     assert lines == ["hello", "", "ab\ufffd"]
@@ -97,7 +97,7 @@ def test_lines_come_until_it_ends(last: BaseException, ending: str) -> None:
         asyncio.run(console.__anext__())
 
 
-def test_what_is_written_is_clean_and_in_order() -> None:
+def test_output_is_clean_and_in_order() -> None:
     screen = Script()
     console = Console(screen)
     console.write("one\x07\r\ntwo\x1b]0;x\x07")
@@ -109,7 +109,7 @@ def test_what_is_written_is_clean_and_in_order() -> None:
     assert screen.log == ["show one\ntwo", "stream th", "stream ree", "end", "show four"]
 
 
-def test_what_was_streamed_may_become_the_whole() -> None:
+def test_streamed_pieces_may_become_the_whole_text() -> None:
     screen = Script()
     console = Console(screen)
     for whole in ("Hello you!", "Hello", "Help!", "again"):
@@ -126,7 +126,7 @@ def test_what_was_streamed_may_become_the_whole() -> None:
     ]  # fmt: skip
 
 
-def test_what_others_say_meanwhile_stands_in_a_line_of_its_own() -> None:
+def test_other_output_during_a_stream_gets_a_line_of_its_own() -> None:
     screen = Script()
     console = Console(screen)
     console.stream("Hello")
@@ -148,7 +148,7 @@ def test_a_streamed_line_is_ended_at_the_end() -> None:
 
 
 @pytest.mark.parametrize("broken", [BrokenPipeError(), ValueError("I/O operation on closed file")])
-def test_writing_where_nobody_reads_ends_it(broken: Exception) -> None:
+def test_writing_to_a_closed_output_ends_the_console(broken: Exception) -> None:
     screen = Script("hello")
     console = Console(screen)
     screen.broken = broken
@@ -177,7 +177,7 @@ async def _lines(console: Console) -> list[str]:
         return [line async for line in console]
 
 
-def test_without_prompt_toolkit_it_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_message_without_prompt_toolkit_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
     class Terminal(io.StringIO):
         def isatty(self) -> bool:
             return True
@@ -188,7 +188,7 @@ def test_without_prompt_toolkit_it_says_what_to_install(monkeypatch: pytest.Monk
         Console(stdin=Terminal(), stdout=Terminal())
 
 
-def test_the_history_is_kept_in_the_users_folder_for_state(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_history_file_is_in_the_folder_for_state(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "platform", "linux")
     monkeypatch.setenv("XDG_STATE_HOME", "/state")
     assert history_file() == Path("/state/ravestate/history")
@@ -211,7 +211,7 @@ def test_through_pipes(tmp_path: Path) -> None:
     assert not (tmp_path / "history").exists()
 
 
-def test_a_disk_that_is_full_is_a_failure_and_a_broken_pipe_is_none() -> None:
+def test_a_full_disk_is_a_failure_and_a_broken_pipe_is_none() -> None:
     async def ended_by(error: OSError) -> PlatformError | None:
         script = Script("hello")
         script.broken = error
@@ -223,7 +223,7 @@ def test_a_disk_that_is_full_is_a_failure_and_a_broken_pipe_is_none() -> None:
 
     assert asyncio.run(ended_by(BrokenPipeError(errno.EPIPE, "Broken pipe"))) is None
     failure = asyncio.run(ended_by(OSError(errno.ENOSPC, "No space left on device")))
-    assert str(failure) == "conio: what the agent says cannot be written: No space left on device"
+    assert str(failure) == "conio: the agent's words cannot be written: No space left on device"
 
 
 @pytest.mark.skipif(os.name != "posix", reason="pipes of the shell")
@@ -283,7 +283,7 @@ def test_on_a_terminal(tmp_path: Path, keys: bytes, ending: str) -> None:
     seen = b""
 
     def wait_for(text: bytes) -> None:
-        """Be the terminal until it shows `text`."""
+        """Act as the terminal until it shows `text`."""
         nonlocal seen
         while text not in seen:
             received = os.read(ours, 4096)
@@ -294,7 +294,7 @@ def test_on_a_terminal(tmp_path: Path, keys: bytes, ending: str) -> None:
     assert run.stderr is not None
     with run:
         wait_for(b"\x1b[?2004h")  # the prompt reads
-        os.write(ours, b"helo\x1b[Dl\r")  # back once, and mended
+        os.write(ours, b"helo\x1b[Dl\r")  # the cursor goes back, and a letter is added
         wait_for(b"'hello'")
         wait_for(b"mean?")
         os.write(ours, b"\x1b[A\r")  # the line before

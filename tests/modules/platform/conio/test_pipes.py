@@ -1,4 +1,4 @@
-"""Lines through pipes and files, whatever is in them."""
+"""Lines through pipes and files, with any bytes in them."""
 
 import asyncio
 import io
@@ -140,7 +140,7 @@ def test_a_streamed_line_is_written_when_it_is_whole() -> None:
     assert out.getvalue() == "Hello\nyo\n"
 
 
-def test_who_watches_sees_each_piece() -> None:
+def test_a_terminal_shows_each_piece_at_once() -> None:
     class Terminal(io.StringIO):
         def isatty(self) -> bool:
             return True
@@ -154,14 +154,14 @@ def test_who_watches_sees_each_piece() -> None:
     assert out.getvalue() == "Hello\n"
 
 
-def test_what_the_encoding_lacks_is_replaced() -> None:
+def test_characters_that_the_encoding_lacks_are_replaced() -> None:
     raw = io.BytesIO()
     out = io.TextIOWrapper(raw, encoding="ascii")
     Pipes(None, out).show("café 😊")
     assert raw.getvalue() == b"caf? ?\n"
 
 
-def test_output_that_nobody_reads(pipe: Callable[[], Pipe]) -> None:
+def test_output_to_a_closed_pipe_raises(pipe: Callable[[], Pipe]) -> None:
     with pytest.raises(BrokenPipeError):
         Pipes(None, None).show("hello")
     reader, writer = pipe()
@@ -169,5 +169,5 @@ def test_output_that_nobody_reads(pipe: Callable[[], Pipe]) -> None:
     pipes = Pipes(None, writer)
     with pytest.raises(BrokenPipeError):
         pipes.show("hello")
-    with pytest.raises(BrokenPipeError):  # what is left is not written by closing it either
+    with pytest.raises(BrokenPipeError):  # closing does not write the rest either
         writer.close()

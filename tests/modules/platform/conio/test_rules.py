@@ -1,4 +1,4 @@
-"""The console as a module: an agent that is talked to on a screen of ours."""
+"""The console module: a scripted user talks to an agent."""
 
 import asyncio
 import threading
@@ -42,7 +42,7 @@ async def fail(ctx: rs.RuleContext) -> None:
 
 
 class Keys:
-    """A screen on which lines are typed by a test; what is written is kept."""
+    """A screen on which a test types lines; it keeps its output."""
 
     def __init__(self, *, interactive: bool = True) -> None:
         self.interactive = interactive
@@ -86,7 +86,7 @@ def keys(monkeypatch: pytest.MonkeyPatch) -> Keys:
     return keys
 
 
-def test_what_a_terminal_needs_is_loaded_off_the_loop(keys: Keys, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_terminal_library_loads_off_the_loop(keys: Keys, monkeypatch: pytest.MonkeyPatch) -> None:
     threads: list[threading.Thread] = []
 
     def note(**_: Any) -> Console:
@@ -100,7 +100,7 @@ def test_what_a_terminal_needs_is_loaded_off_the_loop(keys: Keys, monkeypatch: p
     assert len(threads) == 2 and threading.current_thread() not in threads
 
 
-def test_who_types_is_not_silent(keys: Keys, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_typing_counts_as_activity(keys: Keys, monkeypatch: pytest.MonkeyPatch) -> None:
     told: list[Any] = []
     monkeypatch.setattr(conio.rules, "Console", lambda on_key, **_: told.append(on_key) or Console(keys))
     lonely = rs.Module("lonely", requires=(rawio, idle))
@@ -119,7 +119,7 @@ def test_who_types_is_not_silent(keys: Keys, monkeypatch: pytest.MonkeyPatch) ->
         assert sim.said == ["hello", "Are you there?"]
 
 
-def test_who_sits_there_is_present_and_heard(keys: Keys) -> None:
+def test_the_user_at_the_console_is_present_and_heard(keys: Keys) -> None:
     with simulate(parrot, conio, settings={"conio": {"name": "Ada"}}) as sim:
         assert dict(sim.read(interloc.users)) == {"conio": "Ada"}
         assert isinstance(sim.read(conio.screen), Console)
@@ -130,7 +130,7 @@ def test_who_sits_there_is_present_and_heard(keys: Keys) -> None:
     assert keys.log[-1] == "closed"
 
 
-def test_what_is_said_shows_while_it_is_said(keys: Keys) -> None:
+def test_an_utterance_shows_while_it_grows(keys: Keys) -> None:
     with simulate(parrot, conio) as sim:
         keys.type("how are you")
         sim.settle()
@@ -154,21 +154,21 @@ def test_the_end_of_input_ends_the_agent_after_a_farewell(keys: Keys, end: BaseE
     assert not sim.failures
 
 
-def test_who_leaves_in_order_hears_the_answer(keys: Keys) -> None:
+def test_a_user_who_leaves_in_order_hears_the_answer(keys: Keys) -> None:
     with simulate(parrot, conio) as sim:
         keys.type("one two", EOFError())
         sim.advance(1.0)
         assert sim.said == ["one two", "Bye!"]
 
 
-def test_who_breaks_off_does_not(keys: Keys) -> None:
+def test_a_user_who_breaks_off_hears_no_answer(keys: Keys) -> None:
     with simulate(parrot, conio) as sim:
         keys.type("one two", KeyboardInterrupt())
         sim.settle()
         assert sim.said == ["Bye!"]
 
 
-def test_what_never_becomes_an_utterance_is_ended(keys: Keys) -> None:
+def test_pieces_that_never_become_an_utterance_end_their_line(keys: Keys) -> None:
     with simulate(stammer, conio) as sim:
         keys.type("hello")
         sim.settle()

@@ -1,4 +1,4 @@
-"""The prompt: what is typed below, and what is written above it."""
+"""The prompt: the user types below, and output appears above."""
 
 import asyncio
 import io
@@ -78,7 +78,7 @@ def test_lines_are_typed_and_edited() -> None:
     play(scene)
 
 
-def test_each_key_is_told_but_not_that_the_line_is_sent() -> None:
+def test_each_key_calls_on_key_but_sending_the_line_does_not() -> None:
     count = 0
 
     def on_key() -> None:
@@ -154,7 +154,7 @@ def test_a_full_row_goes_above() -> None:
     ("rest", "printed"),
     [(["…"], ""), ([" time"], " time\n"), ([" a ti", "me", "…"], ""), ([" a", " time"], " a time\n")],
 )
-def test_what_was_streamed_stays_above_the_line_that_was_typed(rest: list[str], printed: str) -> None:
+def test_streamed_text_stays_above_the_line_that_was_typed(rest: list[str], printed: str) -> None:
     async def scene(terminal: Terminal, keys: PipeInput, paper: Paper) -> None:
         reading = asyncio.create_task(terminal.read())
         await drawn(terminal)
@@ -170,14 +170,22 @@ def test_what_was_streamed_stays_above_the_line_that_was_typed(rest: list[str], 
     assert play(scene) == printed  # nothing is printed twice
 
 
-def test_what_others_print_goes_above_as_well(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("redirected", [False, True])
+def test_other_prints_go_above_the_prompt_unless_they_are_redirected(
+    monkeypatch: pytest.MonkeyPatch, redirected: bool
+) -> None:
+    class Stream(io.StringIO):
+        def isatty(self) -> bool:
+            return not redirected
+
     async def scene(terminal: Terminal, keys: PipeInput, paper: Paper) -> None:
         assert sys.stdout is not before
-        assert sys.stderr is sys.stdout
+        assert sys.stderr is (stderr if redirected else sys.stdout)
 
-    before = sys.stdout
+    before, stderr = sys.stdout, Stream()
+    monkeypatch.setattr(sys, "stderr", stderr)
     play(scene)
-    assert sys.stdout is before
+    assert sys.stdout is before and sys.stderr is stderr
 
 
 def test_a_terminal_that_is_gone_ends_it() -> None:
@@ -209,7 +217,7 @@ def test_reading_can_be_cancelled() -> None:
     play(scene)
 
 
-def test_what_was_typed_is_kept(tmp_path: Path) -> None:
+def test_typed_lines_are_kept(tmp_path: Path) -> None:
     file = tmp_path / "state" / "history"
 
     async def type_it(terminal: Terminal, keys: PipeInput, paper: Paper) -> None:

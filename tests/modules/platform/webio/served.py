@@ -34,7 +34,7 @@ class Served:
         self.process = subprocess.Popen(
             [sys.executable, str(HERE), json.dumps([self._patience, self._settings])],
             stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-            env={**os.environ, "PYTHONPATH": str(HERE.parents[3])},
+            env={**os.environ, "PYTHONPATH": os.pathsep.join((str(HERE.parents[3]), str(HERE.parents[4] / "src")))},
         )  # fmt: skip
         assert self.process.stdout is not None
         self.line = self.process.stdout.readline()
@@ -100,9 +100,9 @@ if __name__ == "__main__":
     import ravestate as rs
     from modules.platform.webio.visit import parrot
     from ravestate.modules import webio
-    from ravestate.modules.platform.webio import channel, door
+    from ravestate.modules.platform.webio import channel, limits
 
     patience, settings = json.loads(sys.argv[1])
     if patience is not None:
-        channel.SILENT = door.PATIENCE = door.STALLED = patience
+        channel.SILENT = limits.TIMEOUT = limits.STALL_TIMEOUT = patience
     rs.run(parrot, webio, settings={"webio": settings})

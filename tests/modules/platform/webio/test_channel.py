@@ -6,8 +6,8 @@ from typing import Any
 import pytest
 
 from modules.platform.webio.visit import in_virtual_time, past
-from ravestate.modules.platform.webio.channel import CODES, MALFORMED, Channel
-from ravestate.modules.platform.webio.protocol import ProtocolError
+from ravestate.modules.platform.webio.channel import Channel
+from ravestate.modules.platform.webio.protocol import CLOSING_CODES, ProtocolError
 
 
 class Socket:
@@ -30,7 +30,7 @@ def channel_on(socket: Socket) -> Channel:
     return Channel(socket, replies=2)  # type: ignore[arg-type]  # it is used like one
 
 
-@pytest.mark.parametrize("code", [*CODES, "malformed", "too-long", "empty", "one that is added some day"])
+@pytest.mark.parametrize("code", [*CLOSING_CODES, "too-long", "empty", "one that is added some day"])
 def test_whatever_is_wrong_is_told_and_closes_it(code: str) -> None:
     socket = Socket()
 
@@ -38,7 +38,7 @@ def test_whatever_is_wrong_is_told_and_closes_it(code: str) -> None:
         raise ProtocolError(code, "no")
 
     asyncio.run(channel_on(socket).carry(serve))
-    closed = (CODES.get(code, MALFORMED), code)
+    closed = (CLOSING_CODES.get(code, 4400), code)
     assert socket.done == ["accept", f'{{"type":"error","code":"{code}","text":"no"}}', closed]
 
 

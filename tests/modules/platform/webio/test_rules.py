@@ -90,6 +90,54 @@ async def test_after_a_filler_it_still_thinks_and_then_answers() -> None:
         assert asyncio.get_running_loop().time() == 3.0
 
 
+thinker = rs.Module("thinker", requires=(rawio,))
+
+
+@thinker.rule(when=rawio.input.changed, writes=rawio.output)
+async def think(ctx: rs.RuleContext) -> None:
+    await ctx.sleep(9.0)
+    ctx[rawio.output] = "forty-two"
+
+
+@thinker.rule(when=rawio.output.changed.detached(), emits=rawio.typing)
+async def take_note(ctx: rs.RuleContext) -> None:
+    """Work on after the answer, on something else."""
+    await ctx.sleep(60.0)
+
+
+@in_virtual_time
+async def test_it_is_shown_thinking_until_the_answer_though_fillers_are_said() -> None:
+    async with page(thinker, fillers) as app, Visit(app) as visit:
+        await visit.hello()
+        visit.say("why?")
+        frames = await visit.frames("typing")
+        said: list[str] = []
+        while "forty-two" not in said:
+            frames.append(frame := await visit.next())
+            if frame["type"] == "message":
+                said.append(frame["text"])
+        assert len(said) > 1
+        assert [frame["on"] for frame in frames if frame["type"] == "typing"] == [True]
+        assert await visit.next() == {"type": "typing", "on": False}
+        assert asyncio.get_running_loop().time() == 9.0
+
+
+@in_virtual_time
+async def test_a_paused_clock_is_shown_and_that_it_goes_on() -> None:
+    async with page(slow) as app, Visit(app) as visit:
+        await visit.hello()
+        (session,) = app.state.sessions
+        session.context.pause()
+        session.notify()
+        assert await visit.next() == {"type": "paused", "on": True}
+        async with Visit(app) as window:
+            await window.hello(session=visit.session)
+            assert await window.next() == {"type": "paused", "on": True}
+        session.context.resume()
+        session.notify()
+        assert await visit.next() == {"type": "paused", "on": False}
+
+
 @in_virtual_time
 async def test_an_utterance_is_shown_as_it_grows() -> None:
     async with page(speaker) as app, Visit(app) as visit:

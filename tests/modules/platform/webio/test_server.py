@@ -1,7 +1,9 @@
 """The web server: where it listens, what it sends, how it ends."""
 
 import asyncio
+import io
 import json
+import re
 import signal
 import socket
 import subprocess
@@ -11,12 +13,14 @@ from pathlib import Path
 
 import httpx
 import pytest
+from websockets.asyncio.client import connect
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 
 import ravestate as rs
 from modules.platform.webio.served import Served, hello, talk
 from modules.platform.webio.visit import parrot
 from ravestate.modules import webio
+from ravestate.modules.platform.webio.server import Server
 from ravestate.runtime.agent import Agent
 from repo.snippets import blocks_in
 from runtime.on_loop import on_loop
@@ -36,7 +40,7 @@ def test_the_page_and_its_files_are_there(served: Served) -> None:
         page = client.get("/")
         assert page.status_code == 200
         assert page.headers["content-type"] == "text/html; charset=utf-8"
-        for name in ("assets/chat.js", "assets/chat.css", "widget.js", "raven.svg"):
+        for name in ("assets/chat.js", "assets/chat.css", "widget.js", "assets/raven.svg"):
             file = client.get(f"/{name}")
             assert (file.status_code, file.headers["content-encoding"]) == (200, "gzip")
             assert client.get(f"/{name}", headers={"if-none-match": file.headers["etag"]}).status_code == 304
@@ -109,9 +113,74 @@ def test_a_second_signal_ends_it_at_once_and_a_term_in_order() -> None:
         assert served.errors == ""
 
 
-def test_the_link_has_the_token() -> None:
+@on_loop
+async def test_a_websocket_to_any_other_path_is_not_found_and_not_logged() -> None:
+    with Served(token=TOKEN) as served:
+        for path in ("/", "/nothing", "/ws/", "/ws/more", "/assets/chat.js"):
+            with pytest.raises(InvalidStatus) as refused:
+                async with connect(f"ws://{served.host}{path}"):
+                    pass
+            assert refused.value.response.status_code == 404
+        assert served.end() == 0
+        assert served.errors == ""
+
+
+@on_loop
+async def test_a_token_with_a_control_character_is_refused_and_not_logged() -> None:
+    with Served(token=TOKEN) as served:
+        for token in (f"{TOKEN}\0", f"\x1b[0m{TOKEN}", f"{TOKEN}\n", f"{TOKEN}\ud800"):
+            async with served.connect() as visit:
+                assert (await hello(visit, token=token))["code"] == "token"
+                with pytest.raises(ConnectionClosed):
+                    await visit.recv()
+                assert visit.close_code == 4401
+        reader, writer = await asyncio.open_connection("127.0.0.1", served.port)
+        writer.write(
+            f"GET /ws HTTP/1.1\r\nhost: {served.host}\r\nauthorization: Bearer {TOKEN}\0\r\n\r\n".encode()
+        )
+        assert b"400 Bad Request" in await reader.read()
+        writer.close()
+        assert served.end() == 0
+        assert served.errors == ""
+
+
+def served_by(monkeypatch: pytest.MonkeyPatch, terminals: str) -> tuple[str, str]:
+    """Return what a server with a token announces on both outputs, some of which are terminals."""
+    written = {"stdout": io.StringIO(), "stderr": io.StringIO()}
+    for name, output in written.items():
+        output.isatty = lambda name=name: name in terminals  # type: ignore[method-assign]
+        monkeypatch.setattr(sys, name, output)
+
+    async def announce() -> None:
+        agent = Agent(parrot, webio, settings={"webio": {"port": 0, "token": TOKEN}})
+        async with Server(agent) as server:
+            server.announce()
+
+    asyncio.run(announce())
+    out, err = (re.sub(r":\d+/", ":8420/", output.getvalue()) for output in written.values())
+    return out, err
+
+
+LINK = "The agent is at http://127.0.0.1:8420/#token=open%20sesame%2C%20please (Ctrl-C ends it)\n"
+
+
+def test_a_terminal_shows_the_link_with_the_token(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert served_by(monkeypatch, "stdout stderr") == (LINK, "")
+
+
+@pytest.mark.parametrize("terminal", ["", "stderr"])
+def test_the_token_goes_to_no_output_but_a_terminal(monkeypatch: pytest.MonkeyPatch, terminal: str) -> None:
+    out, err = served_by(monkeypatch, terminal)
+    assert out == (
+        "The agent is at http://127.0.0.1:8420/ (Ctrl-C ends it)\n"
+        "To open it, add #token= and the token that you have set (webio.token).\n"
+    )
+    assert err == (LINK if terminal else "")
+
+
+def test_the_address_is_the_machines_name_where_it_listens_on_all() -> None:
     with Served(token=TOKEN, host="0.0.0.0") as served:
-        link = f"http://{socket.gethostname()}:{served.port}/#token=open%20sesame%2C%20please"
+        link = f"http://{socket.gethostname()}:{served.port}/"
         assert served.line == f"The agent is at {link} (Ctrl-C ends it)\n"
 
 

@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 
 from ravestate.modules import ontology
-from ravestate.modules.meta.ontology.places import open_memory, types_of
+from ravestate.modules.meta.ontology.opening import open_memory, types_of
 from ravestate.modules.skill.agentqa import Life
 from ravestate.modules.skill.agentqa.itself import RELATIONS, recall, settle
 

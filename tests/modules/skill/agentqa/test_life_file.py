@@ -144,9 +144,9 @@ def test_an_empty_file_changes_nothing(text: str, tmp_path: Path) -> None:
         ("topics:\n  home: {phrases: '{home!r}'}", "is no fact"),
         ("topics:\n  likes: {named: {shoes: 'Yes, {it}.'}}", "'shoes' means nothing here"),
         ("topics:\n  likes: {named: {likes: 'Yes, {what}.'}}", "{what} in 'Yes, {what}.' is no fact"),
-        ("facts: {a: b", "this is no YAML"),
-        ("facts: \x07", "this is no YAML (a control character)"),
-        ("[" * 5000, "nested without end"),
+        ("facts: {a: b", "not valid YAML"),
+        ("facts: \x07", "not valid YAML (a control character)"),
+        ("[" * 5000, "nested more than 50 levels"),
     ],
 )
 def test_a_mistake_is_told_with_its_line(text: str, told: str, tmp_path: Path) -> None:

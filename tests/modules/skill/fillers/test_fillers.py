@@ -83,3 +83,60 @@ def test_one_filler_is_enough_for_a_pause_that_goes_on_for_another_reason() -> N
         sim.advance(1.5)
         sim.emit(idle.impatient)
         assert len(sim.said) == 1
+
+
+SORRY = (
+    "Sorry, I lost that. Could you say it again?",
+    "Sorry, I have no answer to that. Could you put it in other words?",
+)
+model = rs.Module("model", requires=[rawio])
+
+
+@model.rule(when=rawio.input.changed, writes=rawio.output, until=rawio.input.changed)
+async def think(ctx: rs.RuleContext) -> rs.Resign | None:
+    """Think for so many seconds as are said, and then answer, unless the seconds are negative."""
+    seconds = float(ctx.payload(rawio.input.changed))
+    await ctx.sleep(abs(seconds))
+    if seconds < 0:
+        return rs.Resign("no idea")
+    ctx[rawio.output] = "thought"
+    return None
+
+
+def test_an_answer_that_takes_too_long_is_lost_in_words() -> None:
+    with simulate(fillers, model, settings={"fillers": {"answer_within": 15.0}}) as sim:
+        sim.say("60")
+        sim.advance(2.1)
+        assert len(sim.said) == 1
+        sim.advance(14.8)
+        assert len(sim.said) == 1
+        sim.advance(0.2)
+        assert sim.said[1] in SORRY
+        sim.advance(100.0)
+        assert sim.said[2:] == ["thought"]
+
+
+def test_if_every_rule_resigns_after_a_filler_the_agent_says_so() -> None:
+    with simulate(fillers, model) as sim:
+        sim.say("-4")
+        sim.advance(10.0)
+        assert len(sim.said) == 2
+        assert sim.said[1] in SORRY
+        sim.advance(100.0)
+        assert len(sim.said) == 2
+
+
+def test_an_answer_after_a_filler_is_not_lost() -> None:
+    with simulate(fillers, model) as sim:
+        sim.say("10")
+        sim.advance(100.0)
+        assert sim.said[1:] == ["thought"]
+
+
+def test_the_users_next_words_take_the_place_of_the_answer() -> None:
+    with simulate(fillers, model) as sim:
+        sim.say("60")
+        sim.advance(10.0)
+        sim.say("0")
+        sim.advance(100.0)
+        assert sim.said[1:] == ["thought"]

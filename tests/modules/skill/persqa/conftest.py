@@ -10,7 +10,7 @@ import pytest
 
 from ravestate.modules import ontology
 from ravestate.modules.meta.nlp.pipeline import pipeline
-from ravestate.modules.meta.ontology.places import open_memory
+from ravestate.modules.meta.ontology.opening import open_memory
 
 Look = Callable[[], dict[str, Any]]
 

@@ -10,7 +10,7 @@ import pytest
 from modules.skill.persqa.conftest import Look
 from modules.skill.persqa.test_scenarios import agent, answers, asked, knower, meant
 from ravestate.modules import interloc, ontology, persqa
-from ravestate.modules.meta.ontology.places import open_memory
+from ravestate.modules.meta.ontology.opening import open_memory
 
 pytestmark = pytest.mark.usefixtures("reader")
 

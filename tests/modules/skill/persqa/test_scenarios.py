@@ -728,7 +728,7 @@ def test_a_memory_that_another_process_has_open(file: Path, look: Look) -> None:
     code = """
 import sys
 from ravestate.modules import ontology
-from ravestate.modules.meta.ontology.places import open_memory
+from ravestate.modules.meta.ontology.opening import open_memory
 memory = open_memory(ontology.Settings(path=sys.argv[1]))
 memory.opened().result(20)
 print("open", flush=True)

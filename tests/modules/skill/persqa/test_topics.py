@@ -3,7 +3,7 @@
 import pytest
 
 from ravestate.modules import ontology
-from ravestate.modules.meta.ontology.places import types_of
+from ravestate.modules.meta.ontology.opening import types_of
 from ravestate.modules.skill.persqa.topics import TOPICS, due
 
 ALL = tuple(TOPICS)

@@ -1,4 +1,4 @@
-"""Of it the documentation uses one exception."""
+"""The one exception that the documentation uses."""
 
 
 class ExternalShutdownException(Exception):

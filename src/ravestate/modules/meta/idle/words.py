@@ -1,4 +1,4 @@
-"""When silence is what the user wants: who asked for quiet, or has taken leave, is not to be talked to."""
+"""Recognise a wish for quiet, a goodbye, and the agent's questions (English, German)."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from ravestate.modules._courtesy import COURTESY
 __all__ = ["asks_for_quiet", "last_question", "takes_leave"]
 
 LONGEST = 1000
-"""Characters of an utterance that are looked at."""
+"""The characters of an utterance that the functions read."""
 
 _SENTENCE = re.compile(r"[^.!?,;…\n]+")
 _POLITE = (
@@ -38,7 +38,7 @@ _QUESTION = re.compile(r"[^.!?…\n]+\?(?=\W*$)")
 
 
 def asks_for_quiet(text: str) -> bool:
-    """Whether the user wants the agent to say nothing more (English, German).
+    """Return whether the user wants the agent to be quiet.
 
     Example:
         >>> asks_for_quiet("Please be quiet!"), asks_for_quiet("It is quiet here.")
@@ -48,7 +48,7 @@ def asks_for_quiet(text: str) -> bool:
 
 
 def takes_leave(text: str) -> bool:
-    """Whether the user says goodbye, and nothing much after it.
+    """Return whether the user says goodbye, with little after it.
 
     Example:
         >>> takes_leave("Okay, bye!"), takes_leave("Bye the way, who are you?")
@@ -61,7 +61,7 @@ def takes_leave(text: str) -> bool:
 
 
 def last_question(text: str) -> str:
-    """The question at the end of what somebody says; empty if it ends otherwise.
+    """Return the question at the end of a text; empty if there is none.
 
     Example:
         >>> last_question("I am fine. And you? 😊"), last_question("Who? Me.")

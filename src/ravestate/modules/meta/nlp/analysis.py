@@ -1,4 +1,4 @@
-"""All that is seen in a text."""
+"""The whole analysis of a text."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _SECOND_PERSON = word_set("you your yours yourself u ur")
 
 @dataclass(frozen=True, slots=True)
 class Analysis:
-    """What the module makes of a text. The README says what each part means."""
+    """The analysis of a text; the README explains each part."""
 
     tree: Tree
     entities: tuple[Entity, ...]
@@ -39,12 +39,12 @@ class Analysis:
 
 
 def analyse(text: str, pipeline: Pipeline, agent_names: Iterable[str] = ()) -> Analysis:
-    """Return all that is seen in `text`. Blocks for some milliseconds.
+    """Analyse `text`. Blocks for some milliseconds.
 
     Args:
-        text: Anything; of a long text only the beginning is looked at.
-        pipeline: Reads it. It is loaded at the first call, which takes about a second.
-        agent_names: A text that has one of them is about the agent, whatever its case.
+        text: Any text; the analysis covers the beginning of a long one.
+        pipeline: The pipeline; the first call loads it in about a second.
+        agent_names: A text with one of them is about the agent. Case is ignored.
 
     Raises:
         PlatformError: spaCy or the pipeline is missing.

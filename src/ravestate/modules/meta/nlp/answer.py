@@ -1,8 +1,7 @@
-"""Whether a text answers yes or no.
+"""Recognise answers: yes, no, or unsure.
 
-An answer is read from the beginning of the text, cue by cue: a cue says yes or no (strongly or weakly), professes not to
-know, hedges, denies, makes sure, or says nothing. The first word that is no cue ends the answer. What the cues make together
-follows from a few rules (`_weigh`); the cues themselves stand in ``answer_cues.py``.
+The reader takes cues from the beginning of the text, up to the first word that is not a cue. A cue means yes, no or unsure,
+hedges, denies, intensifies, or fills. `_weigh` combines the cues; ``answer_cues.py`` lists them.
 """
 
 from __future__ import annotations
@@ -18,7 +17,7 @@ __all__ = ["YesNo", "yesno_of"]
 
 @dataclass(frozen=True, slots=True)
 class YesNo:
-    """Whether a text means yes or no. All three are None where it means neither.
+    """The meaning of a text as an answer. All three are None for a text that is no answer.
 
     Example:
         >>> yesno_of("probably not")
@@ -30,10 +29,10 @@ class YesNo:
     no: int | None = None
     """0 no, 1 weakly, 2 surely."""
     unsure: bool | None = None
-    """Whether the speaker professes not to know."""
+    """Whether the speaker does not know."""
 
     def __bool__(self) -> bool:
-        """Whether it is an answer at all."""
+        """Return whether the text is an answer."""
         return self.yes is not None
 
 
@@ -47,9 +46,9 @@ _TURNS = frozenset(["but", "although", "though", "however"])
 _IDLE = word_set(
     "really honestly just actually simply truly quite personally still totally absolutely definitely certainly sure surely"
 )
-"""Adverbs that change nothing between *I* and its verb: *I really don't know*."""
+"""Adverbs without effect between *I* and its verb: *I really don't know*."""
 _PLAIN = word_set("yes yeah yep no nope probably maybe perhaps i")
-"""Words that begin another answer beyond doubt."""
+"""Words that certainly begin another answer."""
 _LONGEST_CUE = max(len(cue) for cue in CUES)
 _CONTRACTIONS = {
     "can't": "can not",
@@ -80,7 +79,7 @@ _ENDINGS = {"n't": " not", "'d": " would", "'ll": " will", "'ve": " have", "'re"
 
 
 def yesno_of(text: str) -> YesNo:
-    """Return whether `text` means yes or no.
+    """Return the meaning of `text` as an answer.
 
     Example:
         >>> yesno_of("not certainly but ok"), yesno_of("I like tea")
@@ -97,14 +96,14 @@ def yesno_of(text: str) -> YesNo:
 
 
 def _turned(first: YesNo, second: YesNo) -> YesNo:
-    """What is meant by an answer, *but*, and another one."""
+    """Return the meaning of two answers with *but* between them."""
     if not first or not second or second == UNSURE or (first.yes and second.yes) or (first.no and second.no):
         return first
     return YesNo(1, 0, False) if second.yes else YesNo(0, 1, False)
 
 
 def _words(text: str) -> list[str]:
-    """The first words, in lower case and without contractions, and the punctuation between them."""
+    """Return the first words in lower case, without contractions, and with punctuation."""
     found: list[str] = []
     for token in _TOKEN.findall(text[:400].lower().replace("’", "'")):
         word = _STRETCHED.sub(r"\1", token)
@@ -123,14 +122,14 @@ def _words(text: str) -> list[str]:
 
 
 def _is_idle(before: str, after: str) -> bool:
-    """Whether an adverb between these words changes nothing."""
+    """Return whether an adverb between these words has no effect."""
     return (before in ("i", "we", "have", "am", "do") and after != "not") or (
         before == "not" and after in ("know", "want", "mind", "think", "believe", "like")
     )
 
 
 def _answer(words: list[str]) -> tuple[YesNo, int]:
-    """The answer at the beginning of `words`, and where it ends."""
+    """Return the answer at the beginning of `words`, and its end."""
     cues: list[Cue] = []
     reader = _Reader(words)
     index = 0
@@ -151,7 +150,7 @@ def _answer(words: list[str]) -> tuple[YesNo, int]:
 
 
 def _is_question(words: list[str], index: int, cues: list[Cue]) -> bool:
-    """Whether what goes on without a comma is a question: *right now?*, but not *yes, and you?*."""
+    """Return whether the words after the answer make it a question: *right now?*, but not *yes, and you?*."""
     if any(word[0] in _PUNCTUATION for word in words[:index]) and any(cue.takes_side for cue in cues):
         return False
     for word in words[index:]:
@@ -161,14 +160,14 @@ def _is_question(words: list[str], index: int, cues: list[Cue]) -> bool:
 
 
 class _Reader:
-    """Finds cues in words. What it has found once it remembers: a cue may be one only if another follows."""
+    """A finder of cues with a cache: some cues count only before another cue."""
 
     def __init__(self, words: list[str]) -> None:
         self._words = words
         self._known: dict[int, tuple[Cue | None, int]] = {}
 
     def cue_at(self, index: int) -> tuple[Cue | None, int]:
-        """The longest cue that begins at `index`, and its length in words."""
+        """Return the longest cue at `index`, and its length in words."""
         if index not in self._known:
             self._known[index] = self._find(index)
         return self._known[index]
@@ -182,7 +181,7 @@ class _Reader:
         return None, 0
 
     def _may_end(self, cue: Cue, phrase: tuple[str, ...], index: int) -> bool:
-        """Whether a cue is one before what follows it: *I do* is an answer, *I do the dishes* is none."""
+        """Return whether a cue may end here: *I do* is an answer, *I do the dishes* is not."""
         words = self._words
         if index == len(words) or words[index][0] in _PUNCTUATION or words[index] in _TURNS:
             return True
@@ -214,9 +213,9 @@ class _Reader:
 
 
 def _weigh(cues: list[Cue]) -> YesNo:
-    """What cues mean together."""
+    """Return the combined meaning of cues."""
     cues = [cue for cue in cues if cue is not Cue.FILLER]
-    sides: list[tuple[str, int]] = []  # what is said, and how strongly
+    sides: list[tuple[str, int]] = []  # sides with strengths
     hedged = denied = sure = False
     for cue in cues:
         if cue is Cue.UNSURE:
@@ -247,7 +246,7 @@ def _weigh(cues: list[Cue]) -> YesNo:
 
 
 def _of_adverbs(cues: list[Cue]) -> YesNo:
-    """Adverbs alone: *probably*, *absolutely not*, *not really*."""
+    """Return the meaning of adverbs alone: *probably*, *absolutely not*, *not really*."""
     if not cues:
         return NEITHER
     hedged = any(cue in (Cue.HEDGE, Cue.MAYBE) for cue in cues)

@@ -1,4 +1,4 @@
-"""The cues of yes and no: words and phrases, without contractions, and what they say."""
+"""The cues of yes and no: words and phrases without contractions."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ __all__ = ["CUES", "FOLLOWERS", "STATERS", "STRICT", "UNKNOWNS", "Cue"]
 
 
 class Cue(Enum):
-    """What a cue says."""
+    """The meaning of a cue."""
 
     YES = "yes"
     YES_WEAK = "weakly yes"
@@ -26,7 +26,7 @@ class Cue(Enum):
 
     @property
     def takes_side(self) -> bool:
-        """Whether it says yes, no, or that one does not know."""
+        """Whether it means yes, no, or unsure."""
         return self in (Cue.YES, Cue.YES_WEAK, Cue.NO, Cue.NO_WEAK, Cue.UNSURE)
 
 
@@ -157,7 +157,7 @@ _PHRASES: dict[Cue, str] = {
 }
 
 CUES: dict[tuple[str, ...], Cue] = {}
-"""What each phrase says."""
+"""The cue of each phrase."""
 for _cue, _patterns in _PHRASES.items():
     for _phrase in phrases(_patterns):
         CUES.setdefault(_phrase, _cue)
@@ -169,13 +169,13 @@ _LIKE_STATEMENTS = word_set(
 )
 
 STRICT = frozenset(phrase for phrase in CUES if phrase[0] in _LIKE_STATEMENTS)
-"""Phrases that might begin a statement: they answer only where the end, punctuation or another answer follows."""
+"""Phrases that may begin a statement: they answer only before the end, punctuation or another answer."""
 
 UNKNOWNS = word_set("if whether what how where why who when which about on yet exactly because")
-"""What somebody does not know may follow: *I don't know if I want that*, but not *I don't know my father*."""
+"""Words that may follow *I don't know*: *I don't know if I want that*, but not *I don't know my father*."""
 
 STATERS = word_set("i you he she it we they my your his her our their this that these those there the a an")
-"""Words that begin a statement behind a hedge: *maybe I should go* is no answer."""
+"""Words that begin a statement after a hedge: *maybe I should go* is no answer."""
 
 FOLLOWERS = word_set(
     "i you he she it we they my your his her our their this that these those there the a an not because",
@@ -184,4 +184,4 @@ FOLLOWERS = word_set(
     "many most and or maybe me us thank thanks very so only too also tell give go take come call after",
     "before until unless about all of on from especially except",
 )
-"""Words of which one follows an answer where no comma is written: *no my name is Tom*, but not *no man is an island*."""
+"""Words that may follow an answer without a comma: *no my name is Tom*, but not *no man is an island*."""

@@ -1,4 +1,4 @@
-"""Question words in a text, and the kind that each of them asks for."""
+"""Question words, and the kinds of their questions."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ AUXILIARIES = word_set(
     "do does did am is are was were 's 're s re have has had 've can could will would shall should may might must 'll 'd ca wo ",
     "ai",
 )
-"""Verbs that change place with the subject in a question."""
+"""Verbs that precede the subject in a question."""
 
 _MEASURES = word_set(
     "many much old long far tall big large high deep heavy fast hot cold cool warm expensive often wide small short ",
@@ -42,11 +42,11 @@ _CLASS_OF = {noun: kind for kind, nouns in _CLASSES.items() for noun in nouns}
 _FOUGHT_FOR = word_set(
     "look wait ask search pay care stand work hope vote apply prepare fight study go know famous long plan shop hunt"
 )
-"""Verbs with which *what ... for* asks for a thing."""
+"""Verbs that make *what ... for* ask for a thing."""
 
 
 def kind_at(words: Sequence[Word], index: int) -> QuestionWord | None:
-    """Return what the word at `index` asks for, None if it is no question word.
+    """Return the kind of question of the word at `index`; None for other words.
 
     Example: of "how many friends do you have" the word at 0 asks for an amount.
     """
@@ -66,7 +66,7 @@ def kind_at(words: Sequence[Word], index: int) -> QuestionWord | None:
         for other in rest:
             if other.pos in ("ADJ", "NUM"):
                 continue
-            if other.pos in ("NOUN", "PROPN", "VERB"):  # of a bare text it may take a noun for a verb
+            if other.pos in ("NOUN", "PROPN", "VERB"):  # without punctuation the tagger mistakes some nouns
                 kind = _CLASS_OF.get(other.lemma.lower(), kind)
             break
         if _asks_what_for(rest):
@@ -75,7 +75,7 @@ def kind_at(words: Sequence[Word], index: int) -> QuestionWord | None:
 
 
 def _asks_what_for(rest: Sequence[Word]) -> bool:
-    """Whether *for* ends the clause, and is not the verb's own: *what do you need that for*."""
+    """Return whether a *for* that is not the verb's own ends the clause: *what do you need that for*."""
     clause: list[Word] = []
     for word in rest:
         if word.pos == "PUNCT":

@@ -35,23 +35,23 @@ _DIRECT = (
     "acomp",
     "oprd",
     "pobj",
-)  # a pobj of a verb is what the tagger took for a preposition's
+)  # the tagger sometimes takes a verb for a preposition
 _FEELINGS = word_set(
     "interested tired bored married divorced scared excited worried surprised pleased disappointed confused retired ",
     "annoyed satisfied",
 )
 _PURSUITS = word_set("hobby job passion dream goal plan interest pastime task habit")
-"""*My hobby is reading* says what the hobby is, not what it does."""
+"""Subjects before a gerund that names them: *my hobby is reading*."""
 _SENSES = word_set("be feel look seem sound taste smell")
 _STATES = word_set("better worse well fine good bad great ok okay awful hard")
-"""Words that the tagger takes for adverbs, but that tell how somebody is."""
+"""Adjectives that the tagger takes for adverbs."""
 
 Part = str | QuestionWord
 
 
 @dataclass(frozen=True, slots=True)
 class _Unknown:
-    """What a question asks for: where its phrase hangs on the verb, and its kind."""
+    """The unknown of a question: its word, the top of its phrase, and its kind."""
 
     word: Word
     top: Word
@@ -59,19 +59,19 @@ class _Unknown:
 
 
 class Clause:
-    """One clause of a tree. Made by `all_in`."""
+    """One clause of a tree; `all_in` makes them."""
 
     def __init__(self, tree: Tree, verb: Word, others: dict[int, Clause], owners: dict[int, Clause]) -> None:
         self.tree = tree
         self.verb = verb
         self._others = others
-        """All clauses of the tree, by their verbs."""
+        """All clauses of the tree by the index of the verb."""
         self._owners = owners
-        """The clause to which each verb belongs: its own, or the one whose chain it goes on."""
+        """The clause of each verb: its own, or that of its chain."""
 
     @classmethod
     def all_in(cls, tree: Tree) -> list[Clause]:
-        """Every clause that makes triples, in order of their verbs."""
+        """Return the clauses that make triples, in order of their verbs."""
         clauses: dict[int, Clause] = {}
         owners: dict[int, Clause] = {}
         for word in tree.words:
@@ -88,7 +88,7 @@ class Clause:
         ]
 
     def triples(self) -> Iterator[Triple]:
-        """What the clause says, one triple for each pair of subject and object."""
+        """Yield a triple for each pair of subject and object."""
         subjects, objects = self._parts()
         for subject in subjects:
             for object, contrasted in objects:
@@ -99,7 +99,7 @@ class Clause:
 
     @cached_property
     def chain(self) -> list[Word]:
-        """The verb, and the verbs that go on from it: *want to become*."""
+        """The verb with the verbs that it governs: *want to become*."""
         chain = [self.verb]
         while (following := following_verb(self.tree, chain[-1])) is not None:
             chain.append(following)
@@ -109,7 +109,7 @@ class Clause:
 
     @cached_property
     def predicate(self) -> str:
-        """The lemma; in a chain the first as lemma, the others as written."""
+        """The lemma; in a chain the first verb's lemma, then the others as written."""
         first, *others = self._prefix + self.chain
         if self._names_pursuit:
             return "be"
@@ -130,7 +130,7 @@ class Clause:
 
     @cached_property
     def negated(self) -> bool:
-        """Whether it is denied."""
+        """Whether the clause is negated."""
         later = self.chain[1:]  # "decide not to go" denies the going alone
         own = [word for word in self._own if word.dep != "ROOT" and self.tree.head(word) not in later]
         if any(word.low in NEGATIONS and not denies_conjunct(self.tree, word, self._others) for word in own):
@@ -150,12 +150,12 @@ class Clause:
 
     @cached_property
     def _verbs(self) -> list[Word]:
-        """All its verbs, also one that only makes the future."""
+        """All of its verbs, with the *going* of a future."""
         return self.chain if self.verb in self.chain else [self.verb, *self.chain]
 
     @cached_property
     def _prefix(self) -> list[Word]:
-        """Of *like to swim and run*: *like*, for the clause of *run*."""
+        """The verbs that a joined clause inherits: *like*, for *run* in *like to swim and run*."""
         head = self._head_clause
         if self.verb.dep == "conj" and head is not None and self._head in head.chain[1:]:
             return head._prefix + head.chain[: head.chain.index(self._head)]
@@ -172,7 +172,7 @@ class Clause:
 
     @cached_property
     def _agents(self) -> list[Word]:
-        """Who does it, in a passive with *by*."""
+        """The agent of a passive, after *by*."""
         if self._passive is None or self._feels:
             return []
         for by in self.tree.children(self.chain[0], "agent"):
@@ -182,7 +182,7 @@ class Clause:
 
     @cached_property
     def _names_pursuit(self) -> bool:
-        """*My hobby is reading books*: the gerund says what it is."""
+        """Whether the gerund names the subject: *my hobby is reading books*."""
         subjects = self._own_subjects
         return (
             self.verb.tag == "VBG"
@@ -192,7 +192,7 @@ class Clause:
         )
 
     def _gerund(self, verb: Word) -> list[Word]:
-        """The gerund and what belongs to it, but not the rest of the clause."""
+        """Return the gerund with its own words, without the rest of the clause."""
         kept = [verb]
         for child in self.tree.children(verb, "dobj", "prep", "prt"):
             kept += gerund_phrase(self.tree, child)
@@ -222,7 +222,7 @@ class Clause:
 
     @cached_property
     def _own(self) -> list[Word]:
-        """The words that belong to this clause and to none within it."""
+        """The words of this clause, without those of clauses inside it."""
         found: list[Word] = list(self._verbs)
         for word in found:
             for child in self.tree.children(word):
@@ -232,7 +232,7 @@ class Clause:
 
     @cached_property
     def _is_tag(self) -> bool:
-        """*..., don't you?*"""
+        """Whether it is a question tag: *don't you?*."""
         tree, verb = self.tree, self.verb
         if verb.low not in AUXILIARIES or verb.dep == "relcl" or verb.index == 0:
             return False
@@ -248,7 +248,7 @@ class Clause:
 
     @cached_property
     def _is_lets(self) -> bool:
-        """*Let's play* is what *we* do."""
+        """Whether it is the *let* of *let's play*, whose subject is *we*."""
         return self.verb.low == "let" and any(
             word.head != word.index and word.low in ("'s", "us", "s")
             for word in self.tree.words[self.verb.index + 1 : self.verb.index + 2]
@@ -257,7 +257,7 @@ class Clause:
     # ------------------------------------------------------------------------------ subjects, objects
 
     def _parts(self) -> tuple[list[Part], list[tuple[Part, bool]]]:
-        """The subjects, and the objects, each with whether *not* stands before it alone."""
+        """Return the subjects and the objects, and for each object whether *not* precedes it alone."""
         unknown = self._unknown
         if self._expletive:
             return self._existential(unknown)
@@ -293,7 +293,7 @@ class Clause:
         return subjects, [(unknown.kind, False)]
 
     def _existential(self, unknown: _Unknown | None) -> tuple[list[Part], list[tuple[Part, bool]]]:
-        """*There is a cat on the table.*"""
+        """Return the parts of an existential clause: *there is a cat on the table*."""
         there = [
             word
             for verb in self.chain
@@ -309,7 +309,7 @@ class Clause:
         return [part for part, _ in self._written(there)], place or [("", False)]
 
     def _copular_question(self, unknown: _Unknown) -> tuple[list[Part], list[tuple[Part, bool]]]:
-        """*Who are you?*, *Who is here?*, *Why are you sad?*"""
+        """Return the parts of a question with *be*: *who are you?*, *why are you sad?*"""
         verb = self.chain[-1]
         others = [
             word
@@ -332,7 +332,7 @@ class Clause:
     def _own_subjects(self) -> list[Word]:
         tree = self.tree
         found = [word for verb in self._verbs for word in tree.children(verb, *SUBJECTS)]
-        if not found:  # now and then the parser gives the subject to an auxiliary
+        if not found:  # the parser sometimes attaches the subject to an auxiliary
             for aux in tree.children(self.verb, "aux", "auxpass"):
                 found += tree.children(aux, *SUBJECTS)
         if not found and lemma_of(self.chain[-1]) == "be":  # or to the adjective: why is the sky blue
@@ -342,7 +342,7 @@ class Clause:
 
     @cached_property
     def subjects(self) -> list[Part]:
-        """Who does it, or is it; of the head clause if there is none here."""
+        """The subjects; those of the head clause if the clause has none."""
         own = self._own_subjects
         if own:
             if len(own) == 1 and own[0].low in ("who", "that", "which") and self.verb.dep == "relcl":
@@ -373,7 +373,7 @@ class Clause:
         return head.subjects
 
     def _unsaid(self) -> list[Part]:
-        """The subject of a request, or of a verb that thanks."""
+        """Return the implied subject of a request or of thanks."""
         if self.verb.lemma.lower() == "thank":
             return ["I"]
         request = self.verb.tag in ("VB", "VBP") or any(
@@ -383,7 +383,7 @@ class Clause:
 
     @property
     def _antecedents(self) -> list[Part]:
-        """What a relative clause tells about."""
+        """The noun before a relative clause."""
         return [self.tree.phrase(noun_phrase(self.tree, self._head))]
 
     def _objects(self) -> list[tuple[Part, bool]]:
@@ -417,7 +417,7 @@ class Clause:
         return self._at_places() or self._shared() or self._named()
 
     def _named(self) -> list[tuple[Part, bool]]:
-        """*Is your father a doctor*: what it asks may hang elsewhere in the tree."""
+        """Return the object of *is your father a doctor*, which the parser attaches elsewhere."""
         subjects = self._own_subjects
         if not (self._is_copula and len(subjects) == 1 and subjects[0].index > self.chain[-1].index):
             return []
@@ -430,12 +430,12 @@ class Clause:
 
     @cached_property
     def _asked_of_antecedent(self) -> bool:
-        """Whether the noun that a relative clause tells about is its object: *the book (that) I read*."""
+        """Whether the noun before a relative clause is its object: *the book (that) I read*."""
         subjects = self._own_subjects
         return bool(subjects) and subjects[0].low not in ("who", "that", "which")
 
     def _strays(self, verb: Word, object: Word) -> list[Word]:
-        """Conjuncts of the object that the parser gives to the verb."""
+        """Return conjuncts of the object that the parser attaches to the verb."""
         return [
             word
             for word in self.tree.children(verb, "conj")
@@ -443,7 +443,7 @@ class Clause:
         ]
 
     def _in_phrases(self, head: Word, *, of: bool = True) -> list[tuple[Part, bool]]:
-        """The noun of the first prepositional phrase, those behind the head first."""
+        """Return the noun of the first prepositional phrase after the head, or else before it."""
         phrases = [
             word
             for word in self.tree.children(head, "prep", "dative")
@@ -472,7 +472,7 @@ class Clause:
         return []
 
     def _shared(self) -> list[tuple[Part, bool]]:
-        """The object of the next verb, where only a conjunction stands between: *bought and read the book*."""
+        """Return the object that two joined verbs share: *bought and read the book*."""
         for word in self.tree.children(self.verb, "conj"):
             other = self._others.get(word.index)
             between = self.tree.words[self.verb.index + 1 : word.index]
@@ -516,7 +516,7 @@ class Clause:
     # --------------------------------------------------------------------------------------- writing
 
     def _written(self, heads: Iterable[Word], verb: Word | None = None) -> list[tuple[Part, bool]]:
-        """The phrases around `heads` and their conjuncts as written, each with whether *not* stands before it alone."""
+        """Return the phrases of `heads` and their conjuncts, and whether *not* precedes each alone."""
         found: list[tuple[Part, bool]] = []
         for head in heads:
             for word in conjuncts(self.tree, head, self._others):
@@ -532,14 +532,14 @@ class Clause:
         return found
 
     def _whose(self, phrase: str) -> str:
-        """In a relative clause *whose father* is *the boy's*."""
+        """Replace *whose* in a relative clause: *whose father* becomes *the boy's father*."""
         first, _, rest = phrase.partition(" ")
         if self.verb.dep == "relcl" and first.lower() == "whose":
             return f"{self._antecedents[0]}'s {rest}"
         return phrase
 
     def _is_predicative(self, word: Word, verb: Word) -> bool:
-        """Whether an adjective stands for itself, and not for a noun: *she is nice*, but *I speak a little German*."""
+        """Return whether an adjective is a predicate: *she is nice*, but not *I speak a little German*."""
         return (
             word.pos in ("ADJ", "VERB", "ADV")
             and word.tag != "VBG"
@@ -549,6 +549,6 @@ class Clause:
 
 
 def _is_no_one(tree: Tree, no: Word) -> bool:
-    """*No one* is a pronoun in two words."""
+    """Return whether *no* belongs to the pronoun *no one*."""
     after = tree.after(no)
     return after is not None and after.low == "one"

@@ -1,4 +1,4 @@
-"""Phrases that are joined, and *not* before one of them."""
+"""Joined phrases, and *not* before one of them."""
 
 from __future__ import annotations
 
@@ -10,15 +10,15 @@ __all__ = ["conjuncts", "denies_conjunct", "is_contrasted"]
 
 
 def conjuncts(tree: Tree, head: Word, clauses: Container[int]) -> list[Word]:
-    """`head` and what is joined to it by *and*, *or*, *but*; `clauses` are the indices of verbs, which are not."""
+    """Return `head` with its conjuncts, without the verbs in `clauses` (indices)."""
     found = [head]
-    for word in found:  # grows while it is walked
+    for word in found:  # the list grows in the loop
         found += [child for child in tree.children(word, "conj") if child.index not in clauses]
     return found
 
 
 def is_contrasted(tree: Tree, word: Word, clauses: Container[int]) -> bool:
-    """Whether *not* stands before this conjunct alone: *coffee* in *tea, but not coffee*."""
+    """Return whether *not* precedes this conjunct alone: *coffee* in *tea, but not coffee*."""
     return word.dep == "conj" and any(
         denies_conjunct(tree, child, clauses) for child in _negations_at(tree, word)
     )
@@ -31,7 +31,7 @@ def _negations_at(tree: Tree, word: Word) -> list[Word]:
 
 
 def denies_conjunct(tree: Tree, negation: Word, clauses: Container[int]) -> bool:
-    """Whether a *not* denies one conjunct alone, and not the verb."""
+    """Return whether a *not* denies one conjunct alone, and not the verb."""
     after = tree.after(negation)
     if after is None:
         return False

@@ -1,4 +1,4 @@
-"""Something that is named in a text."""
+"""A named entity of a text."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ class Entity:
     text: str
     """As written."""
     label: str
-    """What it is, in the pipeline's scheme: ``PERSON``, ``GPE`` (a country, a town), ``DATE``, ``CARDINAL``..."""
+    """Its label in the pipeline's scheme: ``PERSON``, ``GPE`` (a country, a town), ``DATE``, ``CARDINAL``..."""
     start: int
-    """Where it begins, in characters of the text."""
+    """Its first position, in characters of the text."""
     end: int
-    """Where it ends, in characters of the text: ``text[start:end]``."""
+    """The position after it, in characters of the text: ``text[start:end]``."""

@@ -1,4 +1,4 @@
-"""Whether the user wants to play."""
+"""Recognise the wish to play."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _GAME = r"""(?: (?:a | another | some | any | the | this | that | our | my | you
 _NO_GAME = r"""(?:[ ](?:the[ ]|a[ ]|an[ ]|some[ ]|my[ ]|your[ ]|any[ ])?(?:\w+[ ])?
                   (?:music | songs? | tunes? | album | video | film | movie | piano | guitar | violin | drums? | flute | instruments? |
                      cello | trumpet | radio | role | part | tricks? | dead | it | that | this)\b )"""
-"""What is played, too."""
+"""Things to play that are not games."""
 
 _INVITATION = re.compile(
     rf"""
@@ -38,7 +38,7 @@ _TASTE = re.compile(
     """,
     _FLAGS,
 )
-"""*I like to play tennis* says what one likes in general, unless *would* is there."""
+"""Statements of general likes: *I like to play tennis*, but not *I would like to play*."""
 _WOULD = re.compile(r"\b(?:would|i'd|we'd)\b", re.IGNORECASE)
 _DENIED = re.compile(
     r"\b(?:not | never | \w+n't | dont | cant | wont | no[ ]more)\b (?:\s+\w+){0,4} \s+ (?:play | playing | games?)\b",
@@ -47,11 +47,11 @@ _DENIED = re.compile(
 _INVITED = re.compile(
     r"\bwhy (?:don't|dont|not|do not)\b|\b(?:don't|dont) you (?:want|wanna)\b", re.IGNORECASE
 )
-"""Denials that invite: *why don't we play*."""
+"""Negations that invite: *why don't we play*."""
 
 
 def wants_to_play(text: str) -> bool:
-    """Whether the text proposes a game.
+    """Return whether the text proposes a game.
 
     Example:
         >>> wants_to_play("do you want to play with me"), wants_to_play("I play the piano")

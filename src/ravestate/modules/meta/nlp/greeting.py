@@ -1,4 +1,4 @@
-"""Whether the user greets, or takes leave."""
+"""Recognise greetings and farewells."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _OPENERS = frozenset(
     now; why; fine; good; cool; (|i am|i'm) sorry but; but
 """)
 )
-"""What may stand before."""
+"""Words that may precede a greeting or farewell."""
 
 _GREETINGS = frozenset(
     phrases("""
@@ -40,20 +40,20 @@ _LAST_WORDS = frozenset(
         "it was (|so|very|really) (nice|great|good|lovely|a pleasure) (talking|meeting|chatting|to talk|to meet|to chat)"
     )
 )
-"""Farewells after which anything may follow."""
+"""Farewells that any words may follow."""
 _LONGEST = max(len(phrase) for phrase in (*_OPENERS, *_GREETINGS, *_FAREWELLS, *_LAST_WORDS))
 
 _ADDRESS = word_set(
     "my dear friend robot everyone everybody all guys again too then now for thanks thank you and until next time the moment"
 )
-"""Words that may follow a farewell; one other, perhaps a name, may as well."""
+"""Words that may follow a farewell, besides one other, such as a name."""
 
 _TOKEN = re.compile(r"[\w'-]+|[.,;:!?…\n]+")
 _STRETCHED = re.compile(r"(.)\1{2,}")
 
 
 def says_hi(text: str) -> bool:
-    """Whether the text begins with a greeting.
+    """Return whether the text begins with a greeting.
 
     Example:
         >>> says_hi("Hello, how are you?"), says_hi("I said hello")
@@ -66,7 +66,7 @@ def says_hi(text: str) -> bool:
 
 
 def says_bye(text: str) -> bool:
-    """Whether the text takes leave.
+    """Return whether the text takes leave.
 
     Example:
         >>> says_bye("thanks, see you tomorrow"), says_bye("I have to go to work on Mondays")
@@ -86,7 +86,7 @@ def says_bye(text: str) -> bool:
 
 
 def _parts(text: str) -> list[list[str]]:
-    """The words between punctuation marks, in lower case, stretched ones (*hiii*) as they are meant."""
+    """Return the words between punctuation marks, in lower case and normal spelling (*hiii* is *hi*)."""
     parts: list[list[str]] = [[]]
     for token in _TOKEN.findall(text.lower().replace("’", "'")):
         if token[0].isalnum():
@@ -105,7 +105,7 @@ def _without_openers(words: list[str], known: frozenset[Phrase]) -> list[str]:
 
 
 def _beginning(words: list[str], known: frozenset[Phrase]) -> int:
-    """How many words the longest of the known phrases has with which `words` begin; 0 if there is none."""
+    """Return the length in words of the longest known phrase at the beginning of `words`; 0 for none."""
     for length in range(min(_LONGEST, len(words)), 0, -1):
         if tuple(words[:length]) in known:
             return length

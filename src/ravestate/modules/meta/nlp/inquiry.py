@@ -1,7 +1,7 @@
-"""Whether a text asks something, and of which kind the question is.
+"""Recognise questions and their kinds.
 
-It goes by the words, their order, and question marks where there are any: the trees of questions without capitals and
-punctuation, as speech recognisers write them, are not to be relied on.
+The functions use words, their order, and question marks. They ignore the dependency tree, which is unreliable for
+questions without capitals and punctuation, as from speech recognition.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ _OPENERS = word_set(
     "well so oh ok okay hi hello hey hallo good morning evening afternoon um uh hmm ah and but or then now please sorry excuse ",
     "me thanks great fine yes no yeah nice cool right alright also actually just by the way anyway sure wow haha",
 )
-"""What may stand before a question, and says nothing."""
+"""Words without meaning before a question."""
 
 _PRONOUNS = word_set(
     "i you u he she it we they there this that these those someone somebody anyone anybody everyone everybody your my his her ",
@@ -33,13 +33,13 @@ _KNOWING = word_set(
     "know remember tell say explain guess wonder wondering ask asking see understand show recall forget idea sure figure ",
     "mean heard matter care curious describe",
 )
-"""Words after which a question word begins an indirect question."""
+"""Words before an indirect question."""
 
 _TELL = phrases("""
     (|please|do) tell (me|us); (can|could|would|will) you (|please) tell (me|us); would you mind telling (me|us);
     i (want|need|would like|'d like|d like|would love|'d love|d love|like) to know; i wanna know; (may|can|could|might) i know
 """)
-"""How one asks to be told something."""
+"""The beginnings of requests for information."""
 
 _OPENINGS = [
     *_TELL,
@@ -50,15 +50,15 @@ _OPENINGS = [
         (do|did) you know; do you happen to know; do you remember
     """),
 ]
-"""How indirect questions begin."""
+"""The beginnings of indirect questions."""
 _OPENINGS.sort(key=len, reverse=True)
 
 _PERFORMED = word_set("joke story tale poem riddle secret lie fairytale anecdote goodnight")
-"""What is told for its own sake: asking for it is no question."""
+"""Things to perform, such as jokes: a request for one is no question."""
 
 
 def question_of(tree: Tree) -> QuestionWord | None:
-    """Return the kind of the first question in the text, None if there is none."""
+    """Return the kind of the first question in the text; None without one."""
     for sentence, asked in _sentences(tree):
         if (kind := _kind(sentence, asked)) is not None:
             return kind
@@ -66,7 +66,7 @@ def question_of(tree: Tree) -> QuestionWord | None:
 
 
 def _sentences(tree: Tree) -> list[tuple[list[Word], bool]]:
-    """The words between full stops, question and exclamation marks; each with whether a question mark ends it."""
+    """Return the sentences, each with whether a question mark ends it."""
     found: list[tuple[list[Word], bool]] = []
     words: list[Word] = []
     ends: set[str] = set()
@@ -115,7 +115,7 @@ def _kind(sentence: Sequence[Word], asked: bool) -> QuestionWord | None:
 
 
 def _parts(sentence: Sequence[Word]) -> list[list[Word]]:
-    """The parts between commas, without what opens them and says nothing."""
+    """Return the parts between commas, without opening words."""
     parts: list[list[Word]] = [[]]
     for word in sentence:
         if word.pos == "PUNCT" and word.low in ",;:-–—":
@@ -135,7 +135,7 @@ def _parts(sentence: Sequence[Word]) -> list[list[Word]]:
 
 
 def _direct(part: Sequence[Word], asked: bool, *, alone: bool) -> QuestionWord | None:
-    """A question that begins the part: with a question word, or with its verb."""
+    """Return the kind of a question that begins with its question word or its verb."""
     begin = (
         1 if len(part) > 1 and part[0].pos in ("ADP", "SCONJ") and part[0].low not in QUESTION_WORDS else 0
     )
@@ -150,7 +150,7 @@ def _direct(part: Sequence[Word], asked: bool, *, alone: bool) -> QuestionWord |
 
 
 def _asks(words: Sequence[Word], asked: bool, *, alone: bool) -> bool:
-    """Whether what begins with a question word is a question, and no exclamation or subordinate clause."""
+    """Return whether words that begin with a question word are a question, not an exclamation or a subordinate clause."""
     word, rest = words[0].low, words[1:]
     if not rest:
         return True
@@ -180,7 +180,7 @@ def _asks(words: Sequence[Word], asked: bool, *, alone: bool) -> bool:
 
 
 def _is_exclamation(word: str, rest: Sequence[Word]) -> bool:
-    """*What a nice day*, *how nice*, *how nice of you*."""
+    """Return whether it is an exclamation: *what a nice day*, *how nice of you*."""
     if word == "what":
         return rest[0].low in ("a", "an") and not any(_inverted_at(rest, i) for i in range(len(rest)))
     if rest[1:] and rest[1].low == "of":
@@ -197,7 +197,7 @@ def _first_verb(words: Sequence[Word]) -> Word | None:
 
 
 def _inverted_at(words: Sequence[Word], index: int) -> bool:
-    """Whether an auxiliary stands at `index`, and the subject behind it."""
+    """Return whether the word at `index` is an auxiliary before its subject."""
     if words[index].low not in AUXILIARIES:
         return False
     rest = [word for word in words[index + 1 :] if word.low not in _NOT]
@@ -211,7 +211,7 @@ def _inverted_at(words: Sequence[Word], index: int) -> bool:
 
 
 def _is_inverted(words: Sequence[Word], asked: bool) -> bool:
-    """Whether the verb stands before its subject: *do you like games*, but not *do the dishes*."""
+    """Return whether the verb precedes its subject: *do you like games*, but not *do the dishes*."""
     first = words[0].low
     if first not in AUXILIARIES or first.startswith("'") or first in ("s", "re"):
         return False
@@ -246,7 +246,7 @@ def _is_inverted(words: Sequence[Word], asked: bool) -> bool:
 
 
 def _within(words: Sequence[Word]) -> QuestionWord | None:
-    """A question behind other words without a comma: *my name is tom what is yours*."""
+    """Return the kind of a question after other words without a comma: *my name is tom what is yours*."""
     low = [word.low for word in words]
     for index in range(1, len(words) - 1):
         if low[index] in QUESTION_WORDS and low[index - 1] not in _KNOWING:
@@ -272,7 +272,7 @@ def _within(words: Sequence[Word]) -> QuestionWord | None:
 
 
 def _indirect(part: Sequence[Word]) -> QuestionWord | None:
-    """*Do you know where he lives*, *tell me when it begins*."""
+    """Return the kind of an indirect question: *tell me when it begins*."""
     low = tuple(word.low for word in part)
     for opening in _OPENINGS:
         if low[: len(opening)] != opening:
@@ -298,7 +298,7 @@ def _indirect(part: Sequence[Word]) -> QuestionWord | None:
 
 
 def _is_request_to_tell(part: Sequence[Word]) -> bool:
-    """*Tell me your name*, *can you tell me the result*; not *tell me a joke*."""
+    """Return whether it requests information: *tell me your name*, but not *tell me a joke*."""
     low = tuple(word.low for word in part)
     for opening in _TELL:
         if low[: len(opening)] == opening:
@@ -310,7 +310,7 @@ def _is_request_to_tell(part: Sequence[Word]) -> bool:
 
 
 def _has_tag(sentence: Sequence[Word]) -> bool:
-    """*nice day isn't it*, *you like games, don't you*, *you live here, right*."""
+    """Return whether it ends with a question tag: *nice day isn't it*, *you live here, right*."""
     low = [word.low for word in sentence if word.pos != "PUNCT"]
     comma = any(word.low == "," for word in sentence[-4:])
     if len(low) < 3:

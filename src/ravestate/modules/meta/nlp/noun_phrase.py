@@ -1,4 +1,4 @@
-"""What of a phrase is kept as subject or object."""
+"""Choose the words of a phrase that form a subject or object."""
 
 from __future__ import annotations
 
@@ -10,14 +10,17 @@ __all__ = ["DETERMINERS", "adjective_phrase", "gerund_phrase", "noun_phrase", "w
 DETERMINERS = word_set(
     "the a an this that these those some any every each all both no another neither either"
 )
-"""What is left out of a phrase, unless it is all of it."""
+"""Words that a phrase leaves out, unless it has no others."""
 
 _KEPT = ("amod", "compound", "poss", "nummod", "nmod", "case", "det", "quantmod")
 
 
 def noun_phrase(tree: Tree, head: Word) -> list[Word]:
-    """Return the words of the noun phrase around `head`: with possessives, adjectives, numbers, compounds and *of*,
-    without determiners, adverbs, other prepositions and relative clauses."""
+    """Return the words of the noun phrase around `head`.
+
+    It keeps possessives, adjectives, numbers, compounds and *of*. It drops determiners, adverbs, other prepositions and
+    relative clauses.
+    """
     if head.pos in ("VERB", "AUX") and head.dep not in ("ROOT", "conj"):
         return gerund_phrase(tree, head)
     kept = [head]
@@ -37,8 +40,10 @@ def noun_phrase(tree: Tree, head: Word) -> list[Word]:
 
 
 def adjective_phrase(tree: Tree, head: Word, verb: Word) -> list[Word]:
-    """Return the words of a predicate adjective: itself, its measure (*20 years old*), and the prepositional phrase that
-    follows it directly, whether the parser gives that to the adjective or to the verb."""
+    """Return the words of a predicate adjective with its measure (*20 years old*) and the prepositional phrase after it.
+
+    The parser attaches that phrase to the adjective or to the verb.
+    """
     kept = [head]
     for child in tree.children(head, "npadvmod", "compound"):
         if child.index < head.index:
@@ -51,7 +56,7 @@ def adjective_phrase(tree: Tree, head: Word, verb: Word) -> list[Word]:
 
 
 def gerund_phrase(tree: Tree, head: Word) -> list[Word]:
-    """Return the words of a verb that stands as a noun (*playing chess*): all that belong to it, without determiners."""
+    """Return the words of a gerund phrase (*playing chess*) without determiners."""
     return without_determiners(tree.subtree(head))
 
 
@@ -65,7 +70,7 @@ def without_determiners(words: list[Word]) -> list[Word]:
 
 
 def _joined_adjectives(tree: Tree, adjective: Word) -> list[Word]:
-    """*old and wise*: the conjuncts, and what stands between."""
+    """Return joined adjectives with their conjunctions: *old and wise*."""
     kept = [adjective]
     for child in tree.children(adjective):
         if child.dep in ("cc", "npadvmod", "compound"):
@@ -86,7 +91,7 @@ def _with_conjuncts(tree: Tree, head: Word) -> list[Word]:
 
 
 def _is_name(word: Word, head: Word) -> bool:
-    """Whether an apposition is a name, perhaps in lower case: *my friend tom*."""
+    """Return whether an apposition is a name, perhaps in lower case: *my friend tom*."""
     return word.pos == "PROPN" or (word.pos == "NOUN" and word.tag == "NN" and word.index == head.index + 1)
 
 
@@ -95,7 +100,7 @@ def _comma_between(tree: Tree, first: Word, second: Word) -> bool:
 
 
 def _with_hyphens(tree: Tree, kept: list[Word]) -> list[Word]:
-    """Add what hyphens tie to a kept word: *well-known* is one word to a reader, and three to the pipeline."""
+    """Add words joined by hyphens: the pipeline splits *well-known* into three."""
     indices = {word.index for word in kept}
     for index in sorted(indices):
         while index >= 2:

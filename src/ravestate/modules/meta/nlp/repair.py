@@ -1,7 +1,6 @@
-"""Mends what the pipeline regularly gets wrong in short sentences. Each repair tells what it looks like.
+"""Correct regular errors of the pipeline in short sentences. Each repair shows its case in the docstring.
 
-A repair takes words and changes the tree among them; it knows its case by the words and labels alone, so that what the
-pipeline gets right is left as it is.
+A repair recognises its case by words and labels, and changes the tree. It leaves correct trees alone.
 """
 
 from __future__ import annotations
@@ -23,7 +22,7 @@ _BESIDE = word_set("next close near far")
 
 
 def repaired(words: list[Word]) -> list[Word]:
-    """Return `words` with a better tree."""
+    """Return `words` with a corrected tree."""
     tree = _Draft(words)
     for word in words:
         for repair in (
@@ -47,7 +46,7 @@ def repaired(words: list[Word]) -> list[Word]:
 
 
 class _Draft:
-    """A tree that is being changed."""
+    """A tree under correction."""
 
     def __init__(self, words: list[Word]) -> None:
         self.words = list(words)
@@ -71,7 +70,7 @@ class _Draft:
         )
 
     def promote(self, word: Word, over: Word, dep: str) -> None:
-        """Let `word` take the place of `over`, which it depends on; `over` depends on it as `dep`, and keeps nothing else."""
+        """Swap `word` with its head `over`: `over` becomes its dependent by `dep`, without dependents of its own."""
         self.change(word, dep=over.dep, head=word.index if over.head == over.index else over.head)
         for child in list(self.children(over)):
             self.change(child, head=word.index)
@@ -79,7 +78,7 @@ class _Draft:
 
 
 def _gerund(tree: _Draft, word: Word) -> None:
-    """*I enjoy cooking*, with *enjoy* for an auxiliary of *cooking*."""
+    """Correct *enjoy* in *I enjoy cooking*: not an auxiliary of *cooking*."""
     if word.dep == "aux" and word.low in _GERUND_TAKERS and tree.words[word.head].tag == "VBG":
         gerund = tree.words[word.head]
         own = [
@@ -92,7 +91,7 @@ def _gerund(tree: _Draft, word: Word) -> None:
 
 
 def _called(tree: _Draft, word: Word) -> None:
-    """*What is your dog called*, with *what is* for the subject."""
+    """Correct *what is* in *what is your dog called*: not the subject."""
     if word.low in _BE and word.dep in ("csubjpass", "csubj"):
         verb = tree.words[word.head]
         for child in list(tree.children(word)):
@@ -105,7 +104,7 @@ def _called(tree: _Draft, word: Word) -> None:
 
 
 def _passive_question(tree: _Draft, word: Word) -> None:
-    """*Was the cake eaten by the dog*, with *eaten by the dog* for what kind of cake it is."""
+    """Correct *eaten* in *was the cake eaten by the dog*: not a modifier of *cake*."""
     if word.low not in _BE or word.dep != "ROOT":
         return
     for subject in tree.children(word, "nsubj", "attr"):
@@ -129,7 +128,7 @@ def _passive_question(tree: _Draft, word: Word) -> None:
 
 
 def _noun_for_verb(tree: _Draft, word: Word) -> None:
-    """*She plays the piano and sings*, *they neither smoke nor drink*, with the second verb for a noun."""
+    """Correct the second verb of *she plays the piano and sings*: not a noun."""
     if (
         word.dep != "conj"
         or word.pos not in ("NOUN", "PROPN")
@@ -147,7 +146,7 @@ def _noun_for_verb(tree: _Draft, word: Word) -> None:
 
 
 def _noun_for_infinitive(tree: _Draft, word: Word) -> None:
-    """*I drive to work*, with *to work* for what one does."""
+    """Correct *work* in *I drive to work*: not an infinitive."""
     if word.dep == "xcomp" and word.pos == "NOUN":
         for to in tree.children(word, "aux"):
             if to.low == "to":
@@ -157,7 +156,7 @@ def _noun_for_infinitive(tree: _Draft, word: Word) -> None:
 
 
 def _names(tree: _Draft, word: Word) -> None:
-    """*My name's Ada*, with *my name's* for a possessive."""
+    """Correct *my name's* in *my name's Ada*: not a possessive."""
     after = tree.words[word.index + 1] if word.index + 1 < len(tree.words) else None
     if word.low == "name" and word.dep == "poss" and after is not None and after.low == "'s":
         owner = tree.words[word.head]
@@ -167,14 +166,14 @@ def _names(tree: _Draft, word: Word) -> None:
 
 
 def _beside(tree: _Draft, word: Word) -> None:
-    """*I live next to the station*: the preposition is *next to*."""
+    """Correct *next to* in *I live next to the station*: one preposition."""
     if word.low in _BESIDE and word.dep == "advmod" and tree.words[word.head].pos in ("VERB", "AUX"):
         for preposition in tree.children(word, "prep"):
             tree.change(preposition, head=word.head)
 
 
 def _adjective_for_noun(tree: _Draft, word: Word) -> None:
-    """*Are robots dangerous*, with *dangerous* for what kind of robots they are."""
+    """Correct *dangerous* in *are robots dangerous*: not a modifier of *robots*."""
     if word.pos != "ADJ" or word.dep not in ("amod", "advmod"):
         return
     noun = tree.words[word.head]
@@ -190,7 +189,7 @@ def _adjective_for_noun(tree: _Draft, word: Word) -> None:
 
 
 def _noun_after_do(tree: _Draft, word: Word) -> None:
-    """*When did the war end*, with *war end* for a compound noun."""
+    """Correct *war end* in *when did the war end*: not a compound noun."""
     if word.pos != "NOUN" or not any(aux.low in ("do", "does", "did") for aux in tree.children(word, "aux")):
         return
     for subject in tree.children(word, "compound", "nmod"):
@@ -203,7 +202,7 @@ def _noun_after_do(tree: _Draft, word: Word) -> None:
 
 
 def _verb_of_noun(tree: _Draft, word: Word) -> None:
-    """*What is love*, *why is the sky blue*, with *is* for an auxiliary of the last word."""
+    """Correct *is* in *what is love* and *why is the sky blue*: not an auxiliary of the last word."""
     last = tree.words[word.head]
     if (
         word.dep == "aux"
@@ -222,7 +221,7 @@ def _verb_of_noun(tree: _Draft, word: Word) -> None:
 
 
 def _fronted(tree: _Draft, word: Word) -> None:
-    """*In which country were you born*, with *which country* for a second subject."""
+    """Correct *which country* in *in which country were you born*: not a second subject."""
     if word.dep != "prep" or any(tree.children(word)):
         return
     for noun in tree.children(tree.words[word.head], "nsubj", "nsubjpass", "dobj"):
@@ -236,7 +235,7 @@ def _fronted(tree: _Draft, word: Word) -> None:
 
 
 def _name_question(tree: _Draft, word: Word) -> None:
-    """*Is your name tom*, *is berlin the capital*, with one noun phrase for two."""
+    """Separate the two noun phrases of *is your name tom* and *is berlin the capital*."""
     be = tree.words[word.head]
     if word.dep not in ("nsubj", "attr") or be.low not in _BE or be.index > word.index:
         return
@@ -256,7 +255,7 @@ def _name_question(tree: _Draft, word: Word) -> None:
 
 
 def _place_for_infinitive(tree: _Draft, word: Word) -> None:
-    """*Have you ever been to rome*, with *to rome* for what one does."""
+    """Correct *to rome* in *have you ever been to rome*: not an infinitive."""
     if (
         word.dep == "xcomp"
         and tree.words[word.head].low == "been"
@@ -270,7 +269,7 @@ def _place_for_infinitive(tree: _Draft, word: Word) -> None:
 
 
 def _noun_after_relative(tree: _Draft, word: Word) -> None:
-    """*The woman that I love lives in Rome*, with *lives* for what I love."""
+    """Correct *lives* in *the woman that I love lives in Rome*: not the object of *love*."""
     relative = tree.words[word.head]
     noun = tree.words[relative.head]
     if word.tag != "NNS" or word.dep != "dobj" or relative.dep != "relcl" or noun.dep != "ROOT":

@@ -1,4 +1,4 @@
-"""When the words are read, and what is told of them."""
+"""The rules that load the pipeline and analyse the user's words."""
 
 from __future__ import annotations
 
@@ -10,7 +10,8 @@ from ravestate.errors import PlatformError
 from ravestate.modules import interloc, rawio
 from ravestate.modules._room import give_back
 
-from . import (
+from .analysis import analyse
+from .names import (
     Settings,
     about_agent,
     entities,
@@ -19,6 +20,7 @@ from . import (
     intent_play,
     is_question,
     lemmas,
+    lock,
     module,
     pos,
     question,
@@ -26,35 +28,33 @@ from . import (
     text,
     tokens,
     triples,
-    turn,
     yesno,
 )
-from .analysis import analyse
 from .pipeline import pipeline
 
 
 @module.rule(when=rs.startup, background=True)
 def load(ctx: rs.RuleContext) -> None:
-    """Load the pipeline while the agent is up already, so that the first words need not wait for it."""
+    """Load the pipeline in the background, before the first words."""
     settings: Settings = ctx.settings
-    with contextlib.suppress(PlatformError):  # which is told when it is needed
+    with contextlib.suppress(PlatformError):  # `understand` reports it
         pipeline(settings.pipeline).load()
         give_back()
 
 
 @module.rule(
     when=rawio.input.changed,
-    reads=(interloc.agent, turn),
+    reads=(interloc.agent, lock),
     writes=(text, tokens, lemmas, pos, tags, entities, triples, question, yesno),
     emits=(is_question, about_agent, intent_play, intent_hi, intent_bye),
 )
 async def understand(ctx: rs.RuleContext) -> None:
-    """Read the user's words: all slots first, then the signals."""
+    """Analyse the user's words: write all slots, then raise the signals."""
     settings: Settings = ctx.settings
     heard = ctx.payload(rawio.input.changed)
     named = "agent_names" in settings.model_fields_set
     names = settings.agent_names if named else (ctx[interloc.agent],)
-    async with ctx[turn]:
+    async with ctx[lock]:
         seen = await asyncio.to_thread(analyse, heard, pipeline(settings.pipeline), names)
     words = seen.tree.words
     ctx[text] = heard

@@ -1,4 +1,4 @@
-"""Reads triples off a dependency tree. The conventions stand in the module's README; this is how they are met."""
+"""Read triples from a dependency tree, by the conventions of the README."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from .triple import Triple
 __all__ = ["MOST", "triples_of"]
 
 MOST = 64
-"""Triples of one text at most: enumerations multiply."""
+"""The most triples of one text; enumerations multiply."""
 
 
 def triples_of(tree: Tree) -> tuple[Triple, ...]:
-    """Return what is stated and asked in the text, `MOST` triples at most, none twice."""
+    """Return the statements and questions of the text: at most `MOST` triples, each once."""
     clauses = Clause.all_in(tree)
     found: dict[Triple, None] = {}
     for clause in clauses:

@@ -1,4 +1,4 @@
-"""A text as a dependency tree: plain records, so that the rules need no spaCy."""
+"""A text as a dependency tree of plain records, independent of spaCy."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ __all__ = ["Tree", "Word"]
 
 @dataclass(frozen=True, slots=True)
 class Word:
-    """A token and its place in the tree. The labels are those of spaCy's English pipelines."""
+    """A token in the tree, with the labels of spaCy's English pipelines."""
 
     index: int
     """Its number within the tree."""
@@ -24,25 +24,25 @@ class Word:
     tag: str
     """Fine tag: ``NNS``."""
     dep: str
-    """Its relation to its head: ``nsubj``; ``ROOT`` for a sentence's head."""
+    """Its relation to its head: ``nsubj``; ``ROOT`` for the head of a sentence."""
     head: int
-    """The index of its head; a root is its own."""
+    """The index of its head; a root is its own head."""
     start: int
-    """Where it begins, in characters of the text."""
+    """Its first position, in characters of the text."""
 
     @property
     def low(self) -> str:
-        """As written, in lower case and with straight apostrophes."""
+        """The word in lower case, with straight apostrophes."""
         return self.text.lower().replace("’", "'")
 
     @property
     def end(self) -> int:
-        """Where it ends, in characters of the text."""
+        """The position after it, in characters of the text."""
         return self.start + len(self.text)
 
 
 class Tree:
-    """The words of a text, and who depends on whom."""
+    """The words of a text with their dependencies."""
 
     def __init__(self, text: str, words: Sequence[Word]) -> None:
         """`words` are numbered from 0, in order."""
@@ -58,37 +58,37 @@ class Tree:
         return children
 
     def children(self, word: Word, *deps: str) -> list[Word]:
-        """The words that depend on `word` directly, in order; only those with one of `deps`, if any are given."""
+        """Return the words that depend directly on `word`, in order; with `deps`, only those with such a relation."""
         children = self._children[word.index]
         return [child for child in children if child.dep in deps] if deps else children
 
     def head(self, word: Word) -> Word:
-        """The word that `word` depends on; a root is its own head."""
+        """Return the head of `word`; a root is its own head."""
         return self.words[word.head]
 
     def ancestors(self, word: Word) -> Iterator[Word]:
-        """The heads above `word`, nearest first."""
+        """Yield the heads above `word`, nearest first."""
         while word.head != word.index:
             word = self.words[word.head]
             yield word
 
     def subtree(self, word: Word) -> list[Word]:
-        """`word` and all that depends on it, in order."""
+        """Return `word` and all of its dependents, in order."""
         found = [word]
-        for known in found:  # grows while it is walked
+        for known in found:  # the list grows in the loop
             found += self._children[known.index]
         return sorted(found, key=lambda word: word.index)
 
     def before(self, word: Word) -> Word | None:
-        """The word that stands before `word`."""
+        """Return the word before `word`."""
         return self.words[word.index - 1] if word.index else None
 
     def after(self, word: Word) -> Word | None:
-        """The word that stands after `word`."""
+        """Return the word after `word`."""
         return self.words[word.index + 1] if word.index + 1 < len(self.words) else None
 
     def phrase(self, words: Iterable[Word]) -> str:
-        """`words` as written, in order, with a space wherever the text has one or a word is left out."""
+        """Return `words` as written, in order. A gap becomes one space."""
         written = ""
         last: Word | None = None
         for word in sorted(words, key=lambda word: word.index):

@@ -1,4 +1,4 @@
-"""Who does what."""
+"""A triple of subject, predicate and object."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ __all__ = ["Triple"]
 
 
 class Triple(NamedTuple):
-    """One statement of a text, or one question; the module's README says by which conventions.
+    """One statement or question of a text, by the conventions of the README.
 
     Example:
         >>> from ravestate.modules.meta.nlp.question_word import QuestionWord
@@ -19,11 +19,11 @@ class Triple(NamedTuple):
     """
 
     subject: str | QuestionWord
-    """As written; the `QuestionWord` where the question asks for the subject."""
+    """As written; a `QuestionWord` if the question asks for the subject."""
     predicate: str
-    """The lemma, ``not`` before it if it is negated."""
+    """The lemma, after ``not`` if negated."""
     object: str | QuestionWord
-    """As written, empty if there is none; the `QuestionWord` where the question asks for it."""
+    """As written, or empty; a `QuestionWord` if the question asks for it."""
 
     def __str__(self) -> str:
         def shown(part: str | QuestionWord) -> str:

@@ -1,4 +1,4 @@
-"""Verbs: their dictionary form, what goes on from them, and whether they head a clause."""
+"""Verbs: their lemmas, the verbs that they govern, and their clauses."""
 
 from __future__ import annotations
 
@@ -28,19 +28,19 @@ PLACES = word_set(
     "here there home abroad outside inside upstairs downstairs away everywhere nowhere somewhere"
 )
 _MOTION = word_set("come go travel fly drive run move stay")
-"""Verbs after which an infinitive tells the purpose, so that it is an action of its own."""
+"""Verbs with an infinitive of purpose, which is an action of its own."""
 _GERUND_TAKERS = word_set(
     "like love hate enjoy prefer dislike start stop begin continue keep practise practice try"
 )
 NEGATIONS = frozenset(["not", "n't", "nt", "never"])
 _BE = frozenset(["be", "am", "is", "are", "was", "were", "m", "s", "re", "'s", "'m", "'re"])
 _MISTAKEN = word_set("like love play work live study dance swim paint cook")
-"""Verbs that the tagger often takes for something else."""
+"""Verbs that the tagger often mistakes."""
 _SHORT = {"wan": "want", "gon": "go", "got": "get", "ca": "can", "wo": "will"}
 
 
 def heads_clause(tree: Tree, word: Word) -> bool:
-    """Whether `word` is the verb of a clause."""
+    """Return whether `word` is the verb of a clause."""
     if word.dep not in _HEADS:
         return False
     children = tree.children(word)
@@ -55,14 +55,14 @@ def heads_clause(tree: Tree, word: Word) -> bool:
 
 
 def lemma_of(verb: Word) -> str:
-    """The verb's dictionary form, also of what is short: *'s*, *wanna*."""
+    """Return the verb's lemma, also for short forms: *'s*, *wanna*."""
     if verb.low in _BE:
         return "be"
     return _SHORT.get(verb.low, verb.lemma.lower())
 
 
 def following_verb(tree: Tree, verb: Word) -> Word | None:
-    """The verb that goes on from `verb`, as *become* from *want* in *want to become*; None at the end of a chain."""
+    """Return the verb that `verb` governs (*become* in *want to become*), or None."""
     if lemma_of(verb) == "be":
         return None
     for child in tree.children(verb, "xcomp"):
@@ -88,24 +88,24 @@ def following_verb(tree: Tree, verb: Word) -> Word | None:
 
 
 def makes_future(tree: Tree, verb: Word) -> bool:
-    """*am going to*, which is dropped like any auxiliary."""
+    """Return whether the verb is the *going* of a future, which counts as an auxiliary."""
     return verb.low in ("going", "gon") and any(
         lemma_of(aux) == "be" or verb.low == "gon" for aux in tree.children(verb, "aux") or [verb]
     )
 
 
 def is_denied(tree: Tree, verb: Word) -> bool:
-    """Whether *not* stands with the verb itself."""
+    """Return whether the verb itself has *not*."""
     return any(child.low in NEGATIONS for child in tree.children(verb, "neg"))
 
 
 def is_infinitive(tree: Tree, verb: Word) -> bool:
-    """Whether it has *to*."""
+    """Return whether the verb has *to*."""
     return any(child.low in ("to", "na") for child in tree.children(verb, "aux"))
 
 
 def particles(tree: Tree, verb: Word) -> list[str]:
-    """What belongs to the verb: *up* of *get up*."""
+    """Return the verb's particles: *up* of *get up*."""
     return [
         child.low
         for child in tree.children(verb, "prt", "advmod")

@@ -1,4 +1,4 @@
-"""Sets of words, written as they are read."""
+"""Sets of words from plain text."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ __all__ = ["word_set"]
 
 
 def word_set(*texts: str) -> frozenset[str]:
-    """Return the words of `texts`, which white space separates.
+    """Return the words of `texts`, separated by white space.
 
     Example:
         >>> sorted(word_set("here there", "home"))

@@ -23,31 +23,31 @@ __all__ = ["BoltStore"]
 T = TypeVar("T")
 
 META = "_ravestate"
-"""The label of the node that says how the rest is laid out."""
+"""The label of the node with the number of the layout."""
 
 SCHEMES = ("bolt", "bolt+s", "bolt+ssc", "neo4j", "neo4j+s", "neo4j+ssc")
-"""How a server's address may begin; ``+s`` is with encryption, ``+ssc`` with a certificate that nobody has signed."""
+"""The schemes of addresses: ``+s`` is with encryption, ``+ssc`` with a self-signed certificate."""
 
 LIVELY = 5.0
-"""Seconds after which a connection is tried before it is used again: the server may have been restarted."""
+"""Idle seconds after which the driver tests a connection before use: the server may have restarted."""
 
 
 class BoltStore:
     """A database on a server, by Neo4j's official driver.
 
-    The driver that waits without blocking is used although this is a thread of its own, because its waiting can be
-    ended: a server that stalls costs `timeout` seconds and no thread.
+    The store has its own thread, and still uses the asynchronous driver, because a wait can be cancelled there. A
+    server that stalls costs `timeout` seconds and no thread.
     """
 
     def __init__(self, url: str, user: str, password: str, database: str | None, timeout: float) -> None:
         """Connect.
 
         Args:
-            url: E.g. ``bolt://localhost:7687``; ``neo4j+s://...`` for one with encryption.
-            user: Who signs in.
-            password: Empty for a server that wants none.
-            database: Its name on the server; the server's default where it is None.
-            timeout: Seconds until a server that does not answer counts as absent.
+            url: The address: ``bolt://localhost:7687``, or ``neo4j+s://...`` with encryption.
+            user: The user name.
+            password: Empty for a server without passwords.
+            database: Its name on the server; None for the default one.
+            timeout: Seconds to wait for each answer.
 
         Raises:
             PlatformError: The package is missing, or the server is absent, stalls or refuses.
@@ -59,9 +59,9 @@ class BoltStore:
             raise PlatformError(
                 f"ontology needs neo4j for the server {url}: pip install 'ravestate[neo4j]'"
             ) from error
-        # It tells, at length, that a property asked for has never been set, which is no fault.
+        # The driver warns of queries for a property that no node has yet, which is no fault.
         logging.getLogger("neo4j.notifications").setLevel(logging.ERROR)
-        self._neo4j: Any = neo4j  # much of the driver is typed in part only
+        self._neo4j: Any = neo4j  # the driver is only partly typed
         self._place = url
         self._user = user
         self._database = database
@@ -92,7 +92,7 @@ class BoltStore:
             )
         except (ValueError, self._neo4j.exceptions.ConfigurationError) as error:
             raise PlatformError(
-                f"ontology.url = {url!r} is no server's address ({error}): write for example bolt://localhost:7687"
+                f"ontology.url = {url!r} is not a server's address ({error}): write for example bolt://localhost:7687"
             ) from error
 
     # ------------------------------------------------------------------------------------ statements
@@ -105,7 +105,7 @@ class BoltStore:
 
     @contextmanager
     def transaction(self) -> Generator[None]:
-        """All statements within are done together, or none."""
+        """Commit all statements inside together, or none."""
         if self._transaction is not None:
             yield
             return
@@ -116,7 +116,7 @@ class BoltStore:
                 yield
             except BaseException:
                 self._transaction = None
-                self._wait(transaction.close())  # which takes it back
+                self._wait(transaction.close())  # this rolls it back
                 raise
             self._transaction = None
             self._wait(transaction.commit())
@@ -139,7 +139,7 @@ class BoltStore:
             return self._loop.run_until_complete(asyncio.wait_for(work, self._timeout))
         except TimeoutError as error:
             raise PlatformError(
-                f"memory {self._place} did not answer within {self._timeout:g} s: look after the server, or give it longer with "
+                f"memory {self._place} did not answer within {self._timeout:g} s: check the server, or wait longer with "
                 "--set ontology.timeout=SECONDS"
             ) from error
         except errors.AuthError as error:
@@ -159,7 +159,7 @@ class BoltStore:
                     f"memory {self._place} {named}: make it there, or name another with --set ontology.database=NAME"
                 ) from error
             raise PlatformError(f"memory {self._place} failed: {error.message or error}") from error
-        except (errors.DriverError, OSError, ValueError) as error:  # ValueError: a port that is none
+        except (errors.DriverError, OSError, ValueError) as error:  # ValueError: an invalid port
             raise PlatformError(
                 f"memory {self._place} cannot be reached ({_first_line(error)}): start the server, or name another with --set "
                 "ontology.url=bolt://HOST:PORT"
@@ -168,7 +168,7 @@ class BoltStore:
     # ------------------------------------------------------------------------------------ types
 
     def prepare(self, types: Types) -> None:
-        """Have ids looked up by an index; a server needs no more."""
+        """Create an index of ids for each type; a server needs no tables."""
         rows = self.read(f"MATCH (m:`{META}` {{`key`: 'format'}}) RETURN m.`value`", {})
         if rows:
             check_format(self._place, rows[0][0])
@@ -178,21 +178,21 @@ class BoltStore:
             self.write(f"CREATE CONSTRAINT IF NOT EXISTS FOR (n:`{name}`) REQUIRE n.`id` IS UNIQUE", {})
 
     def purge(self) -> None:
-        """What a server keeps on its disk is its own affair."""
+        """Do nothing: the server manages its files."""
 
     def tidy(self) -> None:
-        """So is its log."""
+        """Do nothing: the server manages its log."""
 
     def undeclared(self, types: Types) -> list[str]:
-        """The labels on the server that `types` do not have."""
+        """Return the labels on the server that are not in `types`."""
         rows = self.read("MATCH (n) UNWIND labels(n) AS name RETURN DISTINCT name", {})
         return sorted({str(name) for [name] in rows} - {META, *types})
 
     def close(self) -> None:
-        """Hang up."""
+        """Close the connections."""
         try:
             if self._driver is not None:
-                with contextlib.suppress(PlatformError):  # whoever does not answer has hung up
+                with contextlib.suppress(PlatformError):  # a server that does not answer has closed them
                     self._wait(self._driver.close())
         finally:
             self._loop.run_until_complete(self._loop.shutdown_asyncgens())
@@ -210,7 +210,7 @@ def _decoded(value: Any) -> Any:
 
     if isinstance(value, Node):
         values = dict(value.items())
-        label = str(values.get("id", "")).partition(":")[0]  # one of several, where somebody added some
+        label = str(values.get("id", "")).partition(":")[0]  # a node may have further labels
         return RawNode(label if label in value.labels else min(value.labels, default=""), values)
     if isinstance(value, Relationship):
         return RawRelation(value.type, dict(value.items()))

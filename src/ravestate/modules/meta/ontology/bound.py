@@ -1,12 +1,12 @@
-"""Slots that are bound to memory: who writes the slot, writes the graph."""
+"""Slots that are bound to memory: a write to the slot is a write to the graph."""
 
 from __future__ import annotations
 
 import ravestate as rs
 from ravestate.errors import DeclarationError, PlatformError
 
-from . import memory
-from . import module as ontology
+from .names import memory
+from .names import module as ontology
 from .node import Node
 
 __all__ = ["bound"]
@@ -15,17 +15,16 @@ __all__ = ["bound"]
 def bound(module: rs.Module, name: str, type: str) -> rs.Slot[Node | None]:
     """Declare a slot whose node is written to memory whenever the slot is.
 
-    It adds to the module the slot, and a rule in the background, ``remember_<name>``, that saves what is written to
-    it: in the order of the writes, one after the other. A write that fails is an error of that rule (``rs.error``).
-    None is not written: it forgets nobody.
+    The module gets the slot and a background rule ``remember_<name>``. The rule saves each node, in the order of the
+    writes. A write that fails is an error of that rule (``rs.error``). None in the slot leaves memory as it is.
 
     Args:
-        module: The module that the slot is to belong to; it requires `ontology`.
+        module: The slot's module; it requires `ontology`.
         name: The slot's name.
-        type: The type of its nodes; subtypes are welcome.
+        type: The type of its nodes; subtypes are allowed.
 
     Raises:
-        DeclarationError: The module does not require `ontology`, or the name is none.
+        DeclarationError: The module does not require `ontology`, or the name is invalid.
 
     Example:
         ::
@@ -51,7 +50,7 @@ def bound(module: rs.Module, name: str, type: str) -> rs.Slot[Node | None]:
         name=f"remember_{name}",
     )
     async def remember(ctx: rs.RuleContext) -> None:
-        """Write to memory what was written to the slot."""
+        """Save the slot's new node in memory."""
         node: Node | None = ctx.payload(slot.changed)
         if node is None:
             return

@@ -1,4 +1,4 @@
-"""A copy of a ladybug database without what was deleted from it: deleting leaves the bytes in the file."""
+"""Copy a ladybug database without its deleted nodes, whose bytes stay in the file."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ Rows = list[list[Any]]
 
 
 def copy_database(source: Any, target: Any) -> None:
-    """Copy all tables, nodes and relations, those that no types name included, in one transaction.
+    """Copy all tables, nodes and relations in one transaction, also those that no type declares.
 
     Args:
-        source: A connection to the database that is copied.
-        target: A connection to an empty one.
+        source: A connection to the database to copy.
+        target: A connection to an empty database.
 
     Raises:
-        RuntimeError: Of ladybug's.
+        RuntimeError: Ladybug failed.
     """
     tables = _rows(source, "CALL show_tables() RETURN name, type")
     _rows(target, "BEGIN TRANSACTION")

@@ -1,4 +1,4 @@
-"""Memory as plain data that JSON can carry."""
+"""Memory as plain data for JSON."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ __all__ = ["read_document", "write_document"]
 
 
 def write_document(nodes: Iterable[Node], relations: Iterable[Relation]) -> dict[str, Any]:
-    """A document of nodes and the relations between them; dates and times are texts, as of ISO 8601."""
+    """Return a document of nodes and their relations; dates and times are ISO 8601 texts."""
     return {
         "format": FORMAT,
         "nodes": [
@@ -35,12 +35,12 @@ def write_document(nodes: Iterable[Node], relations: Iterable[Relation]) -> dict
 
 
 def read_document(document: Mapping[str, Any], types: Types) -> tuple[list[Node], list[Relation]]:
-    """The nodes and relations of a document.
+    """Return the nodes and relations of a document.
 
     Raises:
-        RuleError: It is none; the first entry that is wrong is named.
+        RuleError: The document is invalid; the message names the first wrong entry.
     """
-    if not isinstance(document, Mapping) or document.get("format") != FORMAT:  # pyright: ignore[reportUnnecessaryIsInstance]  # it comes from a file
+    if not isinstance(document, Mapping) or document.get("format") != FORMAT:  # pyright: ignore[reportUnnecessaryIsInstance]  # a file may hold anything
         raise RuleError(
             f"this is no document of memory of format {FORMAT}: write one with ravestate memory export"
         )

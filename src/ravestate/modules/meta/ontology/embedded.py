@@ -16,24 +16,30 @@ from ravestate.errors import PlatformError
 from ravestate.modules._loading import LOADING
 
 from .copying import copy_database
-from .faults import is_failed_write, is_torn_log, reason, why_not_opened
+from .database import connect, survives
+from .faults import (
+    ENDS_PROCESS,
+    is_about_log,
+    is_damage,
+    is_failed_write,
+    is_foreign_log,
+    reason,
+    said_by,
+    why_broken,
+    why_not_opened,
+)
+from .files import AT_CHECKPOINT, MemoryFiles
 from .store import RawNode, RawRelation
 from .tables import missing_tables, undeclared_types
 from .types import Types
 
 __all__ = ["EmbeddedStore"]
 
-BUFFER = 256 * 2**20
-"""Bytes of memory that pages of the file may take at most."""
-
-LARGEST = 2**36
-"""Bytes of address space for the file: it cannot grow beyond."""
-
 RESERVE = 16 * 2**20
-"""Free bytes on the disk below which nothing is written any more: the database stands no write that fails."""
+"""Free bytes on the disk that a write must leave: ladybug cannot recover from a failed write."""
 
 LOG_LIMIT = 4 * 2**20
-"""Bytes of the write-ahead log from which it is worked into the file."""
+"""Bytes of the write-ahead log that make the store move it into the file."""
 
 log = logging.getLogger("ravestate.ontology")
 
@@ -41,10 +47,9 @@ log = logging.getLogger("ravestate.ontology")
 class EmbeddedStore:
     """A file that ladybug keeps, in this process alone.
 
-    What is committed is in the write-ahead log, on disk. When a write to that log fails, the database would hang in
-    the next one, and end the process when it is closed. So there is a look at the free space before each write;
-    should one fail all the same, its torn record is cut off, nothing more is written, and the database is neither
-    closed nor collected until its files can be written again.
+    Committed writes are in the write-ahead log, on disk. After a write to that log fails, ladybug would hang in the
+    next write and end the process when it closes. So each write first looks at the free space. If a write fails
+    all the same, its torn record is cut off. Then nothing is written or closed until the files can be written again.
     """
 
     def __init__(self, path: Path) -> None:
@@ -58,12 +63,11 @@ class EmbeddedStore:
         """
         try:
             with LOADING:
-                import ladybug
+                import ladybug  # noqa: F401  # pyright: ignore[reportUnusedImport]
         except ImportError as error:
             raise PlatformError("ontology needs ladybug: pip install 'ravestate[ontology]'") from error
-        self._ladybug = ladybug
         self._path = path
-        self._log = path.with_name(path.name + ".wal")
+        self._files = MemoryFiles(path)
         self._log_limit = LOG_LIMIT
         self._log_good = 0
         self._stuck = ""
@@ -74,9 +78,13 @@ class EmbeddedStore:
             path.parent.mkdir(parents=True, exist_ok=True, mode=0o700)
         except OSError as error:
             raise PlatformError(f"memory {path}: cannot make its folder: {error.strerror}") from error
-        if not path.exists():
+        if self._files.has_database():
+            self._open(trial=not self._files.is_sealed())
+        else:
             self._check_space(0)
-        self._open()
+            self._set_orphans_aside(self._files.logs())
+            self._open()
+        self._files.remove_rewrite()  # of a process that was killed while it purged
 
     # ------------------------------------------------------------------------------------ statements
 
@@ -94,11 +102,11 @@ class EmbeddedStore:
 
     @contextmanager
     def transaction(self) -> Generator[None]:
-        """All statements within are done together, or none."""
+        """Commit all statements inside together, or none."""
         if self._within:
             yield
             return
-        if self._stuck:  # else each write looks for itself whether there is room; reading wants none
+        if self._stuck:  # otherwise each write checks the space by itself
             self._be_writable(0)
         self._execute("BEGIN TRANSACTION")
         self._within, self._purge_due = True, False
@@ -106,7 +114,7 @@ class EmbeddedStore:
             yield
             self._execute("COMMIT")
         except BaseException:
-            with contextlib.suppress(PlatformError):  # one that failed is rolled back already
+            with contextlib.suppress(PlatformError):  # a failed transaction is rolled back already
                 self._execute("ROLLBACK")
             raise
         finally:
@@ -116,34 +124,36 @@ class EmbeddedStore:
             self.purge()
 
     def _acknowledge(self) -> None:
-        """What has been written up to here is on disk."""
+        """Note that all writes so far are on disk."""
         self._shorten_log()
-        self._log_good = self._log_size()
+        self._log_good = self._files.log_size()
 
     def _execute(self, statement: str, parameters: Mapping[str, Any] | None = None) -> list[list[Any]]:
         try:
             result: Any = self._connection.execute(statement, dict(parameters or {}))
             return result.get_all()
-        except RuntimeError as error:
-            said = str(error)
+        except Exception as error:  # reading a damaged page raises whatever is at hand
+            said = said_by(error)
             if is_failed_write(said):
                 self._get_stuck(said)
                 raise PlatformError(
                     f"memory {self._path} cannot be written: {reason(said)}. Make room on the disk; what was acknowledged is "
                     "safe, and memory goes on when there is"
                 ) from error
-            if "Cannot open file" in said:  # its log's, in a folder that is read-only, say
-                raise PlatformError(why_not_opened(self._path, said)) from error
-            raise PlatformError(f"memory {self._path} failed: {said.strip()}") from error
+            if "Cannot open file" in said:  # the log, in a read-only folder for example
+                raise PlatformError(why_not_opened(self._path, said, self._files.present())) from error
+            if is_damage(error):
+                raise PlatformError(why_broken(self._path, said, self._files.present())) from error
+            raise PlatformError(f"memory {self._path} failed: {said}") from error
 
     # ------------------------------------------------------------------------------------ tables
 
     def prepare(self, types: Types) -> None:
-        """Make room for all types, properties and relations that are not there yet."""
-        if types is self._prepared:  # as those before have asked for; nobody else writes this file
+        """Create missing tables and columns."""
+        if types is self._prepared:  # no other process writes this file
             return
         missing = list(missing_tables(self._execute, types, str(self._path)))
-        if missing:  # else nothing is written: a memory may be read from a full disk
+        if missing:  # nothing to write: memory on a full disk can be read
             self._be_writable(0)
             with self.transaction():
                 for statement in missing:
@@ -151,136 +161,164 @@ class EmbeddedStore:
         self._prepared = types
 
     def undeclared(self, types: Types) -> list[str]:
-        """The types of nodes in the file that `types` do not have."""
+        """Return the types that have nodes in the file and are not in `types`."""
         return undeclared_types(self._execute, types)
 
     # ------------------------------------------------------------------------------------ the file
 
-    def _open(self) -> None:
+    def _open(self, *, trial: bool = False) -> None:
         self._prepared = None
+        self._files.make_private("")
+        problem = self._attempt(trial=trial)
+        if problem and is_foreign_log(problem):
+            self._set_orphans_aside(self._files.logs())
+            problem = self._attempt(trial=trial)
+        if problem and is_about_log(problem) and self._files.log_size():
+            problem = self._open_in_part() and problem
+        if problem:
+            raise PlatformError(why_not_opened(self._path, problem, self._files.present()))
+        self._log_good = self._files.log_size()
+        self._files.restrict()
+
+    def _attempt(self, *, trial: bool, whole_log: bool = True) -> str:
+        """Open the file and return why that failed; empty if it did not. `trial`: open it in another process first."""
+        if trial and not survives(self._path, whole_log=whole_log):
+            return ENDS_PROCESS
         try:
-            self._connect()
-        except RuntimeError as error:
-            if not is_torn_log(str(error)):
-                raise PlatformError(why_not_opened(self._path, str(error))) from error
-            self._save_what_can_be_read()
-        self._log_good = self._log_size()
-        with contextlib.suppress(OSError):  # of another user's, who lets us write it
-            self._path.chmod(0o600)
+            self._database, self._connection = connect(self._path, whole_log=whole_log)
+        except Exception as error:  # a damaged file raises whatever is at hand
+            return said_by(error)
+        return ""
 
-    def _connect(self, *, whole_log: bool = True) -> None:
-        self._database, self._connection = self._connected(self._path, whole_log=whole_log)
+    def _open_in_part(self) -> str:
+        """Open with a damaged log, of which a power failure has mostly torn the end; return why that failed.
 
-    def _connected(self, path: Path, *, whole_log: bool = True) -> tuple[Any, Any]:
-        database = self._ladybug.Database(
-            str(path),
-            buffer_pool_size=BUFFER,
-            max_db_size=LARGEST,
-            max_num_threads=1,
-            auto_checkpoint=False,  # done here, where it may fail
-            throw_on_wal_replay_failure=whole_log,
-        )
-        connection = self._ladybug.Connection(database, num_threads=1)
-        connection.execute("CALL force_checkpoint_on_close=false")
-        return database, connection
-
-    def _save_what_can_be_read(self) -> None:
-        """Open with a log that is damaged, mostly at its end, where a power failure has torn a record."""
-        number = 1
-        while (copy := self._log.with_name(f"{self._log.name}.damaged-{number}")).exists():
-            number += 1
+        The log is read up to the damage, or not at all if that is not possible. A copy of it is kept.
+        """
+        log_file = self._files.log
         try:
-            shutil.copyfile(self._log, copy)
-            self._connect(whole_log=False)
+            [copy] = self._files.set_aside([log_file], "damaged")
+            shutil.copyfile(copy, log_file)
+            problem = self._attempt(trial=True, whole_log=False)
+            if problem:
+                log_file.unlink()
+                problem = self._attempt(trial=True)
+            if problem:
+                copy.replace(log_file)
+                return problem
         except OSError as error:
             raise PlatformError(
                 f"memory {self._path} has a damaged log, which cannot be copied before it is mended: {error.strerror}"
             ) from error
-        except RuntimeError as error:
-            raise PlatformError(why_not_opened(self._path, str(error))) from error
         log.warning(
-            "memory %s has a damaged log: what stands before the damage was read, and the log as it was is kept as %s",
+            "memory %s has a damaged log: the part before the damage was read, and the log as it was is kept as %s",
             self._path,
             copy,
         )
+        return ""
+
+    def _set_orphans_aside(self, orphans: list[Path]) -> None:
+        """Rename the logs of a database that was deleted without them."""
+        if not orphans:
+            return
+        try:
+            kept = self._files.set_aside(orphans, "orphaned")
+        except OSError as error:
+            raise PlatformError(
+                f"memory {self._path}: {', '.join(map(str, orphans))} belong to a memory that was deleted, and cannot be "
+                f"renamed ({error.strerror}): remove them"
+            ) from error
+        log.warning(
+            "memory %s begins without the logs of an earlier memory that was deleted; they may still have names in them. "
+            "They are kept as %s. To remove them: rm, or ravestate memory reset --path %s",
+            self._path,
+            ", ".join(map(str, kept)),
+            self._path,
+        )
 
     def purge(self) -> None:
-        """Write the file anew without what was deleted, of which it still has the bytes.
+        """Rewrite the file without what was deleted: ladybug leaves the bytes in it.
 
-        Should that fail, what was deleted is no longer known all the same; a warning says so.
+        If that fails, the deleted nodes are forgotten all the same; a warning says that the file still has their bytes.
         """
         if self._within:
-            self._purge_due = True  # when it is done
+            self._purge_due = True  # after the transaction
             return
-        new = self._path.with_name(self._path.name + ".new")
+        new = MemoryFiles(self._files.beside(".new"))
         try:
-            self._check_space(2 * (self._path.stat().st_size + self._log_size()))
-            self._execute("CHECKPOINT")
-            for left_over in (
-                new,
-                new.with_name(new.name + ".wal"),
-            ):  # of a process that was killed right here
-                left_over.unlink(missing_ok=True)
-            database, connection = self._connected(new)
+            self._check_space(2 * (self._path.stat().st_size + self._files.log_size()))
+            self._checkpoint()
+            self._files.remove_rewrite()
+            new.make_private("")
+            database, connection = connect(new.path)
             try:
+                new.make_private(".wal")
                 copy_database(self._connection, connection)
+                new.make_private(*AT_CHECKPOINT)
                 connection.execute("CHECKPOINT")
             finally:
                 connection.close()
                 database.close()
-            with new.open("rb") as file:
+            with new.path.open("rb") as file:
                 os.fsync(file.fileno())
             self._connection.close()
             self._database.close()
             try:
-                new.replace(self._path)
+                new.path.replace(self._path)
+                self._files.seal()
             finally:
                 self._open()
         except (PlatformError, RuntimeError, OSError) as error:
             log.warning(
-                "memory %s: what was forgotten is gone, but the file still has its bytes: %s",
+                "memory %s: the forgotten nodes are gone, but the file still has their bytes: %s",
                 self._path,
                 error,
             )
             with contextlib.suppress(OSError):
-                new.unlink(missing_ok=True)
+                self._files.remove_rewrite()
+        if kept := self._files.kept():
+            log.warning(
+                "memory %s: logs that were set aside may still have data of the forgotten nodes; remove them: %s",
+                self._path,
+                ", ".join(map(str, kept)),
+            )
 
     def tidy(self) -> None:
-        """Work the log into the file: until then the database holds some megabytes for each table written to."""
+        """Move the log into the file: until then ladybug holds some megabytes for each table written to."""
         self._shorten_log(limit=0)
 
     def close(self) -> None:
-        """Let go of the file, its log worked in. If it cannot be written, the log is for the next opening."""
+        """Move the log into the file and close it. A log that cannot be moved waits for the next opening."""
         if self._stuck and not self._can_write():
             log.warning("memory %s stays open until the process ends: %s", self._path, self._stuck)
             return
         self._shorten_log(limit=0)
         self._connection.close()
         self._database.close()
+        self._files.remove_empty()
+        self._files.seal()
 
     def _shorten_log(self, limit: int | None = None) -> None:
-        size = self._log_size()
+        size = self._files.log_size()
         if size <= (self._log_limit if limit is None else limit) or self._stuck:
             return
         try:
             self._check_space(4 * size)
-            self._execute("CHECKPOINT")
+            self._checkpoint()
             self._log_limit = LOG_LIMIT
-        except PlatformError as error:  # nothing is lost, and it may go better next time
+        except PlatformError as error:  # nothing is lost; the next try may succeed
             self._log_limit = 2 * size
             log.warning("memory %s keeps a log of %d bytes: %s", self._path, size, error)
 
-    def _log_size(self) -> int:
-        try:
-            return self._log.stat().st_size
-        except OSError:
-            return 0
+    def _checkpoint(self) -> None:
+        self._files.make_private(*AT_CHECKPOINT)
+        self._execute("CHECKPOINT")
 
     def _check_space(self, needed: int) -> None:
         try:
             free = shutil.disk_usage(self._path.parent).free
         except OSError:
-            return  # the write itself will tell
+            return  # the write itself reports it
         if free < RESERVE + needed:
             raise PlatformError(
                 f"memory {self._path} cannot be written: the disk is full ({free // 2**20} MB free, and it wants "
@@ -290,6 +328,7 @@ class EmbeddedStore:
     def _be_writable(self, size: int) -> None:
         self._check_space(4 * size)
         if not self._stuck:
+            self._files.make_private(".wal")
             return
         if not self._can_write():
             raise PlatformError(
@@ -304,16 +343,16 @@ class EmbeddedStore:
     def _get_stuck(self, said: str) -> None:
         self._stuck = reason(said)
         with contextlib.suppress(OSError):
-            os.truncate(self._log, self._log_good)  # a record that is torn would stop the next opening
-        for held in (self._connection, self._database):  # never collected: that would end the process
+            os.truncate(self._files.log, self._log_good)  # the next opening stops at a torn record
+        for held in (self._connection, self._database):  # collecting them would end the process
             ctypes.pythonapi.Py_IncRef(ctypes.py_object(held))
 
     def _can_write(self) -> bool:
-        """Whether a file beside the log can be made a little longer than the log is."""
-        probe = self._path.with_name(self._path.name + ".probe")
+        """Return whether a file beside the log can grow a little longer than the log."""
+        probe = self._files.probe
         try:
             with probe.open("wb") as file:
-                file.truncate(self._log_size())
+                file.truncate(self._files.log_size())
                 file.seek(0, os.SEEK_END)
                 file.write(bytes(2**20))
                 file.flush()

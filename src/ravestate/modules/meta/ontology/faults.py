@@ -1,34 +1,75 @@
-"""What a user is told when ladybug fails."""
+"""The messages for users when ladybug fails."""
 
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 from pathlib import Path
 
-__all__ = ["is_failed_write", "is_torn_log", "reason", "why_not_opened"]
+__all__ = [
+    "ENDS_PROCESS",
+    "is_about_log",
+    "is_damage",
+    "is_failed_write",
+    "is_foreign_log",
+    "reason",
+    "said_by",
+    "why_broken",
+    "why_not_opened",
+]
 
 ELSE = "name another file with --set ontology.path=FILE"
+ENDS_PROCESS = "it ends the process that reads it"
+
+_NO_DAMAGE = re.compile(r"set lock|file version: |Cannot open file|directory")
+_DAMAGE = re.compile(
+    r"corrupt|bad_alloc|Assertion failed|out of bounds|^(?:Runtime|Storage|Internal) exception", re.IGNORECASE
+)
+
+
+def said_by(error: BaseException) -> str:
+    """Return the message of an exception, its type if it has none."""
+    return str(error).strip() or type(error).__name__
 
 
 def is_failed_write(said: str) -> bool:
-    """Whether it could not write its log."""
+    """Return whether ladybug could not write its log."""
     return "Cannot write to file" in said or "Cannot sync file" in said
 
 
-def is_torn_log(said: str) -> bool:
-    """Whether its log cannot be read to its end."""
-    return "wal file" in said.lower()
+def is_foreign_log(said: str) -> bool:
+    """Return whether the log belongs to another database: to one that was deleted, say."""
+    return "does not match" in said and "Database ID" in said
+
+
+def is_about_log(said: str) -> bool:
+    """Return whether a damaged log may be the reason why a file cannot be opened."""
+    return _NO_DAMAGE.search(said) is None
+
+
+def is_damage(error: BaseException) -> bool:
+    """Return whether a statement failed on a damaged file. Its pages may hold anything, hence the many exceptions."""
+    return not isinstance(error, RuntimeError) or _DAMAGE.search(str(error)) is not None
 
 
 def reason(said: str) -> str:
-    """Why a write failed."""
+    """Return why a write failed."""
     found = said.rpartition("Error: ")[2].strip().rstrip(".")
-    # Where a part was written it tells of an error that is long past.
+    # After a partial write the message has the reason of an earlier error.
     return found if found not in ("", "Success", "No such file or directory") else "the disk is full"
 
 
-def why_not_opened(path: Path, said: str) -> str:
-    """Why a file cannot be opened, and what to do."""
+def why_broken(path: Path, said: str, files: Iterable[Path]) -> str:
+    """Return the message for a damaged memory, with all of its files."""
+    first = (said.splitlines() or [""])[0][:200]
+    return (
+        f"memory {path} is broken, or no file of memory ({first}): put a copy in its place, or begin again with "
+        f"ravestate memory reset --path {path} , which removes {', '.join(file.name for file in files)}"
+    )
+
+
+def why_not_opened(path: Path, said: str, files: Iterable[Path]) -> str:
+    """Return why a file cannot be opened, and what to do."""
     first = said.strip().splitlines()[0] if said.strip() else "no reason given"
     if "set lock" in said:
         held = re.search(r"PID (\d+)", said)
@@ -36,7 +77,7 @@ def why_not_opened(path: Path, said: str) -> str:
         return (
             f"memory {path} is in use by {who}: only one process may have it open. End that agent, or {ELSE}"
         )
-    if version := re.search(r"file version: (\d+), Current build storage version: (\d+)", said):
+    if version := re.search(r"file version: (\d{1,3}), Current build storage version: (\d+)", said):
         newer = int(version[1]) > int(version[2])
         return (
             f"memory {path} was written by {'a newer' if newer else 'an older'} version of ladybug (format {version[1]}; this one "
@@ -46,7 +87,4 @@ def why_not_opened(path: Path, said: str) -> str:
         )
     if "Cannot open file" in said or "directory" in said:
         return f"memory {path} cannot be opened ({first.rpartition(': ')[2] or first}): {ELSE}"
-    return (
-        f"memory {path} is broken, or no file of memory ({first}): move it away to begin anew, or put a copy of it in its "
-        "place. Nothing was changed"
-    )
+    return why_broken(path, said, files) + ". Nothing was changed"

@@ -17,40 +17,40 @@ __all__ = ["Graph"]
 T = TypeVar("T")
 
 AGENT = "Agent"
-"""Of this type is who may have told things about himself."""
+"""The type of persons and robots: the agent may know more of them than one user told."""
 
 
 class Graph:
-    """A store seen through types."""
+    """A store, used according to the types."""
 
     def __init__(self, store: Store, types: Types) -> None:
         self._store = store
         self._types = types
 
     def prepare(self) -> None:
-        """Make room for the types."""
+        """Create the tables for the types."""
         self._store.prepare(self._types)
 
     def together(self, operations: Callable[[Graph], T]) -> T:
-        """Several operations, all or none."""
+        """Run several operations: all take effect, or none."""
         with self._store.transaction():
             return operations(self)
 
     # ------------------------------------------------------------------------------------ nodes
 
     def save(self, node: Node, of: str | None = None) -> Node:
-        """Set the properties that a node has, whether it is known or not."""
+        """Write a node's properties, whether or not memory has the node."""
         if of is not None and not self._types.is_a(node.type, of):
             raise RuleError(f"{node.id} is a {node.type}, and a {of} is wanted")
         return self._write(_known(node), self._types.stored(node.type, node.properties))
 
     def ensure(self, type: str, properties: Mapping[str, Value]) -> Node:
-        """The oldest node that matches, or a new one."""
+        """Return the oldest node that matches, or a new one."""
         found = self.find(type, properties)
         return found[0] if found else self.save(Node(type, properties))
 
     def find(self, type: str, properties: Mapping[str, Value]) -> list[Node]:
-        """All nodes of a type and its subtypes that match, oldest first."""
+        """Return all matching nodes of a type and its subtypes, oldest first."""
         wanted = self._types.stored(type, properties)
         tests = ["n.`id` IS NOT NULL"]
         tests += [f"n.`{key}` IS NULL" if wanted[key] is None else f"n.`{key}` = $p_{key}" for key in wanted]
@@ -60,7 +60,7 @@ class Graph:
         )
 
     def get(self, id: str) -> Node | None:
-        """The node with this id."""
+        """Return the node with this id."""
         label, _, _ = id.partition(":")
         if label not in self._types:
             return None
@@ -68,7 +68,7 @@ class Graph:
         return found[0] if found else None
 
     def update(self, node: Node, properties: Mapping[str, Value]) -> Node:
-        """Set properties of a node that is known."""
+        """Set properties of a node in memory."""
         values = self._types.stored(node.type, properties)
         with self._store.transaction():
             self._must_know(node)
@@ -84,7 +84,7 @@ class Graph:
     # ------------------------------------------------------------------------------------ relations
 
     def relate(self, node: Node, relation: str, other: Node, properties: Mapping[str, Value]) -> None:
-        """Relate two nodes that are known, and set properties of the relation."""
+        """Relate two nodes in memory, and set properties of the relation."""
         self._types.check_relation(node.type, relation, other.type)
         values = self._types.stored_of(relation, properties)
         with self._store.transaction():
@@ -93,7 +93,7 @@ class Graph:
             self._relate(node, relation, other, values)
 
     def unrelate(self, node: Node, relation: str, other: Node, *, forget: bool = False) -> None:
-        """End a relation; `forget`: and what was known on its account alone."""
+        """Remove a relation. `forget`: also remove the other node if nothing else needs it."""
         self._types.check_relation(node.type, relation, other.type)
         with self._store.transaction():
             self._store.write(
@@ -104,7 +104,7 @@ class Graph:
                 self.forget(other)
 
     def related(self, node: Node, relation: str, *, back: bool) -> list[Node]:
-        """The nodes at the other end of a relation."""
+        """Return the nodes at the other end of a relation."""
         self._types.check_end(node.type, relation, back=back)
         pattern = f"<-[:`{relation}`]-" if back else f"-[:`{relation}`]->"
         return self._nodes(
@@ -112,12 +112,12 @@ class Graph:
         )
 
     def relations(self, node: Node) -> list[Relation]:
-        """All relations from a node, then to it."""
+        """Return all relations from a node, then those to it."""
         found = [Relation(node, name, other, values) for name, values, other in self._ends(node, back=False)]
         found += [
             Relation(other, name, node, values)
             for name, values, other in self._ends(node, back=True)
-            if other.id != node.id  # it stands above
+            if other.id != node.id  # a relation to itself is among those from it
         ]
         return found
 
@@ -129,7 +129,7 @@ class Graph:
         )
 
     def _ends(self, node: Node, *, back: bool) -> list[tuple[str, dict[str, Value], Node]]:
-        """The relations of a node, by name, properties and the other end; those alone that the types know."""
+        """Return the name, the properties and the other end of each declared relation."""
         found: list[tuple[str, dict[str, Value], Node]] = []
         for relation, raw in self._edges(node, back=back):
             other = self._node(raw)
@@ -138,17 +138,17 @@ class Graph:
         return sorted(found, key=lambda end: (end[0], _age(end[2])))
 
     def _edges(self, node: Node, *, back: bool) -> list[tuple[RawRelation, RawNode]]:
-        self._types.properties(node.type)  # there is such a type
+        self._types.properties(node.type)  # raises if there is no such type
         pattern = "<-[r]-" if back else "-[r]->"
         rows = self._store.read(
             f"MATCH (a:`{node.type}` {{`id`: $id}}){pattern}(b) RETURN r, b", {"id": _known(node).id}
         )
         return [(row[0], row[1]) for row in rows]
 
-    # ------------------------------------------------------------------------------------ whole lives
+    # ------------------------------------------------------------------------------------ merging and forgetting
 
     def merge(self, keep: Node, duplicate: Node) -> Node:
-        """Make one node of two."""
+        """Merge two nodes."""
         if keep.id == duplicate.id:
             raise RuleError(f"{keep.id} cannot be merged with itself")
         if not self._types.is_a(keep.type, duplicate.type):
@@ -171,7 +171,7 @@ class Graph:
             return self._write(kept, self._types.stored(kept.type, missing))
 
     def _take_over(self, source: Node, name: str, target: Node, values: Mapping[str, Value]) -> None:
-        """Move a relation to other ends; where there is one already, its properties go first."""
+        """Move a relation to other ends. The properties of an existing relation have priority."""
         present: Mapping[str, Value] = {}
         for known, had, end in self._ends(source, back=False):
             if known == name and end.id == target.id:
@@ -179,13 +179,13 @@ class Graph:
         self._relate(source, name, target, self._types.stored_of(name, {**values, **present}))
 
     def only_about(self, node: Node) -> list[Node]:
-        """A node, and what is known on its account alone; nothing if it is not known."""
+        """Return a node and the nodes that only it needs; nothing if memory does not have it."""
         start = self.get(node.id)
         if start is None:
             return []
         going = {start.id: start}
         reached = [start]
-        for one in reached:  # grows on the way
+        for one in reached:  # the list grows in the loop
             for _, _, other in self._ends(one, back=False):
                 if other.id not in going and not self._has_own_life(other, start):
                     going[other.id] = other
@@ -196,7 +196,7 @@ class Graph:
         return list(going.values())
 
     def forget(self, node: Node) -> list[Node]:
-        """Remove a node with everything about it."""
+        """Remove a node and the nodes that only it needs."""
         with self._store.transaction():
             going = self.only_about(node)
             for one in going:
@@ -206,7 +206,7 @@ class Graph:
         return going
 
     def _has_own_life(self, other: Node, start: Node) -> bool:
-        """Whether it is an agent of which more than the name is known."""
+        """Return whether it is an agent with more than a name."""
         if AGENT not in self._types or not self._types.is_a(other.type, AGENT):
             return False
         return bool(other.properties.keys() - {"name"}) or any(
@@ -214,11 +214,11 @@ class Graph:
         )
 
     def _is_wanted(self, node: Node, going: Container[object]) -> bool:
-        """Whether anything that stays is related to it."""
+        """Return whether a node that stays is related to it."""
         return any(raw.values.get("id") not in going for _, raw in self._edges(node, back=True))
 
     def _must_declare(self, node: Node) -> None:
-        """Make sure that the types know all relations of a node, so that none is lost with it."""
+        """Refuse a node with undeclared relations: they would be lost with it."""
         edges = self._edges(node, back=False) + self._edges(node, back=True)
         unknown = {relation.name for relation, _ in edges} - self._types.relations.keys()
         unknown |= {raw.label for _, raw in edges if raw.label not in self._types}
@@ -234,11 +234,11 @@ class Graph:
     # ------------------------------------------------------------------------------------ documents
 
     def tidy(self) -> None:
-        """Work what was written into the database."""
+        """Move the log into the database."""
         self._store.tidy()
 
     def export(self) -> dict[str, Any]:
-        """Everything, as a document."""
+        """Return everything as a document."""
         nodes = sorted(
             (node for type in self._types for node in self._nodes(f"MATCH (n:`{type}`) RETURN n", {})),
             key=_age,
@@ -253,7 +253,7 @@ class Graph:
         return write_document(nodes, relations)
 
     def load(self, document: Mapping[str, Any]) -> int:
-        """Save what a document has."""
+        """Save the nodes and relations of a document."""
         nodes, relations = read_document(document, self._types)
         with self._store.transaction():
             for node in nodes:
@@ -267,7 +267,7 @@ class Graph:
         return len(nodes)
 
     def undeclared(self) -> list[str]:
-        """The names of types that the store has and the types do not."""
+        """Return the names of undeclared types that have nodes."""
         return self._store.undeclared(self._types)
 
     # ------------------------------------------------------------------------------------ internals
@@ -276,13 +276,13 @@ class Graph:
         return "|".join(f"`{name}`" for name in self._types.subtypes(type))
 
     def _nodes(self, statement: str, parameters: Mapping[str, Any]) -> list[Node]:
-        """The nodes that a statement returns, each once, oldest first."""
+        """Return the nodes that a statement finds, each once, oldest first."""
         rows = self._store.read(statement, parameters)
         found = {node.id: node for row in rows if (node := self._node(row[0])) is not None}
         return sorted(found.values(), key=_age)
 
     def _node(self, raw: RawNode) -> Node | None:
-        """A node as the types see it; None for one that they do not know."""
+        """Return a node with its declared properties; None if its type is undeclared."""
         id = raw.values.get("id")
         if raw.label not in self._types or not isinstance(id, str):
             return None
@@ -299,7 +299,7 @@ class Graph:
 
 
 def _known(node: Node) -> Node:
-    """A node whose id is of its type: by it the node is found again."""
+    """Return the node if its id begins with its type; the lookup depends on it."""
     if not node.id.startswith(f"{node.type}:"):
         raise RuleError(f"the id {node.id!r} of a {node.type} must begin with '{node.type}:'")
     return node
@@ -310,7 +310,7 @@ def _age(node: Node) -> tuple[str, str]:
 
 
 def _setting(variable: str, values: Mapping[str, Any]) -> str:
-    """The clause that sets properties, to parameters that no id's parameter is called like."""
+    """Return the clause that sets properties. The prefix keeps its parameters apart from those of ids."""
     settings = ", ".join(f"{variable}.`{key}` = $p_{key}" for key in values)
     return f" SET {settings}" if settings else ""
 

@@ -1,4 +1,4 @@
-"""Memory as rules use it: operations on the graph, each done whole or not at all, in the order of the calls."""
+"""Memory as rules use it: atomic operations on the graph, in the order of the calls."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from typing import Any, TypeVar
 from ravestate.errors import RuleError
 
 from .graph import Graph
-from .keeper import Keeper
 from .node import Node, Relation, Value
 from .reply import Reply
 from .store import Store
 from .types import Types
+from .worker import StoreWorker
 
 __all__ = ["Memory"]
 
@@ -21,43 +21,43 @@ T = TypeVar("T")
 
 
 class Memory:
-    """A graph of what is known, open for use.
+    """The open graph of an agent's knowledge.
 
     Every operation returns a `Reply` at once: ``await`` it in an async rule, or call ``.result()`` on it in a plain
-    function. Operations happen one after the other, in the order of the calls, in a thread of memory's own. What a
-    reply acknowledges is on disk (or with the server), whatever happens next.
+    function. Operations run one after the other, in the order of the calls, in memory's thread. Once a reply has its
+    result, the write is on disk or with the server.
 
-    All of them raise, when the reply is looked at:
+    The reply of each operation may raise:
 
-    - RuleError: a type, property or relation that the types do not have, or a value of a wrong type;
-    - PlatformError: memory failed: a full disk, a server that went away, a file in use.
+    - RuleError: an undeclared type, property or relation, or a value of a wrong type;
+    - PlatformError: memory failed: a full disk, a server that does not answer, a file in use.
     """
 
-    def __init__(self, keeper: Keeper, read_types: Callable[[], Types]) -> None:
-        """Begin to open memory; operations may be called at once, and wait until it is open.
+    def __init__(self, worker: StoreWorker, read_types: Callable[[], Types]) -> None:
+        """Begin to open memory. Operations may be called at once; they wait until it is open.
 
         Args:
-            keeper: What holds the graph, and the thread that may touch it; `close` releases it.
-            read_types: Says what there may be in it; called in the thread.
+            worker: The store's thread; `close` releases it.
+            read_types: Reads the types; called in the thread.
         """
-        self._keeper = keeper
-        self._lock = threading.Lock()  # nothing is asked of the keeper after it was released
+        self._worker = worker
+        self._lock = threading.Lock()  # no job is queued after the release
         self._closed: Reply[None] | None = None
         self._types: Types | None = None
         self._failure: BaseException | None = None
-        self._opened = Reply(keeper.submit(lambda store: self._open(store, read_types)), "Memory.open")
+        self._opened = Reply(worker.submit(lambda store: self._open(store, read_types)), "Memory.open")
 
     @property
     def place(self) -> str:
-        """Where it is: a file's path, or a server's address."""
-        return self._keeper.place
+        """The file's path or the server's address."""
+        return self._worker.place
 
     @property
     def types(self) -> Types:
-        """What there may be in memory.
+        """The types of nodes and relations.
 
         Raises:
-            RuleError: It is not open yet: ``await memory.opened()`` first.
+            RuleError: Memory is not open: ``await memory.opened()`` first.
         """
         if self._types is None:
             raise RuleError(f"memory ({self.place}) is not open: write await memory.opened() before")
@@ -67,14 +67,14 @@ class Memory:
         """Wait until memory is open.
 
         Raises:
-            PlatformError: It cannot be opened: a package is missing, the file is in use, broken or newer, the server
-                refuses. The message says what to do. All operations raise it then.
-            DeclarationError: A file of types is none, or contradicts another.
+            PlatformError: A package is missing, the file is in use, broken or newer, or the server refuses. The
+                message says what to do. All operations raise it too.
+            DeclarationError: A file of types is invalid, or contradicts another.
         """
         return self._opened
 
     def create(self, type: str, /, **properties: Value) -> Reply[Node]:
-        """Make a new node.
+        """Create a node.
 
         Example:
             ::
@@ -84,43 +84,42 @@ class Memory:
         return self._do("create", lambda graph: graph.save(Node(type, properties)))
 
     def ensure(self, type: str, /, **properties: Value) -> Reply[Node]:
-        """The oldest node that matches, as by `find`, or a new one where there is none."""
+        """Return the oldest node that matches, as in `find`, or a new one."""
         return self._do("ensure", lambda graph: graph.ensure(type, properties))
 
     def save(self, node: Node, /, *, of: str | None = None) -> Reply[Node]:
-        """Write a node, a new one or one that is known: set the properties that it has, and remove those that are
-        None. Others stay.
+        """Write a node, new or known: set its properties, remove those that are None, keep all others.
 
         Args:
-            node: What to write.
-            of: A type of which it must be, or of a subtype.
+            node: The node to write.
+            of: The type that it must have, or a supertype of it.
 
         Returns:
-            The node with all that memory has of it.
+            The node with all of its properties in memory.
         """
         return self._do("save", lambda graph: graph.save(node, of))
 
     def find(self, type: str, /, **properties: Value) -> Reply[list[Node]]:
-        """All nodes of a type, subtypes included, with these values, oldest first; None matches what is not set."""
+        """Return all nodes of a type or a subtype with these values, oldest first. None matches a missing value."""
         return self._do("find", lambda graph: graph.find(type, properties))
 
     def get(self, id: str, /) -> Reply[Node | None]:
-        """The node with this id; None if there is none."""
+        """Return the node with this id; None if there is none."""
         return self._do("get", lambda graph: graph.get(id))
 
     def update(self, node: Node, /, **properties: Value) -> Reply[Node]:
-        """Set properties of a node that is known, and remove those that are None.
+        """Set properties of a node in memory, and remove those that are None.
 
         Raises:
-            RuleError: Also when memory does not know the node, or no longer.
+            RuleError: Memory does not have the node, among others.
         """
         return self._do("update", lambda graph: graph.update(node, properties))
 
     def relate(self, node: Node, relation: str, other: Node, /, **properties: Value) -> Reply[None]:
-        """Relate two nodes that are known; once related, it sets the relation's properties.
+        """Relate two nodes in memory; between related nodes, set the relation's properties.
 
         Raises:
-            RuleError: Also when memory does not know one of them.
+            RuleError: Memory does not have one of them, among others.
 
         Example:
             ::
@@ -130,57 +129,58 @@ class Memory:
         return self._do("relate", lambda graph: graph.relate(node, relation, other, properties))
 
     def unrelate(self, node: Node, relation: str, other: Node, /, *, forget: bool = False) -> Reply[None]:
-        """End a relation; without one it does nothing.
+        """Remove a relation, if there is one.
 
         Args:
-            node: From which it leads.
-            relation: Its name.
-            other: Where it leads to.
-            forget: Also forget `other`, unless something else is related to it, or it is an agent (a person, a robot) of
-                which more than the name is known.
+            node: The source.
+            relation: The relation's name.
+            other: The target.
+            forget: Also forget `other`, unless another node is related to it. A person or robot with more than a name
+                stays as well.
         """
         return self._do("unrelate", lambda graph: graph.unrelate(node, relation, other, forget=forget))
 
     def related(self, node: Node, relation: str, /, *, back: bool = False) -> Reply[list[Node]]:
-        """The nodes to which `node` has a relation, oldest first; `back`: those that have it to `node`."""
+        """Return the targets of a relation of `node`, oldest first; with `back`, the sources."""
         return self._do("related", lambda graph: graph.related(node, relation, back=back))
 
     def relations(self, node: Node, /) -> Reply[list[Relation]]:
-        """All relations of a node: those from it, then those to it."""
+        """Return all relations of a node: those from it, then those to it."""
         return self._do("relations", lambda graph: graph.relations(node))
 
     def merge(self, keep: Node, duplicate: Node, /) -> Reply[Node]:
-        """Make one node of two: relations, and properties that `keep` lacks, move over; `duplicate` goes.
+        """Merge two nodes: `keep` gets the duplicate's relations, and the properties that it lacks.
 
         Raises:
-            RuleError: Also when `keep` is not of the duplicate's type or a subtype of it, or one is not known.
+            RuleError: The types do not fit: `keep` must have the duplicate's type or a subtype. Or memory does not
+                have one of them.
         """
         return self._do("merge", lambda graph: graph.merge(keep, duplicate))
 
     def forget(self, node: Node, /) -> Reply[list[Node]]:
-        """Remove a node with everything about it: its relations, and what is known on its account alone.
+        """Remove a node, its relations, and the nodes that only it needs. The file keeps no byte of them.
 
-        The latter are the nodes to which it is related, and those to which these are related, as long as nothing
-        that stays is related to them. An agent (a person, a robot) of which more than the name is known stays.
+        A node needs its relations' targets, and their targets in turn. They stay if a node that stays is related to
+        them. A person or robot with more than a name stays as well.
 
         Returns:
-            What was removed, `node` first; nothing if memory does not know it.
+            The removed nodes, `node` first; nothing if memory does not have it.
         """
         return self._do("forget", lambda graph: graph.forget(node))
 
     def only_about(self, node: Node, /) -> Reply[list[Node]]:
-        """What `forget` would remove, `node` first."""
+        """Return the nodes that `forget` would remove, `node` first."""
         return self._do("only_about", lambda graph: graph.only_about(node))
 
     def together(self, operations: Callable[[Graph], T], /) -> Reply[T]:
-        """Several operations as one: all are done or none. In a file nobody else's come between; a server has rules of its own.
+        """Run several operations as one: all take effect, or none. In a file, no other operation comes between them.
 
         Args:
-            operations: Is called with the graph, in memory's thread. The graph has the operations of this class, done at once,
-                with properties as mappings; it is not to be used later.
+            operations: A function of the graph, called in memory's thread. The graph has the operations of this class,
+                without replies and with properties as mappings. Do not keep it.
 
         Returns:
-            What `operations` returns. What it raises takes back what it has done.
+            The result of `operations`. An exception in it rolls all of them back.
 
         Example:
             ::
@@ -195,37 +195,37 @@ class Memory:
         return self._do("together", lambda graph: graph.together(operations))
 
     def export(self) -> Reply[dict[str, Any]]:
-        """Everything, as a document that JSON can carry; `load` reads it."""
+        """Return everything as a document for JSON; `load` reads it."""
         return self._do("export", lambda graph: graph.export())
 
     def load(self, document: Mapping[str, Any], /) -> Reply[int]:
-        """Save all nodes and relations of a document that `export` made, all or none; the number of nodes.
+        """Save all nodes and relations of a document from `export`, or none; return the number of nodes.
 
         Raises:
-            RuleError: Also when it is no such document.
+            RuleError: It is not such a document, among others.
         """
         return self._do("load", lambda graph: graph.load(document))
 
     def undeclared(self) -> Reply[list[str]]:
-        """The names of types that are in memory, and in no file of types: their nodes are there, and unseen."""
+        """Return the names of types that have nodes in memory and are in no file of types."""
         return self._do("undeclared", lambda graph: graph.undeclared())
 
     def tidy(self) -> Reply[None]:
-        """After many writes: give back the room in memory that they took. Nothing is known before that is not known after."""
+        """Move the log of writes into the database, which frees memory after many writes."""
         return self._do("tidy", lambda graph: graph.tidy())
 
     def close(self) -> Reply[None]:
-        """Let go, after all operations before; called again it does nothing. Later operations are refused."""
+        """Close memory after all earlier operations. Later operations raise RuleError."""
         with self._lock:
             if self._closed is None:
-                self._closed = Reply(self._keeper.release(), "Memory.close")
+                self._closed = Reply(self._worker.release(), "Memory.close")
             return self._closed
 
     def __repr__(self) -> str:
         return f"<memory {self.place}>"
 
     def _open(self, store: Store, read_types: Callable[[], Types]) -> None:
-        """In the thread: look what there may be, and make room for it."""
+        """Read the types, and create their tables. Runs in the thread."""
         try:
             types = read_types()
             Graph(store, types).prepare()
@@ -243,4 +243,4 @@ class Memory:
         with self._lock:
             if self._closed is not None:
                 raise RuleError(f"memory ({self.place}) is closed: {name} comes too late")
-            return Reply(self._keeper.submit(job), f"Memory.{name}")
+            return Reply(self._worker.submit(job), f"Memory.{name}")

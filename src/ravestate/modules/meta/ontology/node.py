@@ -1,4 +1,4 @@
-"""What memory holds: nodes with properties, and relations between them. Values; no behaviour."""
+"""The values in memory: nodes with properties, and relations between them."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from typing import Any
 __all__ = ["Node", "Relation", "Value"]
 
 Value = str | int | float | bool | date | datetime | None
-"""A property's value. None stands for a property that is not, or no longer, set."""
+"""A property's value. None stands for a property without a value."""
 
 
 class _Ids:
-    """Ids that grow with time, so that their order is that in which nodes were made."""
+    """A generator of ids that grow with time, so they sort nodes by age."""
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
@@ -35,15 +35,14 @@ _ids = _Ids()
 
 @dataclass(frozen=True, slots=True)
 class Node:
-    """Something that is known: of a type, with properties. It never changes; `with_properties` makes another.
+    """A thing that the agent knows: a type and properties. It is immutable; `with_properties` returns a changed copy.
 
-    A new node has its id from the beginning, so that it may be written, related and written again without
-    waiting.
+    A new node has its id at once, so a rule may save and relate it without waiting.
 
     Args:
-        type: The name of its type, e.g. ``Person``.
-        properties: Values by name. One that is None is removed from memory when the node is saved.
-        id: ``Type:number``; a new one by default. The numbers grow with time.
+        type: The name of its type: ``Person``.
+        properties: Values by name. Saving the node removes a property that is None.
+        id: ``Type:number``. Default: a new one; the numbers grow with time.
 
     Example:
         >>> ada = Node("Person", {"name": "Ada"})
@@ -62,19 +61,19 @@ class Node:
             object.__setattr__(self, "id", _ids.next(self.type))
 
     def with_properties(self, **properties: Value) -> Node:
-        """The same node with other values for some properties; None takes one away."""
+        """Return the node with other values for some properties; None removes one."""
         return Node(self.type, {**self.properties, **properties}, self.id)
 
     def get(self, name: str, default: Any = None) -> Any:
-        """A property's value; `default` where it is not set."""
+        """Return a property's value, or `default` if it has none."""
         value = self.properties.get(name)
         return default if value is None else value
 
     def __getitem__(self, name: str) -> Any:
-        """A property's value.
+        """Return a property's value.
 
         Raises:
-            KeyError: It is not set.
+            KeyError: The property has none.
         """
         value = self.properties.get(name)
         if value is None:
@@ -93,7 +92,7 @@ class Node:
 
 @dataclass(frozen=True, slots=True)
 class Relation:
-    """That `source` is related to `target`, e.g. by ``lives_in``, with properties of that relation."""
+    """A relation of `source` to `target`, such as ``lives_in``, with properties of its own."""
 
     source: Node
     name: str

@@ -1,4 +1,4 @@
-"""What an operation on memory returns at once: its result to come, for async rules and for plain ones."""
+"""The future result of an operation on memory, for async rules and plain ones."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ T = TypeVar("T")
 
 
 class Reply(Generic[T]):
-    """A result to come. The operation is under way already, whether anybody waits for it or not.
+    """A future result. The operation runs whether or not anyone waits for it.
 
-    An error that nobody asks for is logged.
+    If nobody looks at the result, an error goes to the log.
 
     Example:
         ::
@@ -36,25 +36,25 @@ class Reply(Generic[T]):
         self._looked = False
 
     def result(self, timeout: float | None = None) -> T:
-        """Wait for the result; not on the event loop, which would stand still.
+        """Wait for the result. Do not call this on the event loop, which it would block.
 
         Args:
-            timeout: Seconds to wait; by default until it is there.
+            timeout: Seconds to wait; None waits without end.
 
         Raises:
-            TimeoutError: It was not there in time. The operation goes on.
+            TimeoutError: The result is late. The operation goes on.
             RuleError: See the operation.
-            PlatformError: Memory failed; what is wrong, and what to do.
+            PlatformError: Memory failed; the message says what to do.
         """
         self._looked = True
         return self._future.result(timeout)
 
     def __await__(self) -> Generator[Any, None, T]:
-        # By way of an executor, because a loop in virtual time waits for what it has lent to one. The operation
-        # goes on when who waits for it is cancelled: what was begun is done.
+        # An executor, because a loop in virtual time waits for its executors. The operation goes on when the
+        # waiting rule is cancelled.
         self._looked = True
         loop = asyncio.get_running_loop()
-        waiting: asyncio.Future[Any] = loop.run_in_executor(_Lent(self._future), _named(self._what))
+        waiting: asyncio.Future[Any] = loop.run_in_executor(_FutureExecutor(self._future), _named(self._what))
         return asyncio.shield(waiting).__await__()
 
     def __del__(self) -> None:
@@ -62,17 +62,17 @@ class Reply(Generic[T]):
             self._future.add_done_callback(functools.partial(_tell, self._what))
 
     def __repr__(self) -> str:
-        return f"<reply of {self._what}: {'there' if self._future.done() else 'to come'}>"
+        return f"<reply of {self._what}: {'done' if self._future.done() else 'pending'}>"
 
 
 def _tell(what: str, future: Future[Any]) -> None:
     error = None if future.cancelled() else future.exception()
     if error is not None:
-        log.error("%s failed, and nobody has waited for it: %s", what, error)
+        log.error("%s failed, and nobody waited for it: %s", what, error)
 
 
-class _Lent(Executor):
-    """Stands for whoever works at a future already."""
+class _FutureExecutor(Executor):
+    """An executor that returns a future which is already under way."""
 
     def __init__(self, future: Future[Any]) -> None:
         self._future = future
@@ -82,7 +82,7 @@ class _Lent(Executor):
 
 
 def _named(what: str) -> Callable[[], None]:
-    """A function with a name, for messages that say who is waited for."""
+    """Return a function with this name; messages show which operation a rule waits for."""
 
     def function() -> None: ...
 

@@ -1,4 +1,4 @@
-"""When memory is opened and closed."""
+"""The rules that open and close memory."""
 
 from __future__ import annotations
 
@@ -7,23 +7,23 @@ import asyncio
 import ravestate as rs
 from ravestate.errors import PlatformError
 
-from . import memory, module
-from .places import open_memory
+from .names import memory, module
+from .opening import open_memory
 
 
 @module.rule(when=rs.startup.detached(), writes=memory, detached=True, background=True)
 async def open_up(ctx: rs.RuleContext) -> None:
-    """Open memory where the settings say. The slot has it at once, as what is asked of it waits until it is open."""
+    """Open memory where the settings say. The slot has it at once: operations wait until it is open."""
     opening = open_memory(ctx.settings)
     ctx[memory] = opening
 
     def let_go() -> None:
-        ctx[memory] = None  # the talk goes on without
+        ctx[memory] = None  # the talk goes on without memory
         opening.close()
 
     try:
         await opening.opened()
-    except PlatformError as error:  # for which no rule is to blame
+    except PlatformError as error:  # no rule is at fault
         let_go()
         ctx.log.warning("there is no long-term memory in this talk: %s", error)
     except BaseException:
@@ -33,12 +33,12 @@ async def open_up(ctx: rs.RuleContext) -> None:
 
 @module.rule(when=rs.shutdown.detached(), reads=memory, background=True)
 async def close(ctx: rs.RuleContext) -> None:
-    """Close memory, after what others still want to write."""
+    """Close memory after all writes."""
     opened = ctx[memory]
     if opened is None:
         return
     try:
         await ctx.quiet()
-        await asyncio.sleep(0)  # what the last of them wrote to bound slots is on its way
+        await asyncio.sleep(0)  # the last writes to bound slots are queued now
     finally:
         await opened.close()

@@ -1,4 +1,4 @@
-"""What memory needs of a graph database: statements in Cypher, transactions, and room for the types."""
+"""The interface of graph databases: Cypher statements, transactions, and tables for the types."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from .types import Types
 __all__ = ["FORMAT", "RawNode", "RawRelation", "Store", "check_format"]
 
 FORMAT = 1
-"""How nodes and relations are laid out; it grows when that changes."""
+"""The number of the layout of nodes and relations; a new layout has a greater one."""
 
 
 @dataclass(frozen=True, slots=True)
 class RawNode:
-    """A node as a database has it: its one label, and its properties, ``id`` among them."""
+    """A node as a database returns it: its label and its properties, with ``id``."""
 
     label: str
     values: Mapping[str, Any]
@@ -27,25 +27,25 @@ class RawNode:
 
 @dataclass(frozen=True, slots=True)
 class RawRelation:
-    """A relation as a database has it: its type, and its properties."""
+    """A relation as a database returns it: its type and its properties."""
 
     name: str
     values: Mapping[str, Any]
 
 
 class Store(Protocol):
-    """A graph database. It is touched by one thread.
+    """A graph database, used by one thread.
 
-    Statements are Cypher that Neo4j 5, ladybug and ArcadeDB read alike: no functions of labels or types, which
-    differ, so whole nodes and relations are returned. Values are always parameters; names come from the types, which
-    let only letters, digits and ``_`` pass.
+    Statements are Cypher that Neo4j 5, ladybug and ArcadeDB all read. Functions of labels and types differ, so
+    statements return whole nodes and relations. Values are always parameters. Names come from the types, which allow
+    only letters, digits and ``_``.
     """
 
     def prepare(self, types: Types) -> None:
-        """Make room for all types, properties and relations that are not there yet.
+        """Create what is missing for the types, properties and relations.
 
         Raises:
-            PlatformError: The database holds something else by these names, or is of a newer version.
+            PlatformError: The database uses these names for something else, or is newer.
         """
         ...
 
@@ -58,7 +58,7 @@ class Store(Protocol):
         ...
 
     def write(self, statement: str, parameters: Mapping[str, Any]) -> list[Sequence[Any]]:
-        """Run a statement that writes; outside of a transaction it is done when this returns.
+        """Run a statement that writes. Outside a transaction, the write is committed when this returns.
 
         Raises:
             PlatformError: The database failed.
@@ -66,7 +66,7 @@ class Store(Protocol):
         ...
 
     def transaction(self) -> AbstractContextManager[None]:
-        """All statements within are done together when it ends, or none of them; one within another is a part of it.
+        """Commit all statements inside together, or none. A transaction inside another is part of it.
 
         Raises:
             PlatformError: The database failed.
@@ -74,24 +74,24 @@ class Store(Protocol):
         ...
 
     def purge(self) -> None:
-        """Leave no trace of what was deleted, where that is in this process's power."""
+        """Remove the traces of deleted nodes, as far as this process can."""
         ...
 
     def tidy(self) -> None:
-        """Work the log of writes into the database, and give back the room that they took."""
+        """Move the log of writes into the database, and free its memory."""
         ...
 
     def undeclared(self, types: Types) -> list[str]:
-        """The names of types in the database that `types` do not have."""
+        """Return the names of types that are in the database and not in `types`."""
         ...
 
     def close(self) -> None:
-        """Let go of it."""
+        """Close the database."""
         ...
 
 
 def check_format(place: str, found: object) -> None:
-    """Refuse what a newer version has written.
+    """Refuse a layout of a newer version.
 
     Raises:
         PlatformError: It is newer.

@@ -1,4 +1,4 @@
-"""The tables that ladybug needs for types and relations: what is missing of them, and how to add it."""
+"""The tables that ladybug needs for types and relations."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ __all__ = ["META", "missing_tables", "undeclared_types"]
 Execute = Callable[[str], list[list[Any]]]
 
 META = "_ravestate"
-"""The table that says how the rest is laid out. No type of a user's begins with ``_``."""
+"""The table with the number of the layout. No user's type begins with ``_``."""
 
 COLUMNS: dict[Kind, str] = {
     "text": "STRING",
@@ -28,15 +28,15 @@ COLUMNS: dict[Kind, str] = {
 
 
 def missing_tables(execute: Execute, types: Types, place: str) -> Iterator[str]:
-    """The statements that make room for types, properties and relations that are not there yet.
+    """Yield the statements that create missing tables and columns.
 
     Args:
         execute: Runs a statement.
-        types: What there is to be.
-        place: Where the database is, for messages.
+        types: The types that need tables.
+        place: The database's path, for messages.
 
     Raises:
-        PlatformError: It is of something else, of a newer version, or has a property of another kind.
+        PlatformError: The database has other data, a newer layout, or a property of another kind.
     """
     tables = {str(row[0]) for row in execute("CALL show_tables() RETURN name")}
     if META in tables:
@@ -70,7 +70,7 @@ def missing_tables(execute: Execute, types: Types, place: str) -> Iterator[str]:
 
 
 def undeclared_types(execute: Execute, types: Types) -> list[str]:
-    """The types of nodes in the database that `types` do not have."""
+    """Return the types that have nodes in the database and are not in `types`."""
     tables = execute("CALL show_tables() RETURN name, type")
     unknown = {str(name) for name, kind in tables if kind == "NODE"} - {META, *types}
     return sorted(name for name in unknown if execute(f"MATCH (n:`{name}`) RETURN n.`id` LIMIT 1"))

@@ -1,4 +1,4 @@
-"""Files of types: YAML that is read into `Types`, several into one.
+"""Files of types: several YAML files make one `Types`.
 
 ::
 
@@ -9,69 +9,96 @@
         sails_to: [City, Country]       # to nodes of these types, and their subtypes
         insured_by: {to: Company, has: {since: date}}
 
-A later file adds to what the earlier ones say of a type; it cannot take away or contradict.
+A later file extends earlier ones; it cannot remove or contradict anything.
 """
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping
+from functools import lru_cache
+from importlib.resources import files
 from importlib.resources.abc import Traversable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ravestate.errors import DeclarationError, PlatformError, nearest
+from ravestate.errors import DeclarationError, nearest
+from ravestate.modules._yaml import fault, kind_of, line_of, read_nodes
 
 from .types import KINDS, Kind, Relating, Type, Types
 
 if TYPE_CHECKING:
     import yaml
 
-__all__ = ["read_types"]
+__all__ = ["read_types", "types_in"]
 
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,62}")
 OF_A_TYPE = ("is", "has", "relations")
 OF_A_RELATION = ("to", "has")
 
 
-def read_types(files: Iterable[Path | Traversable]) -> Types:
-    """Read files, in this order, into one.
+def read_types(paths: Iterable[Path | Traversable]) -> Types:
+    """Read files in this order.
 
     Raises:
-        DeclarationError: A file is no file of types, or contradicts another; file and line are named.
+        DeclarationError: A file is invalid or contradicts another; the message names file and line.
         PlatformError: A file is missing or cannot be read.
     """
     reader = _Reader()
-    for file in files:
-        reader.read(str(file), _text_of_file(file))
+    for file in paths:
+        reader.read(str(file), read_nodes(file, "file of types"))
     return reader.finish()
 
 
+def types_in(paths: Iterable[Path]) -> Types:
+    """Return the built-in types together with those of files. Files are read once, and again after a change.
+
+    Raises:
+        DeclarationError: A file is invalid or contradicts another.
+        PlatformError: A file cannot be read.
+    """
+    return _read(tuple((path.expanduser(), _state_of(path.expanduser())) for path in paths))
+
+
+@lru_cache(maxsize=8)  # each visitor of a page opens memory
+def _read(own: tuple[tuple[Path, object], ...]) -> Types:
+    built_in = files("ravestate.modules.meta.ontology") / "types.yaml"
+    return read_types([built_in, *(path for path, _ in own)])
+
+
+def _state_of(path: Path) -> object:
+    """Return what changes with a file."""
+    try:
+        stat = path.stat()
+    except OSError:  # reading it says so
+        return None
+    return stat.st_ino, stat.st_size, stat.st_mtime_ns
+
+
 class _Reader:
-    """What the files have said so far, and where."""
+    """The content of the files so far, and its lines."""
 
     def __init__(self) -> None:
         self._places: dict[str, str] = {}
-        """Where each type and relation was first named, ``file:line``."""
+        """The first ``file:line`` of each type and relation."""
         self._parents: dict[str, tuple[str, str]] = {}
         self._has: dict[str, dict[str, Kind]] = {}
         self._ends: dict[str, dict[tuple[str, str], str]] = {}
         self._relation_has: dict[str, dict[str, Kind]] = {}
         self._kinds: dict[tuple[bool, str], tuple[str, Kind, str]] = {}
-        """Of each property's name, of types (False) and of relations (True): how it is spelt, its kind, where."""
+        """The spelling, kind and line of each property, of types (False) and relations (True)."""
 
-    def read(self, file: str, text: str) -> None:
-        root = _composed(file, text)
+    def read(self, file: str, root: yaml.Node | None) -> None:
         if root is None:
             return
         for key, name, body in _entries(file, root, "a file of types maps types to what they have"):
             self._name(file, key, name, self._has, self._ends)
             self._has.setdefault(name, {})
-            if _kind(body) == "scalar" and not body.value:
-                continue  # a type that has nothing of its own
+            if kind_of(body) == "scalar" and not body.value:
+                continue  # a type without parts
             for part_key, part, value in _entries(file, body, f"{name} has keys and values"):
                 if part not in OF_A_TYPE:
-                    raise _fault(
+                    raise fault(
                         file,
                         part_key,
                         f"{name} has no {part!r}{nearest(part, OF_A_TYPE)} (a type has: {', '.join(OF_A_TYPE)})",
@@ -118,31 +145,31 @@ class _Reader:
         parent = _text(file, node, f"the parent of {name} is one type")
         said = self._parents.get(name)
         if said is not None and said[0] != parent:
-            raise _fault(file, node, f"{name} is a {said[0]} already ({said[1]}), and has one parent")
-        self._parents[name] = (parent, _place(file, node))
+            raise fault(file, node, f"{name} is a {said[0]} already ({said[1]}), and has one parent")
+        self._parents[name] = (parent, line_of(file, node))
 
     def _add_relations(self, file: str, source: str, node: yaml.Node) -> None:
         for key, name, value in _entries(file, node, "relations map names to types"):
             self._name(file, key, name, self._ends, self._has)
             properties = self._relation_has.setdefault(name, {})
             targets = value
-            if _kind(value) == "mapping":
+            if kind_of(value) == "mapping":
                 parts = {part: (part_key, body) for part_key, part, body in _entries(file, value, name)}
                 for part, (part_key, _) in parts.items():
                     if part not in OF_A_RELATION:
-                        raise _fault(
+                        raise fault(
                             file,
                             part_key,
                             f"{name} has no {part!r}{nearest(part, OF_A_RELATION)} (a relation has: to, has)",
                         )
                 if "to" not in parts:
-                    raise _fault(file, key, f"{name} leads nowhere: write {name}: {{to: Thing}}")
+                    raise fault(file, key, f"{name} leads nowhere: write {name}: {{to: Thing}}")
                 targets = parts["to"][1]
                 if "has" in parts:
                     self._add_properties(file, parts["has"][1], name, properties, relation=True)
             ends = self._ends.setdefault(name, {})
-            for item in targets.value if _kind(targets) == "sequence" else [targets]:
-                ends.setdefault((source, _text(file, item, f"{name} goes to types")), _place(file, item))
+            for item in targets.value if kind_of(targets) == "sequence" else [targets]:
+                ends.setdefault((source, _text(file, item, f"{name} goes to types")), line_of(file, item))
 
     def _add_properties(
         self, file: str, node: yaml.Node, owner: str, into: dict[str, Kind], *, relation: bool
@@ -150,20 +177,20 @@ class _Reader:
         for key, name, value in _entries(file, node, f"{owner} has properties by name"):
             _check_name(file, key, name, "property")
             if name.lower() == "id":
-                raise _fault(file, key, f"{owner}.{name}: every node has an id already; choose another name")
+                raise fault(file, key, f"{owner}.{name}: every node has an id already; choose another name")
             kind = _text(file, value, f"{owner}.{name} has a kind")
             found: Kind | None = next((known for known in KINDS if known == kind), None)
             if found is None:
-                raise _fault(
+                raise fault(
                     file,
                     value,
                     f"{owner}.{name}: {kind!r} is no kind{nearest(kind, KINDS)} (kinds: {', '.join(KINDS)})",
                 )
             spelt, known, where = self._kinds.setdefault(
-                (relation, name.lower()), (name, found, _place(file, key))
+                (relation, name.lower()), (name, found, line_of(file, key))
             )
             if (spelt, known) != (name, found):
-                raise _fault(
+                raise fault(
                     file,
                     key,
                     f"{owner}.{name} is {found}, and {spelt} is {known} at {where}: choose another name",
@@ -177,57 +204,21 @@ class _Reader:
         _check_name(file, node, name, "type or relation")
         for other in (*among, *others):
             if other.lower() == name.lower() and (other != name or other in others):
-                raise _fault(
+                raise fault(
                     file,
                     node,
                     f"{name} and {other} ({self._places[other]}) are too much alike: a type and a relation, or names that differ "
                     "by capitals alone",
                 )
-        self._places.setdefault(name, _place(file, node))
+        self._places.setdefault(name, line_of(file, node))
 
 
 # ------------------------------------------------------------------------------------- YAML
 
 
-def _text_of_file(file: Path | Traversable) -> str:
-    try:
-        return file.read_text(encoding="utf-8")
-    except FileNotFoundError as error:
-        near = ""
-        if isinstance(file, Path) and file.parent.is_dir():
-            near = nearest(file.name, [other.name for other in file.parent.iterdir()])
-        raise PlatformError(f"the file of types {str(file)!r} does not exist{near}") from error
-    except OSError as error:
-        raise PlatformError(
-            f"the file of types {str(file)!r} cannot be read: {error.strerror or error}"
-        ) from error
-    except UnicodeDecodeError as error:
-        raise DeclarationError(
-            f"{file}: this is no text in UTF-8 ({error.reason} at byte {error.start})"
-        ) from None
-
-
-def _composed(file: str, text: str) -> yaml.Node | None:
-    """The nodes of a YAML text, which know their lines. No value is made of them, so nothing can run."""
-    import yaml
-
-    try:
-        return yaml.compose(text, Loader=yaml.BaseLoader)
-    except yaml.MarkedYAMLError as error:
-        mark = error.problem_mark or error.context_mark
-        line = "" if mark is None else f":{mark.line + 1}"
-        reason = ", ".join(filter(None, (error.context, error.problem)))
-        raise DeclarationError(f"{file}{line}: this is no YAML ({reason})") from None
-    except yaml.YAMLError as error:  # a character that YAML does not allow; it knows no line
-        line = text.count("\n", 0, getattr(error, "position", 0)) + 1
-        raise DeclarationError(f"{file}:{line}: this is no YAML (a control character)") from None
-    except RecursionError:
-        raise DeclarationError(f"{file}: this is no file of types, but nested without end") from None
-
-
 def _entries(file: str, node: yaml.Node, meaning: str) -> Iterator[tuple[yaml.Node, str, yaml.Node]]:
-    if _kind(node) != "mapping":
-        raise _fault(
+    if kind_of(node) != "mapping":
+        raise fault(
             file,
             node,
             f"{meaning}, and this is no mapping: write for example\nBoat:\n  has: {{length: number}}",
@@ -236,33 +227,21 @@ def _entries(file: str, node: yaml.Node, meaning: str) -> Iterator[tuple[yaml.No
     for key, value in node.value:
         name = _text(file, key, "a name is a text")
         if name in seen:
-            raise _fault(file, key, f"{name} stands here twice: write it once, with all that it has")
+            raise fault(file, key, f"{name} is here twice: write it once, with all of its parts")
         seen.add(name)
         yield key, name, value
 
 
 def _text(file: str, node: yaml.Node, meaning: str) -> str:
-    if _kind(node) != "scalar":
-        raise _fault(file, node, f"{meaning}, and this is a {_kind(node)}")
+    if kind_of(node) != "scalar":
+        raise fault(file, node, f"{meaning}, and this is a {kind_of(node)}")
     return str(node.value)
 
 
 def _check_name(file: str, node: yaml.Node, name: str, what: str) -> None:
     if not NAME.fullmatch(name):
-        raise _fault(
+        raise fault(
             file,
             node,
-            f"{name!r} is no name of a {what}: use letters from A to Z, digits and '_', beginning with a letter, at most 63",
+            f"{name!r} is not a name for a {what}: use at most 63 letters from A to Z, digits and '_', and begin with a letter",
         )
-
-
-def _kind(node: yaml.Node) -> str:
-    return str(getattr(node, "id", ""))
-
-
-def _place(file: str, node: yaml.Node) -> str:
-    return f"{file}:{node.start_mark.line + 1}"
-
-
-def _fault(file: str, node: yaml.Node, problem: str) -> DeclarationError:
-    return DeclarationError(f"{_place(file, node)}: {problem}")

@@ -1,4 +1,4 @@
-"""What there may be in memory: types with properties, relations between them, and inheritance."""
+"""The types of nodes, with inheritance, and the relations between them."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from .node import Value
 __all__ = ["KINDS", "Kind", "Relating", "Type", "Types"]
 
 Kind = Literal["text", "integer", "number", "yes/no", "date", "time"]
-"""What a property's values are."""
+"""The kind of a property's values."""
 
 KINDS: tuple[Kind, ...] = ("text", "integer", "number", "yes/no", "date", "time")
 
@@ -31,11 +31,11 @@ _EXAMPLES: dict[Kind, str] = {
 
 @dataclass(frozen=True, slots=True)
 class Type:
-    """A type of nodes, with what it has itself; what it inherits is looked up in `Types`.
+    """A type of nodes with its own properties; `Types` has the inherited ones.
 
     Args:
         name: Letters, digits and ``_``.
-        parent: The name of the type that it is a subtype of; None for one that stands alone.
+        parent: The name of its supertype, if any.
         properties: The kinds of its own properties by name.
     """
 
@@ -46,11 +46,11 @@ class Type:
 
 @dataclass(frozen=True, slots=True)
 class Relating:
-    """A relation that there may be: its name, between which types (subtypes included), and what it has itself.
+    """A kind of relation between nodes of certain types and their subtypes.
 
     Args:
         name: Letters, digits and ``_``.
-        ends: The types from which, and to which.
+        ends: Pairs of a source type and a target type.
         properties: The kinds of its properties by name.
     """
 
@@ -60,21 +60,21 @@ class Relating:
 
 
 class Types:
-    """All types and relations; it says what fits. Read from files by ``read_types``."""
+    """All types and relations, with checks. ``read_types`` reads them from files."""
 
     def __init__(self, types: Mapping[str, Type], relations: Mapping[str, Relating]) -> None:
-        """Take types whose parents and ends exist, and form no ring."""
+        """Take types whose parents and ends exist and form no ring."""
         self._types = dict(types)
         self._relations = dict(relations)
         self._lines = {name: tuple(self._line(name)) for name in self._types}
         self._properties = {name: self._inherited(name) for name in self._types}
 
     def __iter__(self) -> Iterator[str]:
-        """The names of all types, parents first."""
+        """Iterate over the names of all types, parents first."""
         return iter(sorted(self._types, key=lambda name: len(self._lines[name])))
 
     def __contains__(self, name: object) -> bool:
-        """Whether there is such a type."""
+        """Return whether there is such a type."""
         return name in self._types
 
     @property
@@ -83,7 +83,7 @@ class Types:
         return self._relations
 
     def properties(self, type: str) -> Mapping[str, Kind]:
-        """The kinds of all properties of a type, inherited ones first.
+        """Return the kinds of all properties of a type, inherited ones first.
 
         Raises:
             RuleError: There is no such type.
@@ -92,7 +92,7 @@ class Types:
         return self._properties[type]
 
     def subtypes(self, type: str) -> tuple[str, ...]:
-        """A type and all of its subtypes.
+        """Return a type and all of its subtypes.
 
         Raises:
             RuleError: There is no such type.
@@ -101,7 +101,7 @@ class Types:
         return tuple(name for name in self if type in self._lines[name])
 
     def is_a(self, type: str, other: str) -> bool:
-        """Whether a type is another one or a subtype of it.
+        """Return whether a type is `other` or a subtype of it.
 
         Raises:
             RuleError: There is no such type.
@@ -111,7 +111,7 @@ class Types:
         return other in self._lines[type]
 
     def pairs(self, relation: str) -> list[tuple[str, str]]:
-        """All pairs of types between which a relation may be, subtypes spelled out, sorted."""
+        """Return all pairs of types that a relation may join, with subtypes, sorted."""
         return sorted(
             {
                 (source, target)
@@ -122,7 +122,7 @@ class Types:
         )
 
     def stored(self, type: str, values: Mapping[str, Value]) -> dict[str, Any]:
-        """Values as they are stored: a date or a time as a text whose order is that of time.
+        """Return values as they are stored: dates and times become texts that sort by time.
 
         Raises:
             RuleError: There is no such type or property, or a value is not of its kind.
@@ -130,14 +130,14 @@ class Types:
         return _stored(type, self.properties(type), values)
 
     def loaded(self, type: str, values: Mapping[str, Any]) -> dict[str, Value]:
-        """What `stored` was made of, without what is not set, and without what the types do not know."""
+        """Return stored values as rules see them, without missing and undeclared ones."""
         return _loaded(type, self._properties[type], values)
 
     def check_relation(self, source: str, relation: str, target: str) -> None:
-        """Make sure that there may be a relation between nodes of two types.
+        """Check that a relation may join nodes of two types.
 
         Raises:
-            RuleError: There is no such relation, or not between these.
+            RuleError: There is no such relation between these types.
         """
         self._check(source)
         self._check(target)
@@ -147,10 +147,10 @@ class Types:
             raise RuleError(f"{relation} does not go from {source} to {target}, but {known}")
 
     def check_end(self, type: str, relation: str, *, back: bool = False) -> None:
-        """Make sure that nodes of a type may have a relation; `back`: that it may lead to them.
+        """Check that nodes of a type may have a relation; with `back`, be its target.
 
         Raises:
-            RuleError: There is no such type or relation, or not there.
+            RuleError: There is no such type, or no such relation of it.
         """
         self._check(type)
         ends = {pair[1 if back else 0] for pair in self.relating(relation).ends}
@@ -160,7 +160,7 @@ class Types:
             )
 
     def relating(self, relation: str) -> Relating:
-        """A relation by its name.
+        """Return a relation by its name.
 
         Raises:
             RuleError: There is no such relation.
@@ -174,11 +174,11 @@ class Types:
         return found
 
     def stored_of(self, relation: str, values: Mapping[str, Value]) -> dict[str, Any]:
-        """As `stored`, for the properties of a relation."""
+        """Return a relation's properties as they are stored."""
         return _stored(relation, self.relating(relation).properties, values)
 
     def loaded_of(self, relation: str, values: Mapping[str, Any]) -> dict[str, Value]:
-        """As `loaded`, for the properties of a relation."""
+        """Return a relation's stored properties as rules see them."""
         return _loaded(relation, self.relating(relation).properties, values)
 
     # ------------------------------------------------------------------------------- internals
@@ -217,9 +217,7 @@ def _stored(owner: str, kinds: Mapping[str, Kind], values: Mapping[str, Value]) 
 def _as_stored(what: str, kind: Kind, value: Value) -> Any:
     if kind == "text" and isinstance(value, str):
         if any("\ud800" <= letter <= "\udfff" for letter in value):
-            raise RuleError(
-                f"{what}: {value!r} has surrogates, which no text can be stored with: remove them"
-            )
+            raise RuleError(f"{what}: {value!r} has surrogates, which cannot be stored: remove them")
         return value
     if kind == "yes/no" and isinstance(value, bool):
         return value
@@ -233,7 +231,7 @@ def _as_stored(what: str, kind: Kind, value: Value) -> Any:
     if kind == "time" and isinstance(value, datetime) and value.tzinfo is not None:
         try:
             return value.astimezone(UTC).isoformat(timespec="microseconds")
-        except OverflowError:  # in the first or the last hours that there are
+        except OverflowError:  # at the very first or last hours of the calendar
             pass
     if kind == "date" and isinstance(value, date) and not isinstance(value, datetime):
         return value.isoformat()
@@ -259,5 +257,5 @@ def _as_loaded(what: str, kind: Kind, value: Any) -> Value:
         if kind == "number":
             return float(value)
     except (TypeError, ValueError):
-        raise RuleError(f"memory has {what} = {value!r}, which is no {kind}: set it anew") from None
+        raise RuleError(f"memory has {what} = {value!r}, which is no {kind}: set it again") from None
     return value

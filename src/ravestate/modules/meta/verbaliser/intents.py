@@ -1,4 +1,4 @@
-"""What is meant, before it is worded."""
+"""An intent: a meaning without words."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ __all__ = ["Intent"]
 
 @dataclass(frozen=True, slots=True)
 class Intent:
-    """What an agent means to say.
+    """A meaning that the agent wants to say.
 
     Example:
         >>> Intent("greet", {"name": "Ada"})
@@ -21,10 +21,10 @@ class Intent:
     name: str
     """The intent's name in the files of phrases."""
     parameters: Mapping[str, object] = field(default_factory=dict[str, object])
-    """Values for the braces in phrases; None counts as not given."""
+    """Values for the parameters of phrases; None counts as missing."""
     package: str | None = None
-    """The package whose file ``phrases.yaml`` has the phrases, mostly ``__package__`` of the rule that means it."""
+    """The package with the file ``phrases.yaml``, mostly the rule's ``__package__``."""
     file: Path | None = None
-    """A file that has the phrases, for a rule that stands in no package."""
+    """A file with the phrases, for a rule outside of packages."""
     phrases: Mapping[str, Sequence[str]] | None = None
-    """Its phrases by language, for a rule that has them from elsewhere; files are then not asked."""
+    """Its phrases by language, for a rule that has them itself; no file is read then."""

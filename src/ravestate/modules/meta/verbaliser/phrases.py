@@ -1,6 +1,6 @@
-"""What an agent may say for what it means: phrases by intent and language, from YAML files.
+"""Phrases by intent and language, from YAML files.
 
-A file maps each intent to its languages, and each language to phrases; parameters stand in braces:
+A file maps each intent to its languages, and each language to phrases. Parameters are in braces:
 
 ```yaml
 greet:
@@ -11,15 +11,15 @@ greet:
 farewell: Goodbye!           # without a language: the default one
 ```
 
-Several files make one book. In a later file an intent's phrases of a language *replace* those of earlier
-files, and ``!add`` in front of them adds them instead; what a file does not mention stays:
+Several files make one book. The phrases of a later file *replace* those of earlier files for the same intent and
+language. With ``!add`` they are added:
 
 ```yaml
 greet:
   en: !add [Ahoy!]
 ```
 
-Everything is text: ``no`` is Norwegian and ``1`` is a phrase. ``{{`` and ``}}`` stand for braces.
+Every value is text: ``no`` is Norwegian and ``1`` is a phrase. ``{{`` and ``}}`` are braces.
 """
 
 from __future__ import annotations
@@ -33,7 +33,8 @@ from pathlib import Path
 
 import yaml
 
-from ravestate.errors import DeclarationError, PlatformError, RuleError, nearest
+from ravestate.errors import DeclarationError, RuleError, nearest
+from ravestate.modules._yaml import fault, kind_of, read_nodes
 
 __all__ = ["Phrase", "PhraseBook", "Template"]
 
@@ -42,7 +43,7 @@ Source = Path | Traversable | str
 
 @dataclass(frozen=True, slots=True)
 class Template:
-    """A phrase as it is written: its text with parameters in braces, and their names."""
+    """A phrase with parameters in braces, and their names."""
 
     text: str
     parameters: frozenset[str]
@@ -50,14 +51,14 @@ class Template:
 
 @dataclass(frozen=True, slots=True)
 class Phrase:
-    """A phrase as it is said, and the template that it was made of."""
+    """A phrase with its parameters filled in, and its template."""
 
     text: str
     template: str
 
 
 class PhraseBook:
-    """Phrases by intent and language, of which one is chosen at a time.
+    """A collection of phrases by intent and language.
 
     Example:
         >>> book = PhraseBook({"greet": {"en": ["Hello {name}!"]}}, language="en-GB")
@@ -72,16 +73,15 @@ class PhraseBook:
         language: str = "en",
         default_language: str = "en",
     ) -> None:
-        """Make a book from what a file would say.
+        """Make a book from texts.
 
         Args:
             phrases: Texts by intent and language.
-            language: The one to speak, as in ``de`` or ``de-AT``. Where an intent lacks ``de-AT`` it is worded in
-                ``de``, and where it lacks that, in the default language.
-            default_language: What is spoken where `language` is missing.
+            language: The language to speak, as in ``de-AT``. It falls back to ``de``, then to the default language.
+            default_language: The language of intents without phrases in `language`.
 
         Raises:
-            DeclarationError: A phrase has braces that name no parameter.
+            DeclarationError: The braces in a phrase do not hold a name.
         """
         self.language = _tag(language)
         self.default_language = _tag(default_language)
@@ -98,7 +98,7 @@ class PhraseBook:
         *,
         default_language: str = "en",
     ) -> PhraseBook:
-        """Read `sources`, YAML files, in this order; see the module for what is in them.
+        """Read YAML files in this order; the module's docstring has their format.
 
         Args:
             sources: Paths, or files in packages as ``importlib.resources`` gives them.
@@ -106,18 +106,18 @@ class PhraseBook:
             default_language: See the class; also the language of phrases without one.
 
         Raises:
-            DeclarationError: A file is no such book; file and line are named.
+            DeclarationError: A file is invalid; the message names file and line.
             PlatformError: A file is missing or cannot be read.
         """
         book = cls({}, language=language, default_language=default_language)
         for source in sources:
             file = Path(source).expanduser() if isinstance(source, str) else source
-            book._merge(str(source), _read(file))
+            book._merge(str(source), read_nodes(file, "file of phrases"))
         return book
 
     @property
     def intents(self) -> tuple[str, ...]:
-        """All intents, in the order in which they were first read."""
+        """All intents, in the order of the files."""
         return tuple(self._phrases)
 
     @property
@@ -126,10 +126,10 @@ class PhraseBook:
         return tuple(sorted({tag for languages in self._phrases.values() for tag in languages}))
 
     def templates(self, intent: str, language: str | None = None) -> tuple[Template, ...]:
-        """Return the phrases for `intent` in `language` (default: the book's), or in what it falls back to.
+        """Return the phrases for `intent` in `language` (default: the book's) or its fallbacks.
 
         Raises:
-            RuleError: There is no such intent, or it is in none of these languages.
+            RuleError: There is no such intent, or it has no phrases in these languages.
         """
         languages = self._phrases.get(intent)
         if languages is None:
@@ -158,17 +158,16 @@ class PhraseBook:
         *,
         language: str | None = None,
     ) -> Phrase:
-        """Choose a phrase at random, and fill it in.
+        """Choose a phrase at random, and fill in its parameters.
 
-        A phrase is eligible if all of its parameters are given; more may be given than it has. One that begins with a
-        parameter begins with a capital.
+        A phrase is eligible if all of its parameters have values. A phrase that begins with a parameter gets a capital.
 
         Args:
-            intent: What is meant.
-            parameters: Values for the braces; None counts as not given.
-            rng: Whose chance decides; the same state gives the same phrase.
-            last: The template that was used for this intent before, which is not used again if there is another.
-            language: Instead of the book's.
+            intent: The intent's name.
+            parameters: Values for the braces; None counts as missing.
+            rng: The source of chance; the same state gives the same phrase.
+            last: The last template of this intent; it is not chosen again if there is another.
+            language: Replaces the book's language.
 
         Raises:
             RuleError: There is no such intent or language, or each phrase lacks a parameter.
@@ -190,13 +189,12 @@ class PhraseBook:
 
     # ------------------------------------------------------------------------------- internals
 
-    def _merge(self, name: str, text: str) -> None:
-        root = _composed(name, text)
+    def _merge(self, name: str, root: yaml.Node | None) -> None:
         if root is None:
             return
         for key, languages in _entries(name, root, "a file of phrases maps intents to languages"):
             intent = self._phrases.setdefault(_text_of(name, key, "an intent is a text"), {})
-            if _kind(languages) != "mapping":  # no language: the default one
+            if kind_of(languages) != "mapping":  # without a language: the default one
                 self._put(name, intent, self.default_language, languages)
                 continue
             for tag, phrases in _entries(name, languages, "an intent maps languages to phrases"):
@@ -204,30 +202,30 @@ class PhraseBook:
 
     def _put(self, name: str, intent: dict[str, tuple[Template, ...]], tag: str, node: yaml.Node) -> None:
         added = _added(name, node)
-        items: list[yaml.Node] = node.value if _kind(node) == "sequence" else [node]
+        items: list[yaml.Node] = node.value if kind_of(node) == "sequence" else [node]
         templates: list[Template] = []
         for item in items:
             text = _text_of(name, item, "a phrase is a text").strip()
             if not text:
-                raise _fault(name, item, "a phrase is empty")
+                raise fault(name, item, "a phrase is empty")
             try:
                 templates.append(_template(text))
             except DeclarationError as error:
-                raise _fault(name, item, str(error)) from None
+                raise fault(name, item, str(error)) from None
         if not templates:
-            raise _fault(name, node, "there are no phrases; leave the language out, or write some")
+            raise fault(name, node, "there are no phrases; leave the language out, or write some")
         before = intent.get(tag, ()) if added else ()
         intent[tag] = (*before, *templates)
 
 
 def _begun(template: str, text: str) -> str:
-    """A text, with a capital where a parameter begins it: *Chess? You must show me*, but *eBay*."""
+    """Return the text with a capital, if a parameter begins it: *Chess? You must show me*, but *eBay*."""
     first = text.split(maxsplit=1)[0] if template.startswith("{") and text.strip() else ""
     return text[:1].upper() + text[1:] if first.islower() else text
 
 
 def _tag(language: str) -> str:
-    """The language's tag as books compare it: ``de_at`` is ``de-AT``."""
+    """Return the normal form of a language's tag: ``de_at`` is ``de-AT``."""
     first, *rest = language.strip().replace("_", "-").split("-")
     return "-".join([first.lower(), *(part.upper() if len(part) == 2 else part.title() for part in rest)])
 
@@ -263,80 +261,34 @@ def _template(text: str) -> Template:
 # ------------------------------------------------------------------------------------- YAML
 
 
-def _read(file: Path | Traversable) -> str:
-    try:
-        return file.read_text(encoding="utf-8")
-    except FileNotFoundError as error:
-        near = ""
-        if isinstance(file, Path) and file.parent.is_dir():
-            near = nearest(file.name, [other.name for other in file.parent.iterdir()])
-        raise PlatformError(f"the file of phrases {str(file)!r} does not exist{near}") from error
-    except OSError as error:
-        raise PlatformError(
-            f"the file of phrases {str(file)!r} cannot be read: {error.strerror or error}"
-        ) from error
-    except UnicodeDecodeError as error:
-        raise DeclarationError(
-            f"{file}: this is no text in UTF-8 ({error.reason} at byte {error.start})"
-        ) from None
-
-
-def _composed(name: str, text: str) -> yaml.Node | None:
-    """The nodes of a YAML text, which know their lines. No value is made of them, so nothing can run."""
-    try:
-        return yaml.compose(text, Loader=yaml.BaseLoader)
-    except yaml.MarkedYAMLError as error:
-        mark = error.problem_mark or error.context_mark
-        line = "" if mark is None else f":{mark.line + 1}"
-        reason = ", ".join(filter(None, (error.context, error.problem)))
-        raise DeclarationError(
-            f"{name}{line}: this is no YAML ({reason}). A text with : or # or braces in front wants quotes"
-        ) from None
-    except yaml.YAMLError as error:  # a character that YAML does not allow; it knows no line
-        position = getattr(error, "position", 0)
-        raise DeclarationError(
-            f"{name}:{text.count(chr(10), 0, position) + 1}: this is no YAML (a control character)"
-        ) from None
-    except RecursionError:
-        raise DeclarationError(f"{name}: this is no file of phrases, but nested without end") from None
-
-
-def _kind(node: yaml.Node) -> str:
-    return str(getattr(node, "id", ""))
-
-
-def _fault(name: str, node: yaml.Node, problem: str) -> DeclarationError:
-    return DeclarationError(f"{name}:{node.start_mark.line + 1}: {problem}")
-
-
 def _added(name: str, node: yaml.Node) -> bool:
     tag = str(node.tag)
     if tag.startswith("!") and tag != "!add":
-        raise _fault(name, node, f"the only tag there is is !add, not {tag}{nearest(tag, ['!add'])}")
+        raise fault(name, node, f"the only tag there is is !add, not {tag}{nearest(tag, ['!add'])}")
     return tag == "!add"
 
 
 def _entries(name: str, node: yaml.Node, meaning: str) -> Iterator[tuple[yaml.Node, yaml.Node]]:
-    if _kind(node) != "mapping":
-        raise _fault(
+    if kind_of(node) != "mapping":
+        raise fault(
             name, node, f"{meaning}, and this is no mapping: write for example\ngreet:\n  en: [Hello!]"
         )
     if _added(name, node):
-        raise _fault(name, node, "!add goes in front of phrases: write en: !add [...]")
+        raise fault(name, node, "!add goes in front of phrases: write en: !add [...]")
     seen: set[str] = set()
     for key, value in node.value:
-        if _kind(key) == "scalar":
+        if kind_of(key) == "scalar":
             if key.value in seen:
-                raise _fault(name, key, f"{key.value!r} is here a second time")
+                raise fault(name, key, f"{key.value!r} is here a second time")
             seen.add(key.value)
         yield key, value
 
 
 def _text_of(name: str, node: yaml.Node, meaning: str) -> str:
-    if _kind(node) != "scalar":
-        raise _fault(
+    if kind_of(node) != "scalar":
+        raise fault(
             name,
             node,
-            f"{meaning}, and this is a {_kind(node)}; a text with : or braces in front wants quotes",
+            f"{meaning}, and this is a {kind_of(node)}; put quotes around a text that has : or begins with braces",
         )
     return str(node.value)

@@ -1,4 +1,4 @@
-"""How an intent becomes an utterance."""
+"""The rule that says an intent."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ import ravestate as rs
 from ravestate.errors import RuleError
 from ravestate.modules import rawio
 
-from . import intent, last, module
 from .intents import Intent
+from .names import intent, last, module
 from .phrases import PhraseBook
 
 HERE = "ravestate.modules.meta.verbaliser"
@@ -19,14 +19,14 @@ HERE = "ravestate.modules.meta.verbaliser"
 
 @module.rule(when=intent.changed, writes=(rawio.output, last))
 async def verbalise(ctx: rs.RuleContext) -> None:
-    """Choose a phrase for the intent, never the same twice running, and say it."""
+    """Say a phrase for the intent, not the same one twice in a row if there are others."""
     meant = as_intent(ctx.payload(intent.changed))
     settings = ctx.settings
     if meant.phrases is not None:
         book = PhraseBook({meant.name: meant.phrases}, language=settings.language)
     else:
         own = settings.phrases if meant.file is None else (meant.file, *settings.phrases)
-        here = tuple(path.expanduser().absolute() for path in own)  # the same name elsewhere is another file
+        here = tuple(path.expanduser().absolute() for path in own)  # another working folder means other files
         book = phrase_book(meant.package, here, settings.language)
     phrase = book.choose(meant.name, meant.parameters, ctx.random, ctx[last].get(meant.name))
     ctx[rawio.output] = phrase.text
@@ -34,10 +34,10 @@ async def verbalise(ctx: rs.RuleContext) -> None:
 
 
 def as_intent(value: object) -> Intent:
-    """Return what was written to the slot as an `Intent`.
+    """Return the slot's value as an `Intent`.
 
     Raises:
-        RuleError: It is none.
+        RuleError: It is not an intent.
     """
     if isinstance(value, Intent):
         return value
@@ -51,9 +51,9 @@ def as_intent(value: object) -> Intent:
 
 @lru_cache(maxsize=256)
 def phrase_book(package: str | None, own: tuple[Path, ...], language: str) -> PhraseBook:
-    """Read the verbaliser's phrases, those of `package`, and the user's `own` (absolute paths), in this order.
+    """Read the built-in phrases, those of `package`, and the user's `own` (absolute paths), in this order.
 
-    Files are read once per process: contexts share a book, and never change it.
+    Each process reads a file once; all contexts share the book.
     """
     packages = (HERE,) if package in (None, HERE) else (HERE, package)
     try:

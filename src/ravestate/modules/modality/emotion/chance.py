@@ -1,4 +1,4 @@
-"""What the agent feels of its own accord: now and then, at an occasion."""
+"""Spontaneous feelings: now and then, at an occasion."""
 
 from __future__ import annotations
 
@@ -16,18 +16,18 @@ OCCASIONS: tuple[tuple[Feeling, re.Pattern[str]], ...] = (
     ("happy", re.compile(r"^(?:hi|hello|hey|hiya|howdy|greetings|good (?:morning|afternoon|evening|day))\b|\bthank(?:s| you)\b")),
     ("shy", re.compile(r"\b(?:you|your|yours|yourself)\b")),
 )  # fmt: skip
-"""The occasions, the rarer ones first. Being asked something is the last."""
+"""The occasions, rare ones first. A question comes last."""
 
 
 def by_chance(
     text: str, likely: Mapping[Feeling, float], rng: random.Random, names: Iterable[str] = ()
 ) -> Feeling | None:
-    """Return what the agent feels at `text` without being given a reason, if anything.
+    """Return a spontaneous feeling at `text`, or None.
 
     Args:
-        text: What the user said.
-        likely: The probability of each feeling, given its occasion.
-        rng: Whose chance decides.
+        text: The user's words.
+        likely: The probability of each feeling at its occasion.
+        rng: The source of chance.
         names: The agent's names.
 
     Example:

@@ -1,4 +1,4 @@
-"""How feelings look in text."""
+"""The emoji of feelings."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The feelings there are."""
+"""The names of feelings."""
 
 from __future__ import annotations
 
@@ -7,6 +7,6 @@ from typing import Literal
 __all__ = ["FEELINGS", "Feeling"]
 
 Feeling = Literal["shy", "surprised", "happy", "affectionate", "sad"]
-"""The name of a feeling, which is also that of its signal."""
+"""The name of a feeling and of its signal."""
 
 FEELINGS: tuple[Feeling, ...] = ("shy", "surprised", "happy", "affectionate", "sad")

@@ -1,6 +1,6 @@
-"""How people say what they feel: patterns over clauses in plain small letters (see `Sentence`).
+"""Expressions of feelings: patterns over normalised clauses (see `Sentence`).
 
-In a pattern ``~`` stands for any number of words that only add strength ("so", "really", "a very").
+In a pattern ``~`` matches any number of intensifiers ("so", "really", "a very").
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ STRENGTH = (
 
 
 def _patterns(*lines: str) -> re.Pattern[str]:
-    """One pattern of many, each of which begins and ends with a whole word."""
+    """Return one pattern of several that match whole words."""
     whole = "|".join(line.replace("~", rf"(?:(?:{STRENGTH})\s)*") for line in lines)
     return re.compile(rf"(?<!\w)(?:{whole})(?!\w)")
 
@@ -35,7 +35,7 @@ def _patterns(*lines: str) -> re.Pattern[str]:
 IMAGINED = re.compile(
     r"\b(?:if|unless|whether|wish|hope|hopes|imagine|suppose|should|would|could|might|may|must|try to|want|wants|have a)\b"
 )
-"""What makes of the rest something that is not so: "if you were clever", "I hope you have a nice day"."""
+"""The beginnings of imagined facts: "if you were clever", "I hope you have a nice day"."""
 
 AFFECTION = _patterns(
     r"(?:i|we) ~(?:love|loved|like|adore|cherish|miss|missed|need|treasure) ~you(?! to\b(?! (?:the moon|bits|death|pieces)))(?! (?:said|say)\b)",
@@ -70,7 +70,7 @@ AFFECTION_ASKED = _patterns(
     r"(?:be|become) ~(?:my )?(?:valentine|sweetheart)",
     r"marry me",
 )
-"""What shows affection although it is a question."""
+"""Questions that show affection."""
 
 PRAISE = _patterns(
     r"well done|bravo|kudos|hats off|you rock|you rule|you (?:are|were) on fire|nicely done|way to go",
@@ -88,7 +88,7 @@ PRAISE = _patterns(
     r"you (?:have|got) (?:\w+ )?(?:a way with words|good taste|a good heart|a heart of gold|a gift)",
     r"thank you for being (?:~)(?:\w+)",
 )
-"""Compliments that are none by the sum of their words; see `recogniser.praises` for the others."""
+"""Idiomatic compliments; `recogniser.praises` finds the others."""
 
 JOY = _patterns(
     r"yay+|yippee|ya+y|hoo?ray|hurray|hurrah|woo ?hoo+|woo+t|yes yes(?: yes)*|yess+|hallelujah|party time",
@@ -126,7 +126,7 @@ SORROW = _patterns(
     r"(?<!like )(?:you are|you look|you sound) (?:(?!not |never |no )\w+ ){0,4}(?:stupid|dumb|idiots?|morons?|useless|worthless|ugly|pathetic|annoying|"
     r"rubbish|trash|garbage|junk|crap|shit|asshole|bastard|bitch|loser|disgusting|horrible)",
 )
-"""What makes sad: the user's sorrow, and insults."""
+"""Sorrow of the user's, and insults."""
 
 SURPRISE = _patterns(
     r"wo+w+|woa+h+|who+a+|oh my(?: god| gosh| goodness)?|my goodness|goodness(?: me| gracious)?|good (?:heavens|grief|lord)|gosh|gee|blimey|crikey|"
@@ -150,7 +150,7 @@ SURPRISE_ASKED = _patterns(
     r"how on earth|what on earth|how in the world|what in the world|who would have (?:thought|guessed|known)|what the (?:heck|hell)",
     r"wo+w+|woa+h+|whoa+|oh my (?:god|gosh|goodness)|gosh|unbelievable|can you believe",
 )
-"""What shows surprise although it is a question."""
+"""Questions that show surprise."""
 
 DESPITE_NOT = _patterns(
     r"can not (?:~)believe|could not believe|can hardly believe|no way|no kidding|you do not say|i do not believe (?:it|this|my \w+|what i)",
@@ -159,4 +159,4 @@ DESPITE_NOT = _patterns(
     r"(?:no one|nobody|never met|no other|nothing|never|not) .*(?:like you|as you|than you|robot|machine|assistant|listener)",
     r"without you|no idea|nowhere|second to none|^(?:oh )?no$|is that not .*",
 )
-"""Words of denial that belong to the very expression: nothing is taken back by them."""
+"""Expressions whose negations deny nothing."""

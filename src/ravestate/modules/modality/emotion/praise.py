@@ -1,4 +1,4 @@
-"""Whether a clause is a compliment: kind words, said of the agent, of what it does or of what it has."""
+"""Recognise compliments: kind words about the agent, its acts or its parts."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from .utterance import is_denied
 __all__ = ["is_kind", "is_praise"]
 
 KIND = 1.5
-"""Valence from which on a word is praise, when it is said of the agent."""
+"""The least valence of a word of praise."""
 
 SPOILT = -0.1
-"""Polarity below which it is none after all: "nice and stupid"."""
+"""The polarity that spoils a compliment: "nice and stupid"."""
 
 NO_PRAISE = re.compile(
     "welcome|free|sure|safe|ready|fine|okay|ok|right|alright|interested|certain|alive|like|likely|able|"
@@ -23,7 +23,7 @@ NO_PRAISE = re.compile(
     "play|rich|party|dear|merry|pleased|calm|relaxed|satisfied|friends|friend|love|wanted|winning|help|"
     "helping|hoping|agreed|respected|sharing"
 )
-"""Words that VADER takes for positive, and that are no compliment behind "you are"."""
+"""Words that VADER calls positive and that are no compliment after "you are"."""
 
 PRAISE_TOO = re.compile(
     "polite|patient|witty|genius|star|legend|gem|hero|pro|champion|expert|clever|smart|wise|quick|"
@@ -31,16 +31,16 @@ PRAISE_TOO = re.compile(
     "unique|angel|wonder|professional|humorous|interesting|special|artist|poet|good|well|incredible|"
     "extraordinary|remarkable|favourite|favorite|unbelievable|lifelike|warm"
 )
-"""Praise that VADER does not know, or thinks little of."""
+"""Words of praise that VADER does not know or underrates."""
 
 AFTER_PRETTY = {"", "and", "today", "tonight", "in", "with", "when", "robot", "girl"}
-"""What may follow "pretty" where it does not mean "quite"."""
+"""The words after a "pretty" that does not mean "quite"."""
 
 NO_GOOD = {"to", "for", "enough", "luck"}
-"""What follows "good" where it praises nobody: "you are good to go"."""
+"""The words after a "good" that is no praise: "you are good to go"."""
 
 WINDOW = 7
-"""Words that are looked at: praise stands near."""
+"""The number of words that may hold the praise."""
 
 _SKIPPED = re.compile(rf"(?:{STRENGTH}|much|far|way|at|in|of|and|to|doing|playing|with)")
 
@@ -67,7 +67,7 @@ _OTHERS = tuple(
 
 
 def is_praise(clause: str) -> bool:
-    """Whether a clause in plain small letters says something kind of the agent."""
+    """Return whether a normalised clause is a compliment to the agent."""
     for pattern in (_DOES, *_OTHERS):
         found = pattern.search(clause)
         if (
@@ -82,14 +82,14 @@ def is_praise(clause: str) -> bool:
 
 
 def is_kind(word: str) -> bool:
-    """Whether `word` praises whomever it is said of."""
+    """Return whether `word` is praise."""
     return not NO_PRAISE.fullmatch(word) and any(
         PRAISE_TOO.fullmatch(form) or valence(form) >= KIND for form in (word, *_stems(word))
     )
 
 
 def _begins_kindly(words: Sequence[str], *, does: bool) -> bool:
-    """Whether the first word that counts is kind, or, for what the agent does, any of the first."""
+    """Return whether the first word that counts is kind; of an act (`does`), any of the first words."""
     for word, after in zip(words[:WINDOW], (*words[1:], ""), strict=False):
         if (word == "pretty" and after not in AFTER_PRETTY) or (word == "kind" and after == "of"):
             continue  # "pretty clever", "kind of slow"

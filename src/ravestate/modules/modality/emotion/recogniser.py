@@ -1,7 +1,7 @@
-"""Which feeling fits what was said: a compliment makes shy, affection affectionate, good news happy, a wonder surprised.
+"""Recognise the feeling that fits an utterance: a compliment makes the agent shy, good news happy.
 
-Patterns find expressions, VADER knows which words are kind, and both are taken back by negation, conditions and most
-questions. What is merely pleasant ("the weather is nice") moves nobody.
+Patterns find expressions, and VADER rates words. Negations, conditions and most questions cancel both. A merely pleasant
+statement ("the weather is nice") raises no feeling.
 """
 
 from __future__ import annotations
@@ -28,10 +28,10 @@ from .utterance import LONGEST, Sentence, is_denied, sentences
 __all__ = ["recognise"]
 
 DELIGHT = 0.5
-"""Polarity from which on a sentence about oneself, or an exclamation, is one of joy."""
+"""The least polarity of a joyful exclamation or sentence about oneself."""
 
 SAD = -0.5
-"""Polarity from which down on what is told is no joy after all: "I got my results, and I failed"."""
+"""The polarity that spoils joy: "I got my results, and I failed"."""
 
 PICTURES: tuple[tuple[Feeling, re.Pattern[str]], ...] = (
     ("affectionate", re.compile("[❤💕💖💗💓💞💘💝💙💚💛💜🧡🤍🥰😍😘😚🤗🫂]|<3")),
@@ -56,13 +56,12 @@ _POLITE = re.compile(
 
 
 def recognise(text: str, names: Iterable[str] = ()) -> Feeling | None:
-    """Return the feeling that an agent should have at hearing `text` (English), or None if there is no reason for any.
+    """Return the feeling that fits `text` (English), or None.
 
-    Of several the stronger one is returned: sorrow goes before affection, affection before praise, praise before joy, joy
-    before surprise.
+    The strongest feeling counts: sorrow, then affection, praise, joy, surprise.
 
     Args:
-        text: What the user said; the first 1000 characters count.
+        text: The user's words; the first 1000 characters count.
         names: The agent's names.
 
     Raises:
@@ -80,36 +79,36 @@ def recognise(text: str, names: Iterable[str] = ()) -> Feeling | None:
 
 
 def is_affectionate(sentence: Sentence) -> bool:
-    """Whether somebody says that he likes the agent."""
+    """Return whether the user shows affection to the agent."""
     return _has(sentence, AFFECTION_ASKED if sentence.asks else AFFECTION)
 
 
 def praises(sentence: Sentence) -> bool:
-    """Whether somebody pays the agent a compliment."""
+    """Return whether the user pays the agent a compliment."""
     return not sentence.asks and (
         _has(sentence, PRAISE, of=IMAGINED) or any(map(is_praise, sentence.clauses))
     )
 
 
 def saddens(sentence: Sentence) -> bool:
-    """Whether somebody tells of sorrow, or insults the agent."""
+    """Return whether the user is in sorrow, or insults the agent."""
     return not sentence.asks and _has(sentence, SORROW)
 
 
 def rejoices(sentence: Sentence) -> bool:
-    """Whether somebody tells of joy, or of good news."""
+    """Return whether the user has joy or good news."""
     return not sentence.asks and _has(sentence, JOY, of=IMAGINED) and polarity(sentence.text) > SAD
 
 
 def wonders(sentence: Sentence) -> bool:
-    """Whether somebody is surprised."""
+    """Return whether the user is surprised."""
     if not sentence.clauses:
         return "?" in sentence.end and "!" in sentence.end
     return _has(sentence, SURPRISE_ASKED if sentence.asks else SURPRISE)
 
 
 def delights(sentence: Sentence) -> bool:
-    """Whether somebody says something very positive of himself, or cries it out."""
+    """Return whether the user says something very positive about themselves, or exclaims it."""
     text = _POLITE.sub(" ", sentence.text).strip()
     if sentence.asks or IMAGINED.search(text) or re.search(r"\byou\b", text) or is_denied(text, len(text)):
         return False
@@ -129,7 +128,7 @@ SIGNS: tuple[tuple[Feeling, Callable[[Sentence], bool]], ...] = (
 
 
 def _has(sentence: Sentence, pattern: re.Pattern[str], of: re.Pattern[str] = _CONDITION) -> bool:
-    """Whether a clause has the pattern, without a denial, and without what is `of` a mere thought in front."""
+    """Return whether a clause has the pattern, without a negation and without `of` before it."""
     return any(
         not of.search(clause[: found.start()])
         and (not is_denied(clause, found.end()) or DESPITE_NOT.search(found[0]) is not None)

@@ -1,14 +1,14 @@
-"""When the agent feels something, and how that shows in text."""
+"""The rules that raise feelings and show them as emoji."""
 
 from __future__ import annotations
 
 import ravestate as rs
 from ravestate.modules import interloc, rawio
 
-from . import Settings, affectionate, felt, happy, module, sad, shy, surprised
 from .chance import OCCASIONS, by_chance
 from .emoji import emoji_for
 from .feeling import FEELINGS, Feeling
+from .names import Settings, affectionate, felt, happy, module, sad, shy, surprised
 from .recogniser import recognise
 
 SIGNALS: dict[Feeling, rs.Signal[None]] = {
@@ -22,7 +22,7 @@ SIGNALS: dict[Feeling, rs.Signal[None]] = {
 
 @module.rule(when=rawio.input.changed, reads=interloc.agent, emits=SIGNALS.values())
 def be_moved(ctx: rs.RuleContext) -> None:
-    """Feel what the user's words ask for, or else something of one's own. In a thread: a lexicon may have to be read."""
+    """Raise the feeling that fits the user's words, or a spontaneous one. It may read a lexicon, so it runs in a thread."""
     settings: Settings = ctx.settings
     heard = ctx.payload(rawio.input.changed)
     names = settings.names or (ctx[interloc.agent],)
@@ -37,7 +37,7 @@ def be_moved(ctx: rs.RuleContext) -> None:
 
 
 def note(feeling: Feeling) -> None:
-    """Declare the rule that writes down a feeling, whoever raised it."""
+    """Declare the rule that notes a feeling from any rule."""
 
     @module.rule(
         when=SIGNALS[feeling].max_age(None).detached(),
@@ -59,12 +59,12 @@ for each in FEELINGS:
         None
     ).detached(),  # an answer to the same words is a write of its own (L10, L19)
     writes=rawio.output,
-    until=rawio.input.changed | felt.changed,  # the moment is past; or a later feeling is the one to show
+    until=rawio.input.changed | felt.changed,  # the moment is over, or a later feeling shows
     detached=True,
     background=True,
 )
 async def show(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Show the feeling as an emoji, behind the answer that is being given."""
+    """Show the feeling as an emoji after the answer."""
     if not ctx.settings.emoji:
         return rs.Resign("emotion.emoji is off")
     feeling = ctx.payload(felt.changed)

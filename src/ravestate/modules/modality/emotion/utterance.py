@@ -1,4 +1,4 @@
-"""What was said, cut up for looking at its feelings: sentences, their clauses, and what is negated in them."""
+"""Split an utterance into normalised sentences and clauses, and find negations."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from dataclasses import dataclass
 __all__ = ["Sentence", "is_denied", "sentences"]
 
 LONGEST = 1000
-"""Characters that are looked at: who pastes a book has no feeling that is meant for us."""
+"""The characters of an utterance that count."""
 
 SPELLINGS = (
     (r"[’‘`´]", "'"),
@@ -62,12 +62,12 @@ _NO_DENIALS = re.compile(
 
 @dataclass(frozen=True, slots=True)
 class Sentence:
-    """A sentence in plain small letters: ``can't`` is ``can not``, and the agent is ``you``.
+    """A sentence in lower case: ``can't`` is ``can not``, and the agent is ``you``.
 
     Attributes:
-        text: Its words, without what ends it.
-        end: What ends it: ``!``, ``?!``, or nothing.
-        clauses: The parts that stand between commas and before "but".
+        text: Its words, without the mark at the end.
+        end: The mark at the end: ``!``, ``?!``, or nothing.
+        clauses: The parts between commas and conjunctions.
     """
 
     text: str
@@ -86,7 +86,7 @@ class Sentence:
 
 
 def sentences(text: str, names: Iterable[str] = ()) -> Iterator[Sentence]:
-    """Cut `text` into sentences; whoever bears one of `names`, and "this robot", is addressed as "you"."""
+    """Yield the sentences of `text`. Each of the agent's `names`, and "this robot", becomes "you"."""
     text = text[:LONGEST].casefold()
     for pattern, instead in _SPELLINGS:
         text = pattern.sub(instead, text)
@@ -104,5 +104,5 @@ def sentences(text: str, names: Iterable[str] = ()) -> Iterator[Sentence]:
 
 
 def is_denied(clause: str, end: int) -> bool:
-    """Whether something in `clause` before the position `end` takes back what stands there."""
+    """Return whether `clause` has a negation before the position `end`."""
     return _DENIALS.search(_NO_DENIALS.sub(" ", clause[:end])) is not None

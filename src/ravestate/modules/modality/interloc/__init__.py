@@ -1,17 +1,7 @@
-"""Who is there: the users that platforms see or hear, and the agent itself."""
+"""The users that platforms see or hear, and the agent itself."""
 
 from __future__ import annotations
 
-from typing import Any
-
-import ravestate as rs
+from .names import agent, module, users
 
 __all__ = ["agent", "module", "users"]
-
-module = rs.Module("interloc")
-
-agent: rs.Slot[str] = module.slot("agent", "Ravestate", type=str, input=True)
-"""What the agent is called. Whoever knows better writes it: `agentqa` has the name from the file of the agent's life."""
-
-users: rs.Collection[Any] = module.collection("users", input=True)
-"""The users present: a key that the platform chooses, and the user's name, or None while it is unknown."""

@@ -1,4 +1,4 @@
-"""A console: lines that come in, texts that go out, whether a person sits there or a pipe ends there."""
+"""A console: lines come in and texts go out, on a terminal or through pipes."""
 
 from __future__ import annotations
 
@@ -23,25 +23,25 @@ Ending = Literal["end of input", "interrupt", "closed"]
 
 
 class Screen(Protocol):
-    """What a `Console` reads from and writes to."""
+    """A source of lines and a target of texts, for a `Console`."""
 
     interactive: bool
-    """Whether somebody sits there."""
+    """Whether a person types the lines."""
 
     async def __aenter__(self) -> object: ...
 
     async def __aexit__(self, *_: object) -> None: ...
 
     async def read(self) -> str:
-        """The next line. Raises EOFError at the end, KeyboardInterrupt for Ctrl-C, OSError for a lost line."""
+        """Return the next line. Raises EOFError at the end, KeyboardInterrupt for Ctrl-C, OSError if the input fails."""
         ...
 
     def show(self, text: str) -> None:
-        """Print whole lines. Raises OSError where nobody reads any more."""
+        """Print whole lines. Raises OSError if the output is gone."""
         ...
 
     def stream(self, piece: str) -> None:
-        """Print a piece of a line as soon as it makes sense."""
+        """Print a piece of a line as soon as that is useful."""
         ...
 
     def end(self) -> None:
@@ -50,14 +50,13 @@ class Screen(Protocol):
 
 
 class Console:
-    """An async iterator of the lines that are typed, and a place to write to meanwhile.
+    """An async iterator of the lines that the user types, and a place to write to meanwhile.
 
-    Where input and output are a terminal there is a prompt with editing and a history, and what is written
-    appears above it. Elsewhere lines are read and written plainly. Control characters and bytes that are not
-    text are taken out in both directions, so that neither a user nor a language model moves the cursor.
+    If input and output are a terminal, there is a prompt with editing and a history, and output appears above it.
+    Otherwise lines are read and written plainly. Control characters, and bytes that are not text, are removed in both
+    directions: neither a user nor a language model can move the cursor.
 
-    Everything is to be called on one event loop; writing never fails: if nobody reads any more, the
-    iteration ends.
+    Call everything on one event loop. Writing never fails: if the output is gone, the iteration ends.
 
     Example:
         ```python
@@ -80,15 +79,15 @@ class Console:
         """Choose how to read and write; nothing is read or written yet.
 
         Args:
-            screen: What to read from and write to, chosen by default.
-            prompt: What stands before the line that is typed.
-            history: The file that keeps what was typed; None keeps it for this session only.
-            on_key: Called when somebody types, which only a terminal notices.
-            stdin: Read this instead of standard input.
-            stdout: Write this instead of standard output.
+            screen: The source of lines and the target of texts, chosen by default.
+            prompt: The text before the line that the user types.
+            history: The file for typed lines; None keeps them for this session only.
+            on_key: Called when the user types, which only a terminal notices.
+            stdin: The stream to read instead of standard input.
+            stdout: The stream to write instead of standard output.
 
         Raises:
-            PlatformError: It is a terminal, but prompt_toolkit is not installed.
+            PlatformError: A terminal needs prompt_toolkit, which is not installed.
         """
         if screen is None:
             stdin, stdout = stdin or sys.stdin, stdout or sys.stdout
@@ -97,13 +96,13 @@ class Console:
         self._streamed = ""
         self._line_is_open = False
         self.ending: Ending | None = None
-        """Why the iteration ended: end of input (Ctrl-D), interrupt (Ctrl-C), or closed (by whoever reads)."""
+        """Why the iteration ended: end of input (Ctrl-D), interrupt (Ctrl-C), or closed (the output is gone)."""
         self.failure: PlatformError | None = None
-        """Why nothing more can be written, where that is not because nobody reads."""
+        """The reason why nothing more can be written, e.g. a full disk; None if the output was merely closed."""
 
     @property
     def interactive(self) -> bool:
-        """Whether somebody sits there; otherwise all lines may come at once, and then the end."""
+        """Whether a person types the lines. Otherwise all lines may come at once, and then the end."""
         return self._screen.interactive
 
     async def __aenter__(self) -> Console:
@@ -123,7 +122,7 @@ class Console:
         return self
 
     async def __anext__(self) -> str:
-        """Wait for the next line, without its line end. A line that was begun when this was cancelled is kept."""
+        """Return the next line, without its line end. A line that was begun is kept if this is cancelled."""
         if self.ending is None:
             try:
                 return printable(await self._screen.read())
@@ -138,8 +137,8 @@ class Console:
     def write(self, text: str) -> None:
         """Print `text` and a line end.
 
-        If `text` begins with all that was streamed, it is what the streamed text becomes; otherwise the streamed line is
-        ended before, and what is streamed later goes on in a line of its own.
+        If `text` begins with the streamed pieces, only the rest is printed behind them. Otherwise the streamed line
+        ends first, and later pieces go on in a line of their own.
         """
         text = printable(text)
         if self._streamed and text.startswith(self._streamed):
@@ -150,7 +149,7 @@ class Console:
             self._safely(lambda: self._screen.show(text))
 
     def stream(self, piece: str) -> None:
-        """Print `piece` behind the pieces before it; where nobody watches, once its line is complete."""
+        """Print `piece` behind the pieces before it; without a terminal, once its line is complete."""
         piece = without_controls(piece)
         if piece:
             self._streamed += piece
@@ -158,7 +157,7 @@ class Console:
             self._safely(lambda: self._screen.stream(piece))
 
     def end(self) -> None:
-        """End the text that was streamed; without one this does nothing."""
+        """End the streamed text; without one this does nothing."""
         self._streamed = ""
         self._end_line()
 
@@ -175,13 +174,11 @@ class Console:
         except (OSError, ValueError) as error:  # mostly a broken pipe, a closed file
             self.ending = "closed"
             if isinstance(error, OSError) and error.errno in _FULL:
-                self.failure = PlatformError(
-                    f"conio: what the agent says cannot be written: {error.strerror}"
-                )
+                self.failure = PlatformError(f"conio: the agent's words cannot be written: {error.strerror}")
 
 
 def prepare() -> None:
-    """Load what a `Console` on a terminal needs, which takes a while; on the event loop that would hold everybody up."""
+    """Load the library for a terminal. This takes a while, and would block the event loop."""
     if _is_terminal(sys.stdin, sys.stdout):
         with contextlib.suppress(ImportError):  # the console says so
             importlib.import_module(".terminal", __package__)
@@ -212,5 +209,5 @@ def _screen(
 
 
 def history_file() -> Path:
-    """Return where the lines typed are kept from session to session: in the user's folder for state."""
+    """Return the file that keeps typed lines from session to session, in the user's folder for state."""
     return user_folder("state") / "history"

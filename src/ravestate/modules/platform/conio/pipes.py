@@ -15,10 +15,10 @@ _BLOCK = 1 << 16
 
 
 class Pipes:
-    """Reads lines in a thread of its own, one at a time and only when asked; writes and flushes line by line.
+    """Reads lines in a thread of its own, one at a time and only on request; writes and flushes line by line.
 
-    A file works as well as a pipe, on every system. The thread ends with the input, when it is closed, or, while it
-    waits for a line that nobody writes, with the process.
+    A file works as well as a pipe, on every system. The thread ends with its input or when this is closed. While it
+    waits for a line, it ends with the process.
     """
 
     interactive = False
@@ -27,9 +27,9 @@ class Pipes:
         """Nothing is read yet.
 
         Args:
-            stdin: Where lines come from; None (standard input is closed) is an input that has ended.
-            stdout: Where lines go to; None is an output that is closed.
-            longest_line: What follows in a line after so many bytes is left out.
+            stdin: The source of lines; None, for a closed standard input, is an input that has ended.
+            stdout: The target of lines; None is a closed output.
+            longest_line: Bytes of a line that are read; the rest of the line is left out.
         """
         self._stdin = stdin
         self._stdout = stdout
@@ -45,7 +45,7 @@ class Pipes:
         return self
 
     async def __aexit__(self, *_: object) -> None:
-        self._loop = None  # whatever is read from now on is nobody's
+        self._loop = None  # no task wants the lines that are still read
         self._wanted.release()
 
     async def read(self) -> str:
@@ -54,7 +54,7 @@ class Pipes:
             raise EOFError
         if self._loop is None:
             self._loop = asyncio.get_running_loop()
-            # A daemon: who waits for input at the end of the program cannot be woken.
+            # A daemon: nothing can wake a thread that waits for input at the end of the program.
             threading.Thread(target=self._read_all, args=(self._stdin,), name="conio", daemon=True).start()
         if self._line is None:
             self._line = self._loop.create_future()
@@ -71,7 +71,7 @@ class Pipes:
         self._write(text + "\n")
 
     def stream(self, piece: str) -> None:
-        """See `Screen.stream`. Somebody who watches sees each piece; elsewhere it waits for its line end."""
+        """See `Screen.stream`. A terminal shows each piece at once; elsewhere a piece waits for its line end."""
         self._unwritten += piece
         if self._watched:
             ready, self._unwritten = self._unwritten, ""
@@ -100,7 +100,7 @@ class Pipes:
             raise
 
     def _silence(self) -> None:
-        """Let Python's own flush at its end go nowhere, where it would print a second error."""
+        """Send Python's own flush at its end nowhere; it would print a second error."""
         if self._stdout is not None and self._stdout is sys.stdout:
             with contextlib.suppress(OSError, ValueError):
                 nowhere = os.open(os.devnull, os.O_WRONLY)

@@ -1,18 +1,20 @@
-"""The rules of the console: read, print, print while it grows."""
+"""The rules of the console: read lines, print utterances, print pieces while an utterance grows."""
 
 from __future__ import annotations
 
 import asyncio
+import contextlib
 
 import ravestate as rs
 from ravestate.errors import PlatformError
 from ravestate.modules import interloc, rawio
 
-from . import module, screen
 from .console import Console, history_file, prepare
+from .log_file import log_file, log_to_file
+from .names import module, screen
 
 USER = "conio"
-"""The key of whoever sits at the console, among the users."""
+"""The key of the user at the console, among the users present."""
 
 
 @module.rule(
@@ -23,7 +25,7 @@ USER = "conio"
     background=True,
 )
 async def listen(ctx: rs.RuleContext) -> None:
-    """Hear each line that is typed; end the agent when there are no more."""
+    """Write each typed line to the input; end the agent after the last line."""
     await asyncio.to_thread(prepare)
     history = history_file() if ctx.settings.history else None
 
@@ -31,12 +33,14 @@ async def listen(ctx: rs.RuleContext) -> None:
         ctx.emit(rawio.typing)
 
     try:
-        # Off the loop, too: while models are loaded beside it, a moment becomes a while.
+        # Off the loop, too: it takes long while other threads load models.
         console = await asyncio.to_thread(Console, prompt=ctx.settings.prompt, history=history, on_key=tell)
     except PlatformError as error:
         ctx.stop(error)  # else the agent would run on, and nobody could talk with it
         return
-    async with console:
+    async with contextlib.AsyncExitStack() as stack:
+        stack.enter_context(log_to_file(log_file()))
+        await stack.enter_async_context(console)
         ctx[screen] = console
         ctx[interloc.users].add(USER, ctx.settings.name)
         try:
@@ -44,11 +48,11 @@ async def listen(ctx: rs.RuleContext) -> None:
                 if line.strip():
                     ctx[rawio.input] = line
                 if not console.interactive:
-                    await ctx.quiet()  # all lines may be there at once; each is to have its answer
+                    await ctx.quiet()  # all lines may be there at once, and each wants its own answer
             if console.ending == "end of input":
-                await ctx.quiet()  # who leaves in order hears the answer
+                await ctx.quiet()  # a user who leaves in order hears the answer
             else:
-                ctx.wipe(rawio.input.changed)  # who breaks off does not
+                ctx.wipe(rawio.input.changed)  # a user who breaks off does not
             ctx[interloc.users].remove(USER)
             await ctx.quiet()  # a farewell
         finally:
@@ -58,7 +62,7 @@ async def listen(ctx: rs.RuleContext) -> None:
 
 @module.rule(when=rawio.output.changed.max_age(None).detached(), reads=screen)
 async def show(ctx: rs.RuleContext) -> None:
-    """Print what is said."""
+    """Print each utterance."""
     console = ctx[screen]
     if console is not None:
         console.write(ctx.payload(rawio.output.changed))
@@ -66,7 +70,7 @@ async def show(ctx: rs.RuleContext) -> None:
 
 @module.rule(when=rawio.piece.max_age(None).detached(), reads=screen, background=True)
 async def show_piece(ctx: rs.RuleContext) -> None:
-    """Print what is being said."""
+    """Print the pieces of the utterance that is being made."""
     console = ctx[screen]
     if console is not None:
         console.stream(ctx.payload(rawio.piece))
@@ -74,7 +78,7 @@ async def show_piece(ctx: rs.RuleContext) -> None:
 
 @module.rule(when=rawio.speaking.false.max_age(None).detached(), reads=screen, background=True)
 async def end_line(ctx: rs.RuleContext) -> None:
-    """End what was being said, also if it never became an utterance."""
+    """End the line of pieces, even if they never became an utterance."""
     console = ctx[screen]
     if console is not None:
         console.end()

@@ -1,4 +1,4 @@
-"""The console on a terminal: a prompt with editing and history; what is written appears above it."""
+"""The console on a terminal: a prompt with editing and history, and output above it."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import asyncio
 import contextlib
 import contextvars
 import os
+import sys
 from collections.abc import Callable, Iterable
 from pathlib import Path
 
@@ -27,18 +28,18 @@ __all__ = ["Terminal"]
 
 
 LONGEST = 10_000
-"""Characters in a line after which keys add nothing: each may cost as much memory as the line, as it can be undone.
-What a terminal pastes at once is taken whole."""
+"""Characters in a line after which keys add nothing. Every key can be undone, and may cost as much memory as the line.
+Pasted text is taken whole."""
 
 _OPEN = "…"
-"""Stands behind a line that was being streamed when another was typed."""
+"""The mark behind a streamed line that the user has interrupted by typing another."""
 
 
 class Terminal:
-    """Reads by prompt_toolkit, and keeps what is written out of the line that is being typed.
+    """Reads lines by prompt_toolkit, and prints without disturbing the line that the user types.
 
-    A finished line is printed above the prompt. The line that is being streamed is a part of the prompt, its
-    first row, until it is finished or full: so it can grow while somebody types below it.
+    A finished line is printed above the prompt. A streamed line is the first row of the prompt until it is finished or
+    full. It can grow while the user types below it.
     """
 
     interactive = True
@@ -55,12 +56,11 @@ class Terminal:
         """Nothing is read or written yet.
 
         Args:
-            prompt: What stands before the line that is typed.
-            history: The file that keeps what was typed; without one, or if it cannot be written, it is kept for
-                this session only.
+            prompt: The text before the line that the user types.
+            history: The file for typed lines. Without one, or if it cannot be written, they are kept for this session.
             on_key: Called with each key that changes the line, unless the line is empty then.
-            input: What is typed on, by default the terminal.
-            output: What is printed on, by default the terminal.
+            input: The keyboard, by default the terminal's.
+            output: The screen, by default the terminal's.
         """
         self._prompt = prompt
         self._streamed = ""
@@ -79,8 +79,10 @@ class Terminal:
 
     async def __aenter__(self) -> Terminal:
         self._context = contextvars.copy_context()
-        # What others print, and what is logged, goes above the prompt as well.
-        self._patch.enter_context(patch_stdout(raw=True))
+        stderr = sys.stderr
+        self._patch.enter_context(patch_stdout(raw=True))  # other prints go above the prompt as well
+        if not stderr.isatty():  # redirected: it does not disturb the prompt
+            self._patch.enter_context(contextlib.redirect_stderr(stderr))
         return self
 
     async def __aexit__(self, *_: object) -> None:
@@ -96,7 +98,7 @@ class Terminal:
         try:
             return await self._session.prompt_async(handle_sigint=False, set_exception_handler=False)
         finally:
-            # What was streamed so far stays where it was last seen, above the line that was typed.
+            # Streamed text stays where it was last seen, above the line that was typed.
             self._left_open = bool(self._streamed)
             self._streamed = ""
 
@@ -111,7 +113,7 @@ class Terminal:
 
     def stream(self, piece: str) -> None:
         """See `Screen.stream`."""
-        if self._left_open:  # whether it goes on, or was interrupted by the line, is known at its end
+        if self._left_open:  # only its end tells whether the line has interrupted it
             self._late += piece
             return
         *lines, self._streamed = (self._streamed + piece).split("\n")
@@ -127,9 +129,7 @@ class Terminal:
         """See `Screen.end`."""
         late, self._late, self._left_open = self._late, "", False
         line, self._streamed = self._streamed, ""
-        if late and not late.endswith(
-            _OPEN
-        ):  # else it ended where it was left, and pieces on their way came too late
+        if late and not late.endswith(_OPEN):  # else it ended where it was left; these pieces came too late
             line += late
         if line:
             self.show(line)
@@ -140,11 +140,9 @@ class Terminal:
         keys = KeyBindings()
         is_full = Condition(lambda: len(self._session.default_buffer.text) >= LONGEST)
 
-        @keys.add(
-            Keys.Any, filter=is_full
-        )  # all that would insert itself; editing, Enter and pasting are others
+        @keys.add(Keys.Any, filter=is_full)  # keys that insert themselves; not editing keys, Enter or pasting
         def leave_out(event: KeyPressEvent) -> None:
-            """The line is full."""
+            """Ignore the key: the line is full."""
 
         return keys
 
@@ -175,9 +173,9 @@ class Terminal:
 
 
 def _full_row(text: str, width: int) -> tuple[str, str]:
-    """Cut `text`, which is too long, into a row of less than `width` columns and the rest."""
+    """Cut a text that is too long into a row of less than `width` columns, and the rest."""
     used = end = 0
-    for end, character in enumerate(text):  # noqa: B007  # it is wanted after the loop
+    for end, character in enumerate(text):  # noqa: B007  # used after the loop
         used += get_cwidth(character)
         if used >= width:
             break
@@ -189,7 +187,7 @@ def _full_row(text: str, width: int) -> tuple[str, str]:
 
 
 class _KeptHistory(FileHistory):
-    """A file that may become unreadable or unwritable at any time, which is no reason to stop talking."""
+    """A history file that may become unreadable or unwritable at any time, without an error."""
 
     def load_history_strings(self) -> Iterable[str]:
         with contextlib.suppress(OSError):
@@ -206,7 +204,7 @@ def _history(file: Path | None) -> History:
         return InMemoryHistory()
     try:
         file.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
-        # What one says to an agent is for nobody else to read.
+        # A user's words to an agent are private.
         os.close(os.open(file, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o600))
     except OSError:
         return InMemoryHistory()

@@ -18,17 +18,17 @@ from starlette.websockets import WebSocket
 
 from ravestate.errors import PlatformError
 
+from .access import Access
 from .connection import Connection
-from .gate import Gate
 from .pages import Pages
 from .sessions import Sessions
 
 if TYPE_CHECKING:
     from ravestate.runtime.agent import Agent
 
-    from . import Settings
+    from .names import Settings
 
-__all__ = ["PAGE", "Guard", "make_app"]
+__all__ = ["PAGE", "AccessMiddleware", "make_app"]
 
 PAGE = Path(__file__).parent / "page"
 """What ``npm run build`` in ``frontend/`` makes."""
@@ -36,24 +36,25 @@ PAGE = Path(__file__).parent / "page"
 CONSOLES = ("conio",)
 """Platforms for one user, of which there would be one in each visitor's context."""
 
-STRANGERS = 100
+MOST_LOGGED = 100
 """Sites that the log names at most, each once: anybody could write into it."""
 
 log = logging.getLogger("ravestate.webio")
 
 
 def make_app(agent: Agent, routes: Iterable[BaseRoute] = (), inside: str | None = None) -> Starlette:
-    """See `webio.app`. The conversations are in ``app.state.sessions``, the checks in ``app.state.gate``.
+    """See `webio.app`. The conversations are in ``app.state.sessions``, the checks in ``app.state.access``.
 
     Raises:
         PlatformError: The agent lacks ``webio``, or has a platform that is for one user.
     """
     settings = _settings_of(agent)
-    gate = Gate(settings)
+    access = Access(settings)
     sessions = Sessions(agent, limit=settings.sessions, keep=settings.keep)
 
     async def connect(socket: WebSocket) -> None:
-        await Connection(socket, sessions, gate, settings.title, inside).run()
+        title, suggestions = settings.title, settings.suggestions
+        await Connection(socket, sessions, access, title, inside, suggestions).run()
 
     @contextlib.asynccontextmanager
     async def lifespan(_: Starlette) -> AsyncGenerator[None]:
@@ -64,11 +65,11 @@ def make_app(agent: Agent, routes: Iterable[BaseRoute] = (), inside: str | None 
 
     app = Starlette(
         routes=[*routes, WebSocketRoute("/ws", connect), Mount("/", Pages(PAGE))],
-        middleware=[Middleware(Guard)],
+        middleware=[Middleware(AccessMiddleware)],
         lifespan=lifespan,
     )
     app.state.sessions = sessions
-    app.state.gate = gate
+    app.state.access = access
     return app
 
 
@@ -82,8 +83,8 @@ def _settings_of(agent: Agent) -> Settings:
     return agent.settings["webio"]  # type: ignore[return-value]  # the module's own
 
 
-class Guard:
-    """Refuses what the gate refuses, and sends headers with everything that keep scripts and frames in bounds.
+class AccessMiddleware:
+    """Refuses requests that `Access` refuses, and sends headers with everything that keep scripts and frames in bounds.
 
     Sites whose pages may not show the chat are named in the log, as it is an empty frame that one sees there.
 
@@ -98,16 +99,16 @@ class Guard:
     def __init__(self, app: ASGIApp, *, inside: bool = False) -> None:
         self._app = app
         self._inside = inside
-        self._strangers: set[str] = set()
+        self._embedders: set[str] = set()
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Check a request, and answer it or pass it on."""
         if scope["type"] == "lifespan":
             await self._app(scope, receive, send)
             return
-        gate: Gate = scope["app"].state.gate
+        access: Access = scope["app"].state.access
         headers = Headers(scope=scope)
-        refusal = gate.refusal_inside(headers) if self._inside else gate.refusal(headers)
+        refusal = access.refusal_of_board(headers) if self._inside else access.refusal(headers)
         if scope["type"] == "websocket":
             if refusal is not None:
                 await WebSocket(scope, receive, send).send_denial_response(PlainTextResponse(refusal, 403))
@@ -116,12 +117,12 @@ class Guard:
             return
 
         if not self._inside:
-            self._name_stranger(gate.stranger(headers))
+            self._log_embedder(access.foreign_embedder(headers))
 
         async def with_headers(message: Message) -> None:
             if message["type"] == "http.response.start":
                 answered = MutableHeaders(scope=message)
-                for name, value in _bounds(() if self._inside else gate.origins).items():
+                for name, value in _bounds(() if self._inside else access.origins).items():
                     answered.setdefault(
                         name, value
                     )  # unless the one for the inside, which is stricter, was here
@@ -130,9 +131,9 @@ class Guard:
         answer = self._app if refusal is None else PlainTextResponse(refusal, 403)
         await answer(scope, receive, with_headers)
 
-    def _name_stranger(self, origin: str | None) -> None:
-        if origin is not None and origin not in self._strangers and len(self._strangers) < STRANGERS:
-            self._strangers.add(origin)
+    def _log_embedder(self, origin: str | None) -> None:
+        if origin is not None and origin not in self._embedders and len(self._embedders) < MOST_LOGGED:
+            self._embedders.add(origin)
             log.warning("a page of %s wanted to show the chat: add it to the setting webio.origins", origin)
 
 

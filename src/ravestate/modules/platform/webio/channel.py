@@ -9,7 +9,7 @@ from typing import Any
 
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
-from .protocol import Error, ProtocolError, serialise
+from .protocol import CLOSING_CODES, Error, ProtocolError, serialise
 
 __all__ = ["LONGEST", "Channel"]
 
@@ -18,20 +18,6 @@ LONGEST = 128 * 1024
 
 SILENT = 10.0
 """Seconds within which a client says hello."""
-
-MALFORMED = 4400
-"""With which code the socket is closed for an error that `CODES` does not list."""
-
-CODES = {
-    "token": 4401,
-    "gone": 4404,
-    "silent": 4408,
-    "behind": 4409,
-    "full": 1013,
-    "closing": 1001,
-    "too-large": 1009,
-}
-"""With which code it is closed for others."""
 
 
 class Channel:
@@ -57,7 +43,9 @@ class Channel:
                 await serve()
             except ProtocolError as error:
                 await self.send(serialise(Error(error.code, str(error))))
-                await self._socket.close(CODES.get(error.code, MALFORMED), error.code)
+                await self._socket.close(
+                    CLOSING_CODES.get(error.code, CLOSING_CODES["malformed"]), error.code
+                )
         except WebSocketDisconnect:
             pass
 
@@ -120,4 +108,4 @@ class Channel:
 
     async def end(self) -> None:
         """Close it, as all was said."""
-        await self._socket.close(1000, "ended")
+        await self._socket.close(CLOSING_CODES["ended"], "ended")

@@ -13,17 +13,18 @@ from .protocol import (
     CLIENT,
     VERSION,
     Bye,
+    ClientFrame,
     Ended,
     Error,
-    Frame,
     Hello,
-    Message,
+    Paused,
     Piece,
     Ping,
     Pong,
     ProtocolError,
     Renamed,
     Say,
+    ServerFrame,
     Typing,
     Welcome,
     Writing,
@@ -33,7 +34,7 @@ from .protocol import (
 from .session import Ending, Session
 
 if TYPE_CHECKING:
-    from .gate import Gate
+    from .access import Access
     from .sessions import Sessions
 
 __all__ = ["Connection"]
@@ -54,7 +55,7 @@ class Connection:
     Args:
         socket: Not accepted yet.
         sessions: The conversations.
-        gate: Knows the token.
+        access: Knows the token.
         title: What the agent is called; None: what it calls itself.
         inside: Where the page may look inside of the agent, e.g. ``board/``; None: nowhere.
     """
@@ -63,15 +64,17 @@ class Connection:
         self,
         socket: WebSocket,
         sessions: Sessions,
-        gate: Gate,
+        access: Access,
         title: str | None = None,
         inside: str | None = None,
+        suggestions: tuple[str, ...] = (),
     ) -> None:
         self._socket = socket
         self._sessions = sessions
-        self._gate = gate
+        self._access = access
         self._title = title
         self._inside = inside
+        self._suggestions = suggestions
         self._channel = Channel(socket, REPLIES)
 
     async def run(self) -> None:
@@ -94,7 +97,9 @@ class Connection:
             first, newest = session.history.first, session.history.last
             agent = self._name_of(session)
             await self._send(
-                Welcome(VERSION, session.id, resumed, first, agent, self._inside, newest, writing=True)
+                Welcome(
+                    VERSION, session.id, resumed, first, agent, self._inside, newest, True, self._suggestions
+                )
             )
             await self._channel.both(self._read(session), self._write(session, max(last, first - 1), agent))
         finally:
@@ -105,7 +110,7 @@ class Connection:
         if not isinstance(frame, Hello):
             raise ProtocolError("malformed", f"begin with {HELLO}")
         bearer = self._socket.headers.get("authorization", "").removeprefix("Bearer ")
-        await self._gate.check_token(frame.token or bearer)
+        await self._access.check_token(frame.token or bearer)
         return frame
 
     # ------------------------------------------------------------------------------------ from the client
@@ -127,7 +132,7 @@ class Connection:
                 self._reply(Error(error.code, str(error), error.id))
             await asyncio.sleep(others.wait(now()))
 
-    def _take(self, frame: Frame, session: Session) -> None:
+    def _take(self, frame: ClientFrame, session: Session) -> None:
         if isinstance(frame, Say):
             if not session.hear(frame.id, frame.text):
                 raise ProtocolError("over", "the conversation is ending: nothing more is heard", frame.id)
@@ -138,7 +143,7 @@ class Connection:
         else:
             raise ProtocolError("malformed", "hello is said once, at the beginning")
 
-    def _reply(self, frame: Frame) -> None:
+    def _reply(self, frame: ServerFrame) -> None:
         self._channel.reply(serialise(frame))
 
     # ------------------------------------------------------------------------------------ to the client
@@ -146,7 +151,7 @@ class Connection:
     async def _write(self, session: Session, last: int, agent: str) -> None:
         """Tell the client what it has not seen: another name than `agent`, messages after number `last`, and what is
         being said."""
-        shown, typing = "", False
+        shown, typing, paused = "", False, False
         woken = self._channel.woken
         while True:
             woken.clear()
@@ -167,6 +172,9 @@ class Connection:
             if session.typing != typing:
                 typing = session.typing
                 await self._send(Typing(typing))
+            if session.paused != paused:
+                paused = session.paused
+                await self._send(Paused(paused))
             if session.ended is not None and last == session.history.last:
                 await self._send(Ended(session.ended.for_visitor))
                 await self._channel.end()
@@ -177,7 +185,7 @@ class Connection:
         """What the agent is called on the page."""
         return session.agent if self._title is None else self._title
 
-    async def _send(self, frame: Frame | Message) -> None:
+    async def _send(self, frame: ServerFrame) -> None:
         await self._channel.send(serialise(frame))
 
 

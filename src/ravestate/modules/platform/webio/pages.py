@@ -10,6 +10,7 @@ from pathlib import Path
 from starlette.datastructures import Headers
 from starlette.responses import PlainTextResponse, Response
 from starlette.types import Receive, Scope, Send
+from starlette.websockets import WebSocket
 
 __all__ = ["Pages"]
 
@@ -52,8 +53,12 @@ class Pages:
                 )
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Answer a request."""
-        await self._answer(scope)(scope, receive, send)
+        """Answer a request; a WebSocket has no page here."""
+        if scope["type"] == "websocket":
+            refusal = PlainTextResponse("there is no such WebSocket", 404)
+            await WebSocket(scope, receive, send).send_denial_response(refusal)
+        else:
+            await self._answer(scope)(scope, receive, send)
 
     def _answer(self, scope: Scope) -> Response:
         if scope["method"] not in ("GET", "HEAD"):

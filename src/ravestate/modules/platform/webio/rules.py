@@ -5,7 +5,7 @@ from __future__ import annotations
 import ravestate as rs
 from ravestate.modules import interloc, rawio
 
-from . import module, page
+from .names import module, page
 
 SLOW = 0.3
 """Seconds that an answer may take before the page shows that it is being made."""
@@ -40,7 +40,7 @@ async def show_name(ctx: rs.RuleContext) -> None:
     """Show what the agent is called now."""
     session = ctx[page]
     if session is not None:
-        session.tell()
+        session.notify()
 
 
 @module.rule(when=rs.pressure.true.min_age(SLOW).max_age(None).detached(), reads=page, background=True)
@@ -48,4 +48,4 @@ async def show_delay(ctx: rs.RuleContext) -> None:
     """Show that an answer is due."""
     session = ctx[page]
     if session is not None:
-        session.ponder()
+        session.show_work()

@@ -8,8 +8,8 @@ import errno
 import functools
 import socket
 import sys
-from collections.abc import Generator, Iterable
-from types import TracebackType
+from collections.abc import Callable, Generator, Iterable, Mapping
+from types import MappingProxyType, TracebackType
 from typing import TYPE_CHECKING, Any, cast
 from urllib.parse import quote
 
@@ -17,18 +17,18 @@ import uvicorn
 
 from ravestate.errors import PlatformError
 
+from .access import is_local
 from .application import make_app
 from .channel import LONGEST
-from .door import Door, Line
-from .gate import is_local
-from .pace import at_pace
+from .limits import LimitedHTTP, LimitedWebSocket
+from .tuning import low_latency
 
 if TYPE_CHECKING:
     from starlette.routing import BaseRoute
 
     from ravestate.runtime.agent import Agent
 
-    from . import Settings
+    from .names import Settings
 
 __all__ = ["Server"]
 
@@ -67,7 +67,7 @@ class Server:
         self._socket: socket.socket | None = None
         self._uvicorn: _Uvicorn | None = None
         self._task: asyncio.Task[None] | None = None
-        self._pace = contextlib.ExitStack()
+        self._saved = contextlib.ExitStack()
 
     async def __aenter__(self) -> Server:
         """Listen.
@@ -77,12 +77,14 @@ class Server:
         """
         settings = self._settings
         self._socket = _listen(settings.host, settings.port)
-        door = functools.partial(Door, per_address=settings.per_address, most=_most(2 * settings.sessions))
+        limits = functools.partial(
+            LimitedHTTP, per_address=settings.per_address, most=_most(2 * settings.sessions)
+        )
         self._uvicorn = _Uvicorn(
             uvicorn.Config(
                 self._app,
-                http=cast("Any", door),
-                ws=Line,
+                http=cast("Any", limits),
+                ws=LimitedWebSocket,
                 lifespan="on",
                 ws_max_size=LONGEST,
                 ws_per_message_deflate=False,  # frames are small, and each window would take memory
@@ -102,7 +104,7 @@ class Server:
         listening.cancel()
         if self._task.done():
             self._task.result()
-        self._pace.enter_context(at_pace())
+        self._saved.enter_context(low_latency())
         return self
 
     async def __aexit__(
@@ -110,7 +112,7 @@ class Server:
     ) -> None:
         """Tell the visitors, end their conversations in order, and close."""
         assert self._uvicorn is not None and self._task is not None  # it was entered
-        with self._pace:
+        with self._saved:
             await self._app.state.sessions.close()
             self._uvicorn.told.set()
             await self._task
@@ -129,11 +131,34 @@ class Server:
             host = socket.gethostname()
         return f"http://{f'[{host}]' if ':' in host else host}:{self.port}/"
 
-    def announce(self) -> None:
-        """Print where the page is; with the token, as it is the link that lets in."""
+    def link(self, path: str = "") -> str:
+        """Return the address of a page, with the token that lets its visitor in."""
         token = self._settings.token
-        link = self.address + (f"#token={quote(token.get_secret_value(), safe='')}" if token else "")
-        sys.stdout.write(f"The agent is at {link} (Ctrl-C ends it)\n")
+        secret = f"#token={quote(token.get_secret_value(), safe='')}" if token else ""
+        return f"{self.address}{path}{secret}"
+
+    def announce(self, pages: Mapping[str, str] = MappingProxyType({"agent": ""})) -> None:
+        """Print the address of each page.
+
+        The token appears only on a terminal: other outputs are often kept in files that others can read.
+
+        Args:
+            pages: For the name of each page its path.
+        """
+
+        def lines(address: Callable[[str], str]) -> str:
+            return (
+                "\n".join(f"The {name} is at {address(path)}" for name, path in pages.items())
+                + " (Ctrl-C ends it)\n"
+            )
+
+        if self._settings.token is None or sys.stdout.isatty():
+            sys.stdout.write(lines(self.link))
+        else:
+            sys.stdout.write(lines(lambda path: f"{self.address}{path}"))
+            sys.stdout.write("To open it, add #token= and the token that you have set (webio.token).\n")
+            if sys.stderr.isatty():
+                sys.stderr.write(lines(self.link))
         sys.stdout.flush()
 
     async def until_failed(self) -> None:

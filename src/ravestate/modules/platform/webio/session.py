@@ -10,13 +10,12 @@ import time
 from collections import OrderedDict
 from typing import TYPE_CHECKING, Protocol
 
-import ravestate as rs
 from ravestate.errors import RavestateError
 from ravestate.modules import interloc, rawio
 from ravestate.modules._text import printable, without_controls
 
-from . import page
 from .history import History
+from .names import page
 from .protocol import LONGEST_NAME, name_of
 
 if TYPE_CHECKING:
@@ -83,8 +82,6 @@ class Session:
         self.history = History()
         self.partial = ""
         """What is being said, as far as it goes."""
-        self.typing = False
-        """Whether the agent is about to say something."""
         self.spoken = False
         """Whether the visitor has ever said anything."""
         self.ended: Ending | None = None
@@ -94,8 +91,7 @@ class Session:
         self._left: asyncio.Event = asyncio.Event()
         self._reason = Ending.CANCELLED
         self._heard: OrderedDict[str, None] = OrderedDict()
-        self._awaited = False  # an answer, by the visitor
-        self._slow = False  # the agent is at work for longer than the grace
+        self._working = False
         self._following: asyncio.Task[None] | None = None
 
     def __repr__(self) -> str:
@@ -123,9 +119,8 @@ class Session:
             if self._following is not None:
                 self._following.cancel()
             self.fall_silent()
-            self.typing = False
             self.ended = self._reason
-            self.tell()
+            self.notify()
 
     def leave(self, reason: Ending) -> None:
         """End the conversation for good."""
@@ -177,8 +172,8 @@ class Session:
         self.spoken = True
         self.history.add("user", text, _now(), id)
         self.context.put(rawio.input, text)
-        self._expect(GRACE)
-        self.tell()
+        self.show_work(GRACE)
+        self.notify()
         return True
 
     def notice_writing(self) -> None:
@@ -195,51 +190,57 @@ class Session:
         return name_of(name[:LONGEST_NAME]) or interloc.agent.default
 
     def utter(self, text: str) -> None:
-        """The agent has said something."""
+        """Add an utterance of the agent."""
         text = printable(text)
         self.partial = ""
-        self._awaited = self.context.read(rs.pressure)  # then it was said to fill a pause
         if text.strip():
             self.history.add("agent", text, _now())
-        self.tell()
+        self.notify()
 
     def grow(self, piece: str) -> None:
-        """The agent is saying something; the next piece of it."""
+        """Add a piece to the utterance that is still growing."""
         self.partial += without_controls(piece)
-        self.tell()
+        self.notify()
 
     def fall_silent(self) -> None:
-        """The agent says no more; what was said so far was said."""
+        """End the growing utterance; its text so far becomes a message."""
         if self.partial:
             self.utter(self.partial)
 
-    def ponder(self) -> None:
-        """The agent keeps something waiting."""
-        self._expect(0.0)
+    def show_work(self, grace: float = 0.0) -> None:
+        """Show that the agent is working, from `grace` seconds on, until no rule may write an answer any more.
 
-    def _expect(self, grace: float) -> None:
-        self._awaited = True
+        A filler such as "Let me think…" ends nothing: the rule that makes the answer still runs.
+        """
         if self._following is None:
             self._following = asyncio.create_task(self._follow(grace))
 
     async def _follow(self, grace: float) -> None:
-        """Show that the agent is at work while it is, if it takes longer than the grace (seconds)."""
         try:
             try:
                 async with asyncio.timeout(grace):
-                    await self.context.quiet()
+                    await self.context.quiet(rawio.output)
             except TimeoutError:
-                self._slow = True
-                self.tell()
-                await self.context.quiet()
+                self._working = True
+                self.notify()
+                await self.context.quiet(rawio.output)
         finally:
             self._following = None
-            self._slow = False
-            self.tell()
+            self._working = False
+            self.notify()
 
-    def tell(self) -> None:
-        """Wake those who look on: something has changed."""
-        self.typing = self._slow and self._awaited and not self.partial and self.ended is None
+    @property
+    def typing(self) -> bool:
+        """Whether the agent is working on an answer that nobody sees growing."""
+        return self._working and not self.partial and self.ended is None
+
+    @property
+    def paused(self) -> bool:
+        """Whether the clock of the context stands still."""
+        return self._begun and self.ended is None and self.context.paused
+
+    def notify(self) -> None:
+        """Wake the onlookers: something has changed."""
         for onlooker in self.onlookers:
             onlooker.wake()
 

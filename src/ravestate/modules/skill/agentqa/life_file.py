@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ravestate.errors import DeclarationError, PlatformError, nearest
+from ravestate.yaml_text import compose_yaml
 
 from .life import Fact, Life, Topic
 
@@ -68,7 +69,7 @@ def read_life(own: Path | None = None) -> Life:
 
 @lru_cache(maxsize=32)
 def _parsed(name: str, text: str, base: Life | None) -> Life:
-    root = _composed(name, text)
+    root = compose_yaml(text, name)
     facts = dict(base.facts) if base else {}
     topics = dict(base.topics) if base else {}
     others = base.others if base else ()
@@ -201,25 +202,6 @@ def _fact(name: str, key: str, node: yaml.Node) -> Fact | None:
 
 
 # ------------------------------------------------------------------------------------------ YAML
-
-
-def _composed(name: str, text: str) -> yaml.Node | None:
-    """Return the nodes of a YAML text, with their lines. No value is constructed, so nothing can run."""
-    import yaml
-
-    try:
-        return yaml.compose(text, Loader=yaml.BaseLoader)
-    except yaml.MarkedYAMLError as error:
-        mark = error.problem_mark or error.context_mark
-        line = "" if mark is None else f":{mark.line + 1}"
-        reason = ", ".join(filter(None, (error.context, error.problem)))
-        raise DeclarationError(
-            f"{name}{line}: this is no YAML ({reason}). Quote a text with : or #, or with braces in front"
-        ) from None
-    except yaml.YAMLError:  # a character that YAML does not allow
-        raise DeclarationError(f"{name}: this is no YAML (a control character)") from None
-    except RecursionError:
-        raise DeclarationError(f"{name}: this is not a life file: it is nested without end") from None
 
 
 def _fault(name: str, node: yaml.Node, problem: str) -> DeclarationError:

@@ -15,9 +15,17 @@ class Settings(rs.Settings):
 
     unanswered_after: Annotated[float, Field(gt=0)] = 2.0
     """Seconds from the user's words until an answer counts as slow, while none of it is heard."""
+    answer_within: Annotated[float, Field(gt=0)] = 20.0
+    """Seconds from a filler until the agent says that it has lost the answer."""
 
 
 module = rs.Module("fillers", requires=[rawio, idle, verbaliser], settings=Settings)
 
 filled: rs.Slot[float | None] = module.slot("filled", None)
-"""The last filler, in seconds since the context began."""
+"""The time of the last filler, in seconds since the context began."""
+
+promised = module.flag("promised")
+"""Whether the agent still owes the answer after a filler."""
+
+lost = module.signal("lost")
+"""An answer after a filler does not come: it took too long, or every rule for it resigned."""

@@ -6,7 +6,7 @@ import ravestate as rs
 from ravestate.modules import idle, rawio, verbaliser
 from ravestate.modules.meta.verbaliser.intents import Intent
 
-from .names import filled, module
+from .names import filled, lost, module, promised
 
 ENOUGH = 5.0
 """Seconds until another filler may follow."""
@@ -36,7 +36,7 @@ def _silent(speaking: bool) -> bool:
 @module.rule(
     when=idle.impatient.max_age(0.0) & rawio.speaking.holds(_silent),  # later the answer may be there
     reads=filled,
-    writes=(verbaliser.intent, filled),
+    writes=(verbaliser.intent, filled, promised),
 )
 async def fill_the_pause(ctx: rs.RuleContext) -> rs.Resign | None:
     """Say a filler while nothing else is said."""
@@ -44,5 +44,48 @@ async def fill_the_pause(ctx: rs.RuleContext) -> rs.Resign | None:
     if last is not None and ctx.now - last < ENOUGH:
         return rs.Resign(f"a pause was filled {ctx.now - last:.1f} s ago")
     ctx[filled] = ctx.now
+    ctx[promised] = True
     ctx[verbaliser.intent] = Intent("filler", package=__package__)
     return None
+
+
+@module.rule(
+    when=rawio.output.changed.max_age(None).detached()
+    | rawio.input.changed.detached()
+    | rawio.speaking.true.detached(),
+    reads=(rawio.output, rawio.speaking, verbaliser.last, promised),
+    writes=promised,
+    detached=True,
+    background=True,
+)
+async def notice_answer(ctx: rs.RuleContext) -> rs.Resign | None:
+    """Note that the answer has come or has begun, or that the user says something else."""
+    said = ctx.payload(rawio.output.changed)
+    if said is not None and said == ctx[verbaliser.last].get("filler"):
+        return rs.Resign("this is the filler")
+    ctx[promised] = False
+    return None
+
+
+@module.rule(
+    when=promised.true.max_age(None), emits=lost, until=promised.false, detached=True, background=True
+)
+async def notice_late_answer(ctx: rs.RuleContext) -> None:
+    """Raise `lost` when the answer takes too long."""
+    await ctx.sleep(ctx.settings.answer_within)
+    ctx.emit(lost)
+
+
+@module.rule(
+    when=rs.activity.false.max_age(None) & promised.holds(bool), emits=lost, detached=True, background=True
+)
+async def notice_no_rule_left(ctx: rs.RuleContext) -> None:
+    """Raise `lost` when no rule is left that could answer."""
+    ctx.emit(lost)
+
+
+@module.rule(when=lost.max_age(0.0) & promised.holds(bool), writes=(verbaliser.intent, promised))
+async def admit_loss(ctx: rs.RuleContext) -> None:
+    """Say that there is no answer."""
+    ctx[promised] = False
+    ctx[verbaliser.intent] = Intent("lost", package=__package__)

@@ -1,0 +1,155 @@
+"""Values as text: JSON if it can express them, or else their ``repr``; long texts are cut.
+
+Values come from users' code. They may be huge, endlessly deep, or raise errors when they are read. Rendering survives that.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import cast
+
+from ravestate.board.repr_chunks import repr_chunks
+from ravestate.declare.slot import Entry
+
+__all__ = ["Rendered", "not_json", "render", "well_formed"]
+
+DEEPEST = 6
+"""The most nested containers."""
+
+
+@dataclass(frozen=True, slots=True)
+class Rendered:
+    """A value as text.
+
+    Attributes:
+        text: JSON, or a ``repr``.
+        json: Whether the text is JSON for the whole value, which a user may edit and write back.
+        cut: Whether the text is only a part.
+    """
+
+    text: str
+    json: bool = True
+    cut: bool = False
+
+
+class _Foreign(Exception):
+    """JSON cannot express a value."""
+
+
+def render(value: object, most: int = 2000) -> Rendered:
+    """Return a value as text of at most `most` characters.
+
+    Example:
+        >>> render({"name": "Ada", "seen": [1, 2]})
+        Rendered(text='{"name": "Ada", "seen": [1, 2]}', json=True, cut=False)
+        >>> render("x" * 5000, most=8)
+        Rendered(text='"xxxxxxx', json=False, cut=True)
+        >>> render(object).text
+        "<class 'object'>"
+    """
+    kind = type(value)
+    if value is None or kind is bool or (kind is int and abs(cast("int", value)) < 1 << 2 * most):
+        return Rendered(json.dumps(value))
+    if kind is str:
+        text = cast("str", value)
+        if len(text) < most - 2:
+            whole = json.dumps(well_formed(text), ensure_ascii=False)
+            if len(whole) <= most:
+                return Rendered(whole)
+        return Rendered(json.dumps(well_formed(text[:most]), ensure_ascii=False)[:most], False, True)
+    if kind is Entry:  # an item of a collection: its key matters most
+        key, item = cast("Entry", value)
+        name = render(str(key), most).text
+        return Rendered((name if item is None else f"{name}: {render(item, most).text}")[:most], False)
+    chunks: list[str] = []
+    size = 0
+    try:
+        for chunk in _json(value, 0):
+            chunks.append(chunk)
+            size += len(chunk)
+            if size > most:
+                return Rendered("".join(chunks)[:most], False, True)
+        return Rendered("".join(chunks))
+    except _Foreign:
+        return _repr(value, most)
+    except Exception as error:  # a user's container that fails during iteration
+        return Rendered(f"<{kind.__name__} that cannot be read: {type(error).__name__}>", False)
+
+
+def not_json(value: object, most: int = 2000) -> bool:
+    """Return whether JSON cannot express a value, judging by its first `most` characters.
+
+    Example:
+        >>> not_json({"name": "Ada"}), not_json([1, object()])
+        (False, True)
+    """
+    if isinstance(value, (int, float)):
+        return False
+    size = 0
+    try:
+        for chunk in _json(value, 0):
+            size += len(chunk)
+            if size > most:
+                break
+    except Exception:  # JSON cannot express it, or its own code fails
+        return True
+    return False
+
+
+def _json(value: object, depth: int) -> Iterator[str]:
+    """Yield a value's JSON in chunks, so that nobody has to make all of a huge one."""
+    if value is None or isinstance(value, (bool, int)):
+        yield json.dumps(value)
+    elif isinstance(value, float):
+        if not math.isfinite(value):
+            raise _Foreign
+        yield json.dumps(value)
+    elif isinstance(value, str):
+        yield json.dumps(well_formed(value[:100_000]), ensure_ascii=False)
+    elif depth > DEEPEST:
+        raise _Foreign
+    elif isinstance(value, Mapping):
+        yield "{"
+        for number, (key, item) in enumerate(cast("Mapping[object, object]", value).items()):
+            if not isinstance(key, str):
+                raise _Foreign
+            yield (", " if number else "") + json.dumps(well_formed(key[:1000]), ensure_ascii=False) + ": "
+            yield from _json(item, depth + 1)
+        yield "}"
+    elif type(value) is list:  # a tuple would come back as a list
+        yield "["
+        for number, item in enumerate(cast("list[object]", value)):
+            if number:
+                yield ", "
+            yield from _json(item, depth + 1)
+        yield "]"
+    else:
+        raise _Foreign
+
+
+def _repr(value: object, most: int) -> Rendered:
+    found: list[str] = []
+    size = 0
+    try:
+        for chunk in repr_chunks(value):
+            found.append(chunk)
+            size += len(chunk)
+            if size > most:
+                break
+    except Exception as error:  # a container that changes, or a field that fails, meanwhile
+        return Rendered(f"<{type(value).__name__} whose repr fails: {type(error).__name__}>", False)
+    text = well_formed("".join(found)[: most + 1])
+    return Rendered(text[:most], False, len(text) > most)
+
+
+def well_formed(text: str) -> str:
+    """Return a text without lone surrogates, which UTF-8 cannot encode.
+
+    Example:
+        >>> well_formed("\\ud800x")
+        '?x'
+    """
+    return text if text.isascii() else text.encode("utf-8", "replace").decode("utf-8")

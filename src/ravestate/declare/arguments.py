@@ -1,0 +1,140 @@
+"""Checks of the arguments of a declaration: every message ends with the text to write instead."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable
+from functools import wraps
+from typing import Any, ParamSpec, TypeVar, cast
+
+from ravestate.declare.condition import Condition
+from ravestate.declare.rule import Rule
+from ravestate.declare.settings import Number, SettingRef, type_of_number
+from ravestate.declare.signal import Signal
+from ravestate.declare.slot import Slot
+from ravestate.declare.wording import place_of_call, spelt
+from ravestate.errors import DeclarationError, nearest
+
+__all__ = ["check_function", "check_name", "check_options", "condition", "keywords", "number", "several"]
+
+T = TypeVar("T")
+P = ParamSpec("P")
+R = TypeVar("R")
+
+
+def keywords(*options: str) -> Callable[[Callable[P, R]], Callable[P, R]]:
+    """Make a method refuse an unknown keyword with the nearest known one.
+
+    Args:
+        options: Keywords that the method takes besides those in its signature.
+    """
+
+    def decorate(method: Callable[P, R]) -> Callable[P, R]:
+        code = method.__code__
+        known = (*code.co_varnames[1 : code.co_argcount + code.co_kwonlyargcount], *options)
+
+        @wraps(method)
+        def checked(*args: P.args, **kwargs: P.kwargs) -> R:
+            for keyword in kwargs:
+                if keyword not in known:
+                    owner = getattr(args[0], "name", None)
+                    what = f"{owner}.{method.__name__}" if owner else "rs.Module"
+                    raise DeclarationError(
+                        f"{what} ({place_of_call()}) has no argument {keyword!r}{nearest(keyword, known)}"
+                    )
+            return method(*args, **kwargs)
+
+        return checked
+
+    return decorate
+
+
+def check_name(name: object, what: str) -> None:
+    """Refuse a name that is no word; `what` names the declaration in the message."""
+    if not isinstance(name, str) or not name.replace("-", "_").isidentifier():
+        raise DeclarationError(
+            f"{what}: {name!r} is no name: use letters, digits, '_' and '-', beginning with a letter"
+        )
+
+
+def check_options(keep: object = "all", limit: object = 1, *, what: str) -> None:
+    """Refuse values of `keep` and `limit` that a signal cannot have."""
+    if keep not in ("all", "latest"):
+        raise DeclarationError(f"{what}: keep={keep!r}: write keep='all' or keep='latest'")
+    if not isinstance(limit, int) or limit < 1:
+        raise DeclarationError(f"{what}: limit={limit!r}: write a whole number of at least 1")
+
+
+def check_function(function: object, title: str, *, named: bool, where: str, decorator: str) -> None:
+    """Refuse a value that cannot be a rule's function.
+
+    Args:
+        function: The value.
+        title: The rule's name within its module: given, or the function's own.
+        named: Whether the name was given.
+        where: The rule and its place, for messages.
+        decorator: The decorator as it is typed, for messages.
+    """
+    if isinstance(function, Rule):
+        raise DeclarationError(
+            f"{function.name} ({function.origin}) is a rule already: write its second condition behind |, or give "
+            "the second rule a function of its own"
+        )
+    if not callable(function):
+        raise DeclarationError(f"{decorator} stands above a function, not {function!r}")
+    if not named and not title.isidentifier():  # a lambda, a partial, an object
+        raise DeclarationError(f"{where} has no name of its own: write name='...'")
+    check_name(title, where)
+    if inspect.isgeneratorfunction(function) or inspect.isasyncgenfunction(function):
+        raise DeclarationError(
+            f"{where} is a generator: a rule returns once; write with ctx[slot] = value instead of yield"
+        )
+    code = getattr(function, "__code__", None)
+    if code is not None and code.co_argcount == 0 and not code.co_flags & inspect.CO_VARARGS:
+        raise DeclarationError(f"{where} takes no argument: write def {title}(ctx)")
+
+
+def condition(value: object, what: str, where: str, home: str) -> Condition:
+    """Return a condition, or refuse a value that is none.
+
+    Args:
+        value: The value.
+        what: The argument's name.
+        where: The rule and its place, for messages.
+        home: The rule's module; messages spell the module's own names without it.
+    """
+    if isinstance(value, Slot):
+        slot = cast("Slot[Any]", value)
+        raise DeclarationError(
+            f"{where}: {what}={slot!r} is a slot: write {what}={spelt(slot.name, home)}.changed"
+        )
+    if not isinstance(value, Condition):
+        raise DeclarationError(f"{where}: {what}={value!r} is no condition: combine signals with & and |")
+    return value
+
+
+def number(value: object, what: str, where: str) -> Number:
+    """Return a number as a float, or a setting as it is; refuse any other value."""
+    if isinstance(value, bool) or not isinstance(value, type_of_number):
+        raise DeclarationError(f"{where}: {what}={value!r} is no number; write {what}=1.0 or a setting")
+    return value if isinstance(value, SettingRef) else float(value)
+
+
+def several(values: Any, kind: type[T], what: str, where: str, home: str) -> tuple[T, ...]:
+    """Return one slot or signal, or an iterable of them, as a tuple without doubles; arguments as for `condition`."""
+    if isinstance(values, kind):
+        return (values,)
+    try:
+        found = tuple(values)
+    except TypeError:
+        found = (values,)
+    for value in found:
+        if not isinstance(value, kind):
+            hint = ""
+            if isinstance(value, Signal):
+                hint = ": reads and writes name slots, emits names signals"
+            elif isinstance(value, Slot):
+                name = cast("Slot[Any]", value).name
+                hint = f": a write raises its signals; write writes={spelt(name, home)}"
+            raise DeclarationError(f"{where}: {what}={value!r} is no {kind.__name__.lower()}{hint}")
+    return tuple(dict.fromkeys(found))

@@ -1,0 +1,52 @@
+"""Signal-Rule-Slot diagrams in the paper's notation, as SVG, DOT or Mermaid, without any third party.
+
+`build` makes a diagram (`graph`) from rules, `fold` folds modules, `layout` places the nodes and lines, and `svg`, `dot`
+and `mermaid` write text.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+from ravestate.draw.build import build
+from ravestate.draw.dot import dot
+from ravestate.draw.graph import Diagram
+from ravestate.draw.mermaid import mermaid
+from ravestate.draw.svg import svg
+
+if TYPE_CHECKING:
+    from ravestate.policy.policy import Policy
+
+__all__ = ["FORMATS", "draw"]
+
+FORMATS: dict[str, Callable[[Diagram], str]] = {"svg": svg, "dot": dot, "mermaid": mermaid}
+"""The writer of each format."""
+
+
+def draw(policy: Policy, format: str = "svg") -> str:
+    """Draw the rules of a policy.
+
+    Args:
+        policy: The compiled policy.
+        format: ``"svg"``, ``"dot"`` or ``"mermaid"``.
+
+    Raises:
+        ValueError: The format is none of these.
+
+    Example:
+        >>> from ravestate.declare.module import Module
+        >>> lamp = Module("lamp")
+        >>> lit = lamp.flag("lit")
+        >>> @lamp.rule(when=lit.true, emits=lamp.signal("bright"))
+        ... def shine(ctx): ...
+        >>> from ravestate.policy.compile import compile_policy
+        >>> print(draw(compile_policy(lamp), "mermaid").splitlines()[0])
+        flowchart LR
+    """
+    writer = FORMATS.get(format)
+    if writer is None:
+        raise ValueError(
+            f"diagram format {format!r} is unknown: write one of {', '.join(map(repr, FORMATS))}"
+        )
+    return writer(build(policy.rules.values()))

@@ -1,0 +1,79 @@
+"""Cycle removal: a small feedback arc set, whose edges the layout reverses.
+
+The heuristic of Eades, Lin and Smyth (1993) runs within each strongly connected component. It orders the vertices from
+both ends at once; the edges that point backwards in this order are the set. Two refinements: weak edges go before strong
+ones, and ties go by number, so that the result depends on the input alone.
+"""
+
+from __future__ import annotations
+
+import heapq
+from collections.abc import Sequence
+
+from ravestate.policy.components import components
+
+__all__ = ["STRONG", "feedback_arcs"]
+
+STRONG = 1 << 20
+"""The weight of a strong edge. It is reversed only if the weak edges alone do not break the cycle."""
+
+
+def feedback_arcs(count: int, edges: Sequence[tuple[int, int, int]]) -> list[bool]:
+    """Return for each edge (tail, head, weight) of a graph with `count` vertices whether to reverse it."""
+    after: list[list[int]] = [[] for _ in range(count)]
+    for u, v, _ in edges:
+        after[u].append(v)
+    component = components(after).of
+    inner = [i for i, (u, v, _) in enumerate(edges) if component[u] == component[v]]
+    place = _peel(count, [edges[i] for i in inner])
+    found = [False] * len(edges)
+    for i in inner:
+        found[i] = place[edges[i][0]] > place[edges[i][1]]
+    return found
+
+
+def _peel(count: int, edges: Sequence[tuple[int, int, int]]) -> list[int]:
+    """Number the vertices so that few edges point backwards, and weak ones rather than strong ones."""
+    after: list[list[tuple[int, int]]] = [[] for _ in range(count)]
+    before: list[list[tuple[int, int]]] = [[] for _ in range(count)]
+    out = [0] * count
+    into = [0] * count
+    for u, v, weight in edges:
+        after[u].append((v, weight))
+        before[v].append((u, weight))
+        out[u] += weight
+        into[v] += weight
+    place = [-1] * count
+    first, last = 0, count - 1
+    heap = [(*_urgency(out[v], into[v]), v) for v in range(count)]
+    heapq.heapify(heap)
+    while heap:
+        rank, gain, v = heapq.heappop(heap)
+        if place[v] >= 0 or (rank, gain) != _urgency(out[v], into[v]):
+            continue  # outdated: the heap has a newer entry
+        if rank in _LAST:
+            place[v], last = last, last - 1
+        else:
+            place[v], first = first, first + 1
+        for neighbours, sums in ((after[v], into), (before[v], out)):
+            for other, weight in neighbours:
+                if place[other] < 0:
+                    sums[other] -= weight
+                    heapq.heappush(heap, (*_urgency(out[other], into[other]), other))
+    return place
+
+
+_LAST = (0, 2)
+
+
+def _urgency(out: int, into: int) -> tuple[int, int]:
+    """Return the sort key of a vertex: sinks, sources, sinks and sources of the strong edges, then the best ratio."""
+    if out == 0:
+        return (0, 0)
+    if into == 0:
+        return (1, 0)
+    if into < STRONG:
+        return (3, into - out)
+    if out < STRONG:
+        return (2, out - into)
+    return (4, into - out)

@@ -1,0 +1,107 @@
+"""Layers of bounded size, for pictures that would be too tall for a screen.
+
+The shortest edges may give few and crowded layers: all neighbours of a hub share one layer. If the picture is then tall and
+narrow, the layers get a bound. Surplus vertices move to a later layer, as in the scheduling of Coffman and Graham (1972).
+A vertex that has just become ready goes first, so that a chain continues before another chain begins.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+from ravestate.draw.simplex import Arc
+
+__all__ = ["Extent", "bounded_layers", "fit_to_screen"]
+
+Extent = tuple[float, float]
+"""Width and height in pixels."""
+
+_SCREEN = 720.0  # pixels: a picture of this height fits a screen, however narrow it is
+_TALLEST = 1.2  # least width : height
+_ASPECT = 1.6  # wished width : height
+_SPLITS = 16
+
+
+def fit_to_screen(
+    ranks: Sequence[int], arcs: Sequence[Arc], extent: Callable[[Sequence[int]], Extent]
+) -> list[int]:
+    """Return layers that suit a landscape screen: the given ones, or bounded ones if the picture would be too tall.
+
+    Args:
+        ranks: The layer of each vertex, from 0.
+        arcs: The constraints of the layers: each arc spans at least its length.
+        extent: Estimates the size of the picture for some layers.
+    """
+    best, (width, height) = list(ranks), extent(ranks)
+    if height <= _SCREEN or width >= _TALLEST * height:
+        return best
+    nearest = _misfit(width, height)
+    largest = _largest(ranks)
+    for splits in range(2, _SPLITS + 1):
+        found = bounded_layers(ranks, arcs, -(-largest // splits))
+        width, height = extent(found)
+        misfit = _misfit(width, height)
+        if misfit < nearest:
+            best, nearest = found, misfit
+        if width >= _ASPECT * height:
+            break
+    return best
+
+
+def bounded_layers(ranks: Sequence[int], arcs: Sequence[Arc], most: int) -> list[int]:
+    """Return layers of at most `most` vertices; no vertex moves to an earlier layer than in `ranks`.
+
+    Example:
+        >>> bounded_layers([0, 1, 1, 1, 2], [(0, 1, 1, 1), (0, 2, 1, 1), (0, 3, 1, 1), (3, 4, 1, 1)], most=2)
+        [0, 1, 2, 1, 2]
+    """
+    count = len(ranks)
+    after: list[list[tuple[int, int]]] = [[] for _ in range(count)]
+    waiting = [0] * count
+    for u, v, _, length in arcs:
+        after[u].append((v, length))
+        waiting[v] += 1
+    tail = [0] * count  # the longest path from the vertex, in layers
+    for u in reversed(_sorted(after, waiting)):
+        tail[u] = max((tail[v] + length for v, length in after[u]), default=0)
+    found = list(ranks)
+    layer = 0
+    ready = {v for v in range(count) if not waiting[v]}
+    while ready:
+        here = [v for v in ready if found[v] <= layer]
+        here.sort(key=lambda v: (-ranks[v], -tail[v], v))
+        for u in here[:most]:
+            ready.discard(u)
+            found[u] = layer
+            for v, length in after[u]:
+                found[v] = max(found[v], layer + length)
+                waiting[v] -= 1
+                if not waiting[v]:
+                    ready.add(v)
+        layer += 1
+    first = min(found, default=0)
+    return [layer - first for layer in found]
+
+
+def _sorted(after: Sequence[Sequence[tuple[int, int]]], waiting: Sequence[int]) -> list[int]:
+    """Return the vertices in topological order."""
+    left = list(waiting)
+    order = [v for v in range(len(left)) if not left[v]]
+    for u in order:
+        for v, _ in after[u]:
+            left[v] -= 1
+            if not left[v]:
+                order.append(v)
+    return order
+
+
+def _largest(ranks: Sequence[int]) -> int:
+    sizes: dict[int, int] = {}
+    for rank in ranks:
+        sizes[rank] = sizes.get(rank, 0) + 1
+    return max(sizes.values())
+
+
+def _misfit(width: float, height: float) -> float:
+    aspect = width / height
+    return max(aspect / _ASPECT, _ASPECT / aspect)

@@ -1,0 +1,44 @@
+"""Coordinate assignment: the best of several methods.
+
+Brandes and Köpf's alignment suits small pictures, relaxation (`relax`) crowded ones. Each candidate is straightened. The
+candidate with the shortest lines and the fewest steps wins; among equals, the first.
+"""
+
+from __future__ import annotations
+
+from ravestate.draw.brandes_koepf import brandes_koepf
+from ravestate.draw.layered import LayeredGraph
+from ravestate.draw.relax import relax
+from ravestate.draw.straighten import straighten
+
+__all__ = ["assign_coordinates"]
+
+_STEP = 70.0  # pixels of length that count as much as a step
+_SPREADS = (1.0, 1.15)
+_LEVEL = 0.01
+
+
+def assign_coordinates(graph: LayeredGraph, room: float | None = None) -> list[float]:
+    """Return the vertical middle of each vertex in pixels.
+
+    Args:
+        graph: A graph with ordered layers and placed ports.
+        room: The greatest height of the picture in pixels, unless its largest layer needs more; ``None`` for any height.
+    """
+    candidates = [relax(graph, spread, room) for spread in _SPREADS]
+    if room is None:
+        candidates.insert(0, brandes_koepf(graph))
+    for candidate in candidates:
+        straighten(graph, candidate)
+    costs = [round(_cost(graph, candidate), 3) for candidate in candidates]
+    return candidates[costs.index(min(costs))]
+
+
+def _cost(graph: LayeredGraph, middle: list[float]) -> float:
+    total = 0.0
+    for low, high in graph.segments:
+        p, q = graph.ports[low], graph.ports[high]
+        step = abs(middle[p.vertex] + p.offset - middle[q.vertex] - q.offset)
+        if step > _LEVEL:
+            total += step + _STEP
+    return total

@@ -1,0 +1,74 @@
+"""The diagram as a value: nodes and edges, without places or colours."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+__all__ = ["Diagram", "Edge", "EdgeKind", "Node", "NodeKind"]
+
+NodeKind = Literal["slot", "signal", "rule", "module", "and", "or"]
+EdgeKind = Literal["reads", "writes", "emits", "emits_detached", "condition", "condition_detached"]
+
+
+@dataclass(frozen=True, slots=True)
+class Node:
+    """A slot, a signal, a rule, a folded module, or the junction of a conjunction or disjunction.
+
+    Attributes:
+        id: Its unique name within the diagram.
+        kind: Its kind.
+        label: The text in it; empty for a junction.
+        module: The module that declares it; empty for a junction and for a module.
+        note: Options such as a weight, or the number of rules of a module; may be empty.
+    """
+
+    id: str
+    kind: NodeKind
+    label: str = ""
+    module: str = ""
+    note: str = ""
+
+    @property
+    def name(self) -> str:
+        """The qualified name, ``module:label``."""
+        return f"{self.module}:{self.label}" if self.module else self.label
+
+
+@dataclass(frozen=True, slots=True)
+class Edge:
+    """An arrow from `source` to `target`, both ids of nodes, with a few words beside it or none."""
+
+    source: str
+    target: str
+    kind: EdgeKind
+    label: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Diagram:
+    """Nodes and edges in declaration order.
+
+    Raises:
+        ValueError: Two nodes share an id, an edge has an unknown end, or an edge joins a node to itself.
+
+    Example:
+        >>> Diagram((Node("a", "slot", "a"), Node("b", "signal", "b")), (Edge("a", "b", "emits"),)).edges[0].kind
+        'emits'
+    """
+
+    nodes: tuple[Node, ...]
+    edges: tuple[Edge, ...]
+
+    def __post_init__(self) -> None:
+        ids: set[str] = set()
+        for node in self.nodes:
+            if node.id in ids:
+                raise ValueError(f"two nodes of a diagram share the id {node.id!r}")
+            ids.add(node.id)
+        for edge in self.edges:
+            for end in (edge.source, edge.target):
+                if end not in ids:
+                    raise ValueError(f"{edge} ends at {end!r}, which is no node of the diagram")
+            if edge.source == edge.target:
+                raise ValueError(f"{edge} ends where it began")

@@ -1,0 +1,167 @@
+"""A proper layered graph: each segment joins two neighbouring layers.
+
+Vertices are the nodes of the diagram, the labels of its edges, and dummies where a long edge passes a layer. A line begins
+and ends at a port. Edges of one kind share one port on each side of a node. Long edges that begin (or end) at one port
+share their dummies too: a hub shows one hyperedge with branches instead of a bundle of parallel lines.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Literal
+
+from ravestate.draw.graph import EdgeKind
+
+__all__ = ["Chain", "LayeredGraph", "Link", "Port", "VertexKind", "proper_layering"]
+
+VertexKind = Literal["node", "label", "dummy"]
+
+_SOLID: tuple[EdgeKind, ...] = ("writes", "emits")  # solid lines may overlap; dashes would fall out of step
+
+
+@dataclass(frozen=True, slots=True)
+class Link:
+    """An edge of the acyclic graph, from the lower to the higher layer; `is_reversed` if its arrow points the other way."""
+
+    low: int
+    high: int
+    kind: EdgeKind
+    is_reversed: bool
+    label: tuple[float, float] | None
+    """Width and height of its label, pixels."""
+
+
+@dataclass(slots=True)
+class Port:
+    """A point where lines touch a vertex: on the `right` or left side, `offset` pixels below the middle."""
+
+    vertex: int
+    right: bool
+    enters: bool
+    offset: float = 0.0
+
+
+Chain = list[int]
+"""The segments of a link, from its lower to its higher end."""
+
+
+@dataclass(slots=True)
+class LayeredGraph:
+    """The graph: vertices by number, layers from top to bottom, ports, and segments between ports."""
+
+    layer: list[int] = field(default_factory=list[int])
+    kind: list[VertexKind] = field(default_factory=list[VertexKind])
+    width: list[float] = field(default_factory=list[float])
+    height: list[float] = field(default_factory=list[float])
+    ports: list[Port] = field(default_factory=list[Port])
+    segments: list[tuple[int, int]] = field(default_factory=list[tuple[int, int]])
+    """Pairs of ports: one on the right of a vertex, one on the left of a vertex one layer on."""
+    chains: list[Chain] = field(default_factory=list[Chain])
+    labels: list[int | None] = field(default_factory=list[int | None])
+    """For each link the vertex of its label, or ``None``."""
+    order: list[list[int]] = field(default_factory=list[list[int]])
+    """The vertices of each layer."""
+
+    def ends(self, segment: int) -> tuple[int, int]:
+        """Return the two vertices that a segment joins."""
+        low, high = self.segments[segment]
+        return self.ports[low].vertex, self.ports[high].vertex
+
+    def neighbours(self) -> tuple[list[list[int]], list[list[int]]]:
+        """Return for each vertex its neighbours in the layer before and in the layer after, once for each segment."""
+        before: list[list[int]] = [[] for _ in self.layer]
+        after: list[list[int]] = [[] for _ in self.layer]
+        for segment in range(len(self.segments)):
+            u, v = self.ends(segment)
+            after[u].append(v)
+            before[v].append(u)
+        return before, after
+
+
+def proper_layering(
+    ranks: Sequence[int], sizes: Sequence[tuple[float, float]], links: Sequence[Link]
+) -> LayeredGraph:
+    """Return the graph with a dummy wherever a link passes a layer. Within layers, vertices are in order of creation."""
+    graph = LayeredGraph()
+    builder = _Builder(graph)
+    for rank, (width, height) in zip(ranks, sizes, strict=True):
+        builder.vertex(rank, "node", width, height)
+    from_low: dict[tuple[object, ...], int] = {}
+    from_high: dict[tuple[object, ...], int] = {}
+    for link in links:
+        if ranks[link.high] - ranks[link.low] > 1:
+            for groups, key in ((from_low, _low(link)), (from_high, _high(link))):
+                groups[key] = groups.get(key, 0) + 1
+    for link in links:
+        share_low = from_low.get(_low(link), 0) >= from_high.get(_high(link), 0)
+        if link.label is not None:
+            share_low = not link.is_reversed  # the label is near the arrow's head, on its own line
+        elif link.kind not in _SOLID:
+            share_low = not link.is_reversed  # dashes keep step only from the start of the line
+        builder.link(link, ranks[link.low], ranks[link.high], share_low)
+    graph.order = [[] for _ in range(max(graph.layer, default=-1) + 1)]
+    for vertex, layer in enumerate(graph.layer):
+        graph.order[layer].append(vertex)
+    return graph
+
+
+def _low(link: Link) -> tuple[object, ...]:
+    return (link.low, link.kind, link.is_reversed)
+
+
+def _high(link: Link) -> tuple[object, ...]:
+    return (link.high, link.kind, link.is_reversed)
+
+
+class _Builder:
+    def __init__(self, graph: LayeredGraph) -> None:
+        self.graph = graph
+        self.ports: dict[tuple[object, ...], int] = {}
+        self.dummies: dict[tuple[object, ...], int] = {}
+        self.known: dict[tuple[int, int], int] = {}
+
+    def vertex(self, layer: int, kind: VertexKind, width: float, height: float) -> int:
+        graph = self.graph
+        graph.layer.append(layer)
+        graph.kind.append(kind)
+        graph.width.append(width)
+        graph.height.append(height)
+        return len(graph.layer) - 1
+
+    def port(self, vertex: int, right: bool, key: tuple[EdgeKind, bool] | None = None) -> int:
+        whole = (vertex, right, key)
+        found = self.ports.get(whole)
+        if found is None:
+            found = self.ports[whole] = len(self.graph.ports)
+            self.graph.ports.append(Port(vertex, right, enters=key is not None and key[1] == right))
+        return found
+
+    def link(self, link: Link, first: int, last: int, share_low: bool) -> None:
+        share = ("low", *_low(link)) if share_low else ("high", *_high(link))
+        style = (link.kind, link.is_reversed)
+        labelled = None if link.label is None else (first + 1 if link.is_reversed else last - 1)
+        label: int | None = None
+        chain: Chain = []
+        port = self.port(link.low, True, style)
+        for layer in range(first + 1, last):
+            if layer == labelled and link.label is not None:
+                vertex = label = self.vertex(layer, "label", *link.label)
+            else:
+                key = (*share, layer)
+                vertex = self.dummies.get(key, -1)
+                if vertex < 0:
+                    vertex = self.dummies[key] = self.vertex(layer, "dummy", 0.0, 0.0)
+            chain.append(self.segment(port, self.port(vertex, False)))
+            port = self.port(vertex, True)
+        chain.append(self.segment(port, self.port(link.high, False, style)))
+        self.graph.chains.append(chain)
+        self.graph.labels.append(label)
+
+    def segment(self, low: int, high: int) -> int:
+        key = (low, high)
+        found = self.known.get(key)
+        if found is None:
+            found = self.known[key] = len(self.graph.segments)
+            self.graph.segments.append(key)
+        return found

@@ -1,0 +1,230 @@
+"""Layered layout after Sugiyama, Tagawa and Toda (1981), from left to right.
+
+1. Cycle removal reverses some edges (`acyclic`): detached ones and reads before others.
+2. Layer assignment keeps edges short (`simplex`). Layers are bounded if the picture would be too tall (`bounded`).
+3. Dummies make the graph proper (`layered`). Crossing minimisation orders the layers (`crossings`).
+4. Coordinate assignment places ports and vertices (`ports`, `coordinates`).
+5. Edge routing sets the distances of the layers and the turns of the lines (`tracks`, `routing`).
+
+Connected components are laid out one by one and packed in rows. The result depends on the diagram and its order alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+from ravestate.draw.acyclic import STRONG, feedback_arcs
+from ravestate.draw.bounded import fit_to_screen
+from ravestate.draw.brandes_koepf import separation
+from ravestate.draw.coordinates import assign_coordinates
+from ravestate.draw.crossings import minimise_crossings
+from ravestate.draw.graph import Diagram, Edge, EdgeKind, NodeKind
+from ravestate.draw.layered import LayeredGraph, Link, proper_layering
+from ravestate.draw.ports import place_ports
+from ravestate.draw.routing import Point, route
+from ravestate.draw.simplex import network_simplex
+
+__all__ = ["Box", "Layout", "Size", "lay_out"]
+
+Size = tuple[float, float]
+"""Width and height in pixels."""
+
+_GAP = 32.0  # pixels between layers with straight lines
+_TURN = 2.0  # pixels for each port whose lines may turn there, on average
+_BETWEEN = 36.0  # pixels between components
+_ASPECT = 1.6  # wished width : height of packed components
+
+_STRENGTH: dict[EdgeKind, int] = {
+    "writes": 3 * STRONG,
+    "emits": 4 * STRONG,
+    "condition": 4 * STRONG,
+    "emits_detached": 1,
+    "condition_detached": 2,
+    "reads": 2,
+}
+_TIGHTNESS: dict[EdgeKind, int] = {
+    "writes": 2,
+    "emits": 2,
+    "condition": 2,
+    "emits_detached": 1,
+    "condition_detached": 1,
+    "reads": 1,
+}
+_JUNCTIONS: tuple[NodeKind, ...] = ("and", "or")
+
+
+@dataclass(frozen=True, slots=True)
+class Box:
+    """A rectangle: left and upper border, width and height, in pixels."""
+
+    x: float
+    y: float
+    width: float
+    height: float
+
+    def moved(self, x: float, y: float) -> Box:
+        """Return the same box further right and further down."""
+        return Box(round(self.x + x, 2), round(self.y + y, 2), self.width, self.height)
+
+
+@dataclass(frozen=True, slots=True)
+class Layout:
+    """Places of nodes, lines and labels, in pixels from the upper left corner.
+
+    Attributes:
+        boxes: The box of each node, by id.
+        lines: For each edge, in the order of the diagram, the points of its line from source to target.
+        labels: For each edge the box of its label, or ``None``.
+        width: The width of the picture.
+        height: The height of the picture.
+    """
+
+    boxes: Mapping[str, Box]
+    lines: tuple[tuple[Point, ...], ...]
+    labels: tuple[Box | None, ...]
+    width: float
+    height: float
+
+
+def lay_out(diagram: Diagram, nodes: Mapping[str, Size], labels: Sequence[Size | None]) -> Layout:
+    """Lay out a diagram.
+
+    Args:
+        diagram: The diagram.
+        nodes: The size of each node, by id.
+        labels: The size of each edge's label, or ``None``.
+    """
+    boxes: dict[str, Box] = {}
+    lines: list[tuple[Point, ...]] = [()] * len(diagram.edges)
+    places: list[Box | None] = [None] * len(diagram.edges)
+    parts = [_lay_out_component(diagram, ids, edges, nodes, labels) for ids, edges in _components(diagram)]
+    width = height = 0.0
+    for part, (x, y) in zip(parts, _pack([(part.width, part.height) for part in parts]), strict=True):
+        boxes.update({name: box.moved(x, y) for name, box in part.boxes.items()})
+        for number, line, label in zip(part.edges, part.lines, part.labels, strict=True):
+            lines[number] = tuple((round(px + x, 2), round(py + y, 2)) for px, py in line)
+            places[number] = label.moved(x, y) if label is not None else None
+        width, height = max(width, x + part.width), max(height, y + part.height)
+    ordered = {node.id: boxes[node.id] for node in diagram.nodes}
+    return Layout(ordered, tuple(lines), tuple(places), round(width, 2), round(height, 2))
+
+
+@dataclass(frozen=True, slots=True)
+class _Component:
+    boxes: dict[str, Box]
+    edges: Sequence[int]
+    lines: list[list[Point]]
+    labels: list[Box | None]
+    width: float
+    height: float
+
+
+def _components(diagram: Diagram) -> list[tuple[list[str], list[int]]]:
+    """Return the nodes and edges of each connected component, in the order of first nodes."""
+    touching: dict[str, list[int]] = {node.id: [] for node in diagram.nodes}
+    for number, edge in enumerate(diagram.edges):
+        touching[edge.source].append(number)
+        touching[edge.target].append(number)
+    part: dict[str, int] = {}
+    count = 0
+    for node in diagram.nodes:
+        if node.id in part:
+            continue
+        part[node.id] = count
+        stack = [node.id]
+        while stack:
+            for number in touching[stack.pop()]:
+                for end in (diagram.edges[number].source, diagram.edges[number].target):
+                    if end not in part:
+                        part[end] = count
+                        stack.append(end)
+        count += 1
+    found: list[tuple[list[str], list[int]]] = [([], []) for _ in range(count)]
+    for node in diagram.nodes:
+        found[part[node.id]][0].append(node.id)
+    for number, edge in enumerate(diagram.edges):
+        found[part[edge.source]][1].append(number)
+    return found
+
+
+def _lay_out_component(
+    diagram: Diagram,
+    ids: Sequence[str],
+    numbers: Sequence[int],
+    nodes: Mapping[str, Size],
+    labels: Sequence[Size | None],
+) -> _Component:
+    index = {name: i for i, name in enumerate(ids)}
+    edges = [diagram.edges[number] for number in numbers]
+    ends = [(index[edge.source], index[edge.target]) for edge in edges]
+    kinds: dict[str, NodeKind] = {node.id: node.kind for node in diagram.nodes}
+    reversals = feedback_arcs(
+        len(ids), [(u, v, _STRENGTH[e.kind]) for (u, v), e in zip(ends, edges, strict=True)]
+    )
+    links = [
+        Link(v if back else u, u if back else v, edge.kind, back, labels[number])
+        for (u, v), edge, back, number in zip(ends, edges, reversals, numbers, strict=True)
+    ]
+    arcs = [
+        (link.low, link.high, _tightness(edge, kinds), 1 if link.label is None else 2)
+        for link, edge in zip(links, edges, strict=True)
+    ]
+    sizes = [nodes[name] for name in ids]
+    shortest = network_simplex(len(ids), arcs)
+    ranks = fit_to_screen(shortest, arcs, lambda ranks: _extent(proper_layering(ranks, sizes, links)))
+    graph = proper_layering(ranks, sizes, links)
+    is_bounded = ranks != shortest
+    minimise_crossings(graph, centred=is_bounded)
+    place_ports(graph)
+    routed = route(graph, assign_coordinates(graph, _extent(graph)[0] / _ASPECT if is_bounded else None))
+    boxes = [
+        Box(x - width / 2, y - height / 2, width, height)
+        for (x, y), width, height in zip(routed.middles, graph.width, graph.height, strict=True)
+    ]
+    top = min(box.y for box in boxes)
+    boxes = [box.moved(0.0, -top) for box in boxes]
+    lines = [[(x, y - top) for x, y in line] for line in routed.lines]
+    return _Component(
+        {name: boxes[i] for i, name in enumerate(ids)},
+        numbers,
+        [line[::-1] if link.is_reversed else line for line, link in zip(lines, links, strict=True)],
+        [None if vertex is None else boxes[vertex] for vertex in graph.labels],
+        max(box.x + box.width for box in boxes),
+        max(box.y + box.height for box in boxes),
+    )
+
+
+def _extent(graph: LayeredGraph) -> Size:
+    """Estimate the size of a graph before its coordinates are known."""
+    width = sum(max(graph.width[v] for v in layer) + _GAP for layer in graph.order)
+    width += _TURN * len({low for low, _ in graph.segments})
+    height = max(sum(separation(graph, u, v) for u, v in pairwise(layer)) for layer in graph.order)
+    return width, height
+
+
+def _tightness(edge: Edge, kinds: Mapping[str, NodeKind]) -> int:
+    """Return the cost of a longer edge: junctions stay next to their rule, signals next to their slot."""
+    if kinds[edge.source] in _JUNCTIONS:
+        return 8
+    if edge.kind == "emits" and kinds[edge.source] == "slot":
+        return 4
+    return _TIGHTNESS[edge.kind]
+
+
+def _pack(sizes: Sequence[Size]) -> list[Point]:
+    """Pack rectangles into rows, the highest first."""
+    order = sorted(range(len(sizes)), key=lambda i: (-sizes[i][1], i))
+    area = sum((width + _BETWEEN) * (height + _BETWEEN) for width, height in sizes)
+    wide = max([(area * _ASPECT) ** 0.5, *(width for width, _ in sizes)], default=0.0)
+    found: list[Point] = [(0.0, 0.0)] * len(sizes)
+    x = y = row = 0.0
+    for i in order:
+        width, height = sizes[i]
+        if x > 0 and x + width > wide:
+            x, y, row = 0.0, y + row + _BETWEEN, 0.0
+        found[i] = (x, y)
+        x += width + _BETWEEN
+        row = max(row, height)
+    return found

@@ -1,0 +1,43 @@
+"""Sizes of nodes and labels. A node has two lines (module and name), or three with a note."""
+
+from __future__ import annotations
+
+from ravestate.draw.graph import Node
+from ravestate.draw.notation import JUNCTIONS
+from ravestate.draw.text import clean, shorten, width
+
+__all__ = ["LABEL", "LONGEST", "NAME", "SMALL", "label_size", "node_size", "shown"]
+
+NAME = 13.0
+"""Font size of a name, pixels."""
+
+SMALL = 10.5
+"""Font size of a module and of a note, pixels."""
+
+LABEL = 10.5
+"""Font size of an edge's label, pixels."""
+
+LONGEST = 250.0
+"""Pixels of the longest text; longer ones are shortened, and their title has the whole text."""
+
+_JUNCTION = 22.0
+
+
+def shown(text: str, size: float) -> str:
+    """Return a text for drawing: without control characters, shortened if too long."""
+    return shorten(clean(text), size, LONGEST)
+
+
+def node_size(node: Node) -> tuple[float, float]:
+    """Return the width and height of a node in pixels."""
+    if node.kind in JUNCTIONS:
+        return (_JUNCTION, _JUNCTION)
+    texts = ((node.label, NAME), (node.module, SMALL), (node.note, SMALL))
+    widest = max(width(shown(text, size), size) for text, size in texts)
+    height = 28.0 + (10.0 if node.module else 0.0) + (12.0 if node.note else 0.0)
+    return (float(round(max(44.0, widest + 24.0))), height)
+
+
+def label_size(label: str) -> tuple[float, float] | None:
+    """Return the width and height of an edge's label in pixels, or ``None`` if it is empty."""
+    return (float(round(width(shown(label, LABEL), LABEL) + 8.0)), 16.0) if label else None

@@ -1,0 +1,73 @@
+"""The width of a text, estimated without a font.
+
+The viewer picks the sans serif font. The widths here are those of a broad one, so that a text always fits into its box.
+"""
+
+from __future__ import annotations
+
+import unicodedata
+
+__all__ = ["clean", "shorten", "width"]
+
+_CLASSES: tuple[tuple[float, str], ...] = (
+    (0.32, "\"',.Iijl| "),
+    (0.40, "!()-/:;[\\]frt"),
+    (0.50, "*J`s"),
+    (0.56, "?L_ckvxyz{}"),
+    (0.64, "$0123456789FTabdeghnopqu"),
+    (0.70, "ABEKPSVXYZ^"),
+    (0.80, "#&+<=>CDGHNOQRUw~"),
+    (0.90, "M"),
+    (1.00, "%Wm"),
+    (1.10, "@"),
+)
+_EMS: dict[str, float] = {character: ems for ems, characters in _CLASSES for character in characters}
+_OTHER = 0.85
+_WIDE = 1.05
+
+
+def width(text: str, size: float) -> float:
+    """Estimate the width of a text in pixels at a font size in pixels."""
+    return size * sum(_ems(character) for character in text)
+
+
+def shorten(text: str, size: float, limit: float) -> str:
+    """Cut the middle out of a text that is wider than `limit` pixels. Names often differ at one end."""
+    if width(text, size) <= limit:
+        return text
+    room = limit - width("…", size)
+    head = tail = 0
+    used = 0.0
+    while head + tail < len(text):
+        front = head <= tail
+        ems = _ems(text[head] if front else text[-1 - tail]) * size
+        if used + ems > room:
+            break
+        used += ems
+        head, tail = (head + 1, tail) if front else (head, tail + 1)
+    return f"{text[:head]}…{text[len(text) - tail :]}"
+
+
+def clean(text: str) -> str:
+    """Replace control characters, line breaks, noncharacters and direction marks by U+FFFD."""
+    return "".join("\ufffd" if _unprintable(character) else character for character in text)
+
+
+def _unprintable(character: str) -> bool:
+    code = ord(character)
+    return (
+        unicodedata.category(character) in ("Cc", "Cs", "Zl", "Zp")
+        or code & 0xFFFE == 0xFFFE  # no characters, by definition of Unicode
+        or 0xFDD0 <= code <= 0xFDEF
+        or 0x202A <= code <= 0x202E
+        or 0x2066 <= code <= 0x2069
+    )
+
+
+def _ems(character: str) -> float:
+    known = _EMS.get(character)
+    if known is not None:
+        return known
+    if unicodedata.combining(character) or unicodedata.category(character) == "Cf":
+        return 0.0
+    return _WIDE if unicodedata.east_asian_width(character) in "WF" else _OTHER

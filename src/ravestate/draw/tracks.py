@@ -1,0 +1,144 @@
+"""Orthogonal routing between two layers: the track on which each line turns.
+
+Segments that leave or enter one port form a net: one vertical line with stubs to both sides. Nets get tracks from left to
+right. Two constraints order them: the stubs of different nets must not overlap (strong), and few stubs should cross the
+verticals of other nets (weak).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+from ravestate.draw.acyclic import STRONG, feedback_arcs
+
+__all__ = ["Segment", "Tracks", "tracks"]
+
+Segment = tuple[int, int, float, float]
+"""The port on the left, the port on the right, and the y coordinates of both."""
+
+_NEAR = 5.0  # pixels: closer stubs look like one line
+_APART = 7.0  # pixels: least distance of two verticals on one track
+_LEVEL = 0.01
+_TOUCHING = 4 * STRONG  # far above the sum of all crossings
+
+
+@dataclass(slots=True)
+class Tracks:
+    """The track of each segment, or ``None`` for a straight line (rarely, for a slanted one)."""
+
+    count: int
+    of: list[int | None]
+
+
+@dataclass(slots=True)
+class _Net:
+    segments: list[int] = field(default_factory=list[int])
+    left: dict[int, float] = field(default_factory=dict[int, float])
+    right: dict[int, float] = field(default_factory=dict[int, float])
+    top: float = 0.0
+    bottom: float = 0.0
+
+
+def tracks(segments: Sequence[Segment]) -> Tracks:
+    """Return the tracks of the segments between two layers."""
+    nets = _nets(segments)
+    found = Tracks(0, [None] * len(segments))
+    if not nets:
+        return found
+    joined = {(p, q) for p, q, _, _ in segments}
+    wishes: list[tuple[int, int, int]] = []
+    by_top = sorted(range(len(nets)), key=lambda i: (nets[i].top, i))
+    overlaps: list[list[int]] = [[] for _ in nets]
+    for at, i in enumerate(by_top):
+        for j in by_top[at + 1 :]:
+            if nets[j].top > nets[i].bottom + _APART:
+                break
+            a, b = min(i, j), max(i, j)
+            overlaps[a].append(b)
+            overlaps[b].append(a)
+            first, second = _cost(nets[a], nets[b], joined), _cost(nets[b], nets[a], joined)
+            if first >= STRONG and second >= STRONG:
+                wishes += [(a, b, _TOUCHING), (b, a, _TOUCHING)]
+            elif first < second:
+                wishes.append((a, b, second - first))
+            elif second < first:
+                wishes.append((b, a, first - second))
+    slanted: set[int] = set()
+    after: list[list[int]] = [[] for _ in nets]
+    waiting = [0] * len(nets)
+    for (a, b, weight), is_reversed in zip(wishes, feedback_arcs(len(nets), wishes), strict=True):
+        if is_reversed and weight >= STRONG:
+            slanted |= _offending(nets[a], nets[b], segments, joined)
+        u, v = (b, a) if is_reversed else (a, b)
+        after[u].append(v)
+        waiting[v] += 1
+    place = [-1] * len(nets)
+    least = [0] * len(nets)
+    ready = [i for i in range(len(nets)) if not waiting[i]]
+    for i in ready:
+        turning = [segment for segment in nets[i].segments if segment not in slanted]
+        if turning:
+            used = {place[j] for j in overlaps[i]}
+            track = least[i]
+            while track in used:
+                track += 1
+            place[i] = track
+            found.count = max(found.count, track + 1)
+            for segment in turning:
+                found.of[segment] = track
+        for j in after[i]:
+            least[j] = max(least[j], place[i] + 1)
+            waiting[j] -= 1
+            if not waiting[j]:
+                ready.append(j)
+    return found
+
+
+def _nets(segments: Sequence[Segment]) -> list[_Net]:
+    leaving: dict[int, int] = {}
+    entering: dict[int, int] = {}
+    for p, q, _, _ in segments:
+        leaving[p] = leaving.get(p, 0) + 1
+        entering[q] = entering.get(q, 0) + 1
+    nets: dict[tuple[bool, int], _Net] = {}
+    for number, (p, q, y, z) in enumerate(segments):
+        key = (False, p) if leaving[p] >= entering[q] else (True, q)
+        net = nets.setdefault(key, _Net())
+        net.segments.append(number)
+        net.left[p] = y
+        net.right[q] = z
+    found: list[_Net] = []
+    for net in nets.values():
+        heights = [*net.left.values(), *net.right.values()]
+        net.top, net.bottom = min(heights), max(heights)
+        if net.bottom - net.top > _LEVEL:
+            found.append(net)
+    return found
+
+
+def _offending(a: _Net, b: _Net, segments: Sequence[Segment], joined: set[tuple[int, int]]) -> set[int]:
+    """Return the segments whose stubs overlap unless `a` is on the left of `b`: the smaller group of each pair."""
+    found: set[int] = set()
+    for p, y in a.left.items():
+        for q, z in b.right.items():
+            if abs(y - z) < _NEAR and (p, q) not in joined:
+                leaving = [segment for segment in a.segments if segments[segment][0] == p]
+                entering = [segment for segment in b.segments if segments[segment][1] == q]
+                found.update(leaving if len(leaving) < len(entering) else entering)
+    return found
+
+
+def _cost(a: _Net, b: _Net, joined: set[tuple[int, int]]) -> int:
+    """Return the cost of `a` on the left of `b`."""
+    cost = 0
+    for p, y in b.left.items():
+        if a.top < y < a.bottom and p not in a.left:
+            cost += 1
+        for q, z in a.right.items():
+            if abs(y - z) < _NEAR and (p, q) not in joined:
+                cost += _TOUCHING
+    for q, z in a.right.items():
+        if b.top < z < b.bottom and q not in b.right:
+            cost += 1
+    return cost

@@ -1,0 +1,339 @@
+"""The agenda: the order in which ready activations start, ask for consent, or wait (L15-L17, L22).
+
+1. Rules that write no slot start at once.
+2. When none of them is left, ready writers ask for consent, the greatest utility first (``consent.py``). By then, runs
+   that never suspend have ended.
+3. When no writer may start either, the engine updates the built-in flags.
+
+So a waiting activation asks again in the same instant in which a classifier ends, and only after everything that ends
+in this instant.
+"""
+
+from __future__ import annotations
+
+import heapq
+from collections.abc import Sequence
+from typing import Any
+
+from ravestate.engine import trace
+from ravestate.engine.activation import GRANT, NEVER, READY, REFUSE, WAITING, Activation
+from ravestate.engine.consent import Refusal, ask, stalemate
+from ravestate.engine.deadlines import PATIENCE, RECHECK, STANDBY, TIMEOUT
+from ravestate.engine.effects import Run
+from ravestate.engine.group import Group
+from ravestate.engine.horizon import FIRM, Horizon
+from ravestate.engine.loops import MANY, TURNS
+from ravestate.engine.slots import Slots
+from ravestate.engine.watch import Watch
+from ravestate.errors import RuleError
+from ravestate.policy.model import Clause, RulePlan, SlotPlan
+from ravestate.policy.policy import Policy
+
+__all__ = ["Agenda"]
+
+
+ASKABLE = (READY, WAITING)
+
+
+class Agenda(Slots):
+    """The slots and their signals, and the order of ready activations."""
+
+    def __init__(self, policy: Policy, patience: float) -> None:
+        super().__init__(policy)
+        self.patience = patience
+        # The activations that ask in this instant, the best first.
+        self._queue: list[tuple[int, float, int, int, Activation]] = []
+        self._horizon: Horizon | None = None
+        self.ran: dict[int, float] = {}
+        """When each rule with a cooldown last ran (seconds)."""
+        self._activity = policy.slot_of["core:activity"]
+        self._pressure = policy.slot_of["core:pressure"]
+
+    def look(self) -> None:
+        """Unfold all alternatives for an observer; each waits for the best clause of its conflict set."""
+        for best in list(self.alternatives):
+            spike = best.spikes[0]
+            assert spike is not None  # it is ready, or runs
+            self.unfold(best)
+            for other in list(spike.holders) if best.state >= WAITING else ():
+                if other.state is READY and other.clause.rule.slotset == best.clause.rule.slotset:
+                    self._asking.pop(other, None)
+                    self._refuse(other, Refusal.by(best, other))
+
+    def horizon(self) -> Horizon:
+        """Return what may yet come; it stays valid until an activation starts or changes."""
+        if self._horizon is None:
+            self._horizon = Horizon(self)
+        return self._horizon
+
+    def effective(self, clause: Clause) -> float:
+        """Return the effective utility of a clause now (L9): utility x weight x recovery, in nats."""
+        cooldown = clause.rule.cooldown
+        if cooldown:
+            ran = self.ran.get(clause.rule.index)
+            if ran is not None and self.now - ran < cooldown:
+                return clause.base * ((self.now - ran) / cooldown)
+        return clause.base
+
+    def recovery(self, clause: Clause) -> tuple[float, float, float]:
+        """Return the effective utility (nats), its slope (nats per second), and the time of recovery (seconds)."""
+        rule = clause.rule
+        ran = self.ran.get(rule.index)
+        if not rule.cooldown or ran is None or self.now - ran >= rule.cooldown:
+            return clause.base, 0.0, -NEVER
+        return self.effective(clause), clause.base / rule.cooldown, ran + rule.cooldown
+
+    def order(self, activation: Activation) -> tuple[float, int, int]:
+        """Return the sort key of ready activations: the greatest utility, the first declared, the oldest."""
+        return (-self.effective(activation.clause), activation.clause.index, activation.id)
+
+    def _start_free(self) -> None:
+        """Start the ready activations that need no consent."""
+        free = self._free
+        self._free = []
+        for activation in free:
+            if activation.state != READY:
+                continue
+            if not self._guarded(activation):
+                continue
+            rule = activation.clause.rule
+            if not rule.slots:
+                other = self._claimed(activation)
+                if other is not None:
+                    self._refuse(activation, Refusal.by(other, activation))
+                    continue
+            self._start(activation)
+
+    def _claimed(self, activation: Activation) -> Activation | None:
+        """Return a run of the same rule on one of the same spikes: it alone excludes a rule without slots (L10)."""
+        for spike in activation.firm_spikes():
+            if spike.claims is not None:
+                other = spike.claims.get(activation.clause.rule.index)
+                if other is not None:
+                    return other
+        return None
+
+    def _guarded(self, activation: Activation) -> bool:
+        """Return whether the predicates on slots hold; if not, the activation is ready no longer."""
+        clause = activation.clause
+        if clause.guards and not all(self.holds(s, g, clause.rule) for s, g in clause.guards):
+            self._horizon = None
+            self._unready(activation)
+            self._update(activation)
+            return False
+        return True
+
+    def _consent_round(self) -> None:
+        """Ask for consent: older causes first, and the best first within a cause.
+
+        An activation that would read a slot of a rule that has just started asks in the next round. So it sees what
+        that rule writes before it suspends.
+        """
+        queue = self._queue
+        self._horizon = None
+        for activation in self._asking:
+            heapq.heappush(queue, (*self._turn(activation), activation))
+        self._asking.clear()
+        if self._dirty or self._stirred:
+            again: dict[Activation, None] = {}
+            for group in self._dirty:
+                again.update(group.interested)
+            self._dirty.clear()
+            if self._stirred:
+                again.update(self.hoping)
+                self._stirred = False
+            for activation in again:
+                heapq.heappush(queue, (*self._turn(activation), activation))
+        written: set[int] = set()
+        later: list[tuple[int, float, int, int, Activation]] = []
+        while queue:
+            entry = heapq.heappop(queue)
+            activation = entry[4]
+            if activation.state not in ASKABLE or not self._guarded(activation):
+                continue
+            rule = activation.clause.rule
+            if rule.cooldown and (turn := self._turn(activation)) > entry[:4]:
+                heapq.heappush(queue, (*turn, activation))  # its rule has run meanwhile, and recovers
+                continue
+            if written and not rule.readable.isdisjoint(written):
+                if self._is_taken(activation):
+                    later.append(entry)  # it will wait then, or will have lost
+                elif self._ask(activation, start=False):
+                    later.append(entry)
+                    break
+            elif self._ask(activation):
+                written.update(rule.slots)
+        for entry in later:
+            heapq.heappush(queue, entry)
+        if self.waiting and not queue and not self._acts and not self._free:
+            best = stalemate(self, self._refused)
+            if best is None:
+                self._refused.clear()
+            else:
+                self._start(best)
+
+    def _is_taken(self, activation: Activation) -> bool:
+        """Return whether one of its slots is taken in one of its groups."""
+        slots = activation.clause.rule.slots
+        return any(slot in group.taken for group in activation.firm_groups() if group.taken for slot in slots)
+
+    def _turn(self, activation: Activation) -> tuple[int, float, int, int]:
+        """Return the sort key of the queue: older causes first, and the best first within a cause."""
+        groups = activation.firm_groups()
+        cause = groups[0].id if len(groups) == 1 else min(group.id for group in groups)
+        return (cause, *self.order(activation))
+
+    def _ask(self, activation: Activation, *, start: bool = True) -> bool:
+        """Return whether an activation has consent. With consent it starts, unless `start` is false; otherwise it waits."""
+        if not activation.clause.rule.slots:
+            free = self._claimed(activation) is None
+            if free and start:
+                self._start(activation)
+            return free
+        refusal = ask(self, activation)
+        if not refusal:
+            if start:
+                self._start(activation)
+            return True
+        for group, rival, member in refusal.pressed:
+            self._press(group, rival, member, activation)
+        self._refuse(activation, refusal)
+        activation.recheck = refusal.recheck
+        if refusal.recheck != NEVER:
+            self._deadlines.add(refusal.recheck, RECHECK, activation)
+        return False
+
+    def _refuse(self, activation: Activation, refusal: Refusal) -> None:
+        """Let an activation wait."""
+        activation.step(REFUSE)
+        self._lose_interest(activation)
+        self.waiting[activation] = self._refused[activation] = None
+        names = tuple(refusal.names)
+        changed = activation.waits_for != names
+        activation.waits_for = names
+        activation.blockers = tuple(refusal.blockers)
+        activation.speculative = bool(refusal.pressed)
+        if refusal.hopes:
+            self.hoping[activation] = None
+        activation.interests = tuple(refusal.interests)
+        for group in activation.interests:
+            group.concern(activation)
+        if changed and self.tracer is not None:
+            until = None if activation.blockers else self.patience_of_rivals(activation)
+            self.tracer(trace.Waits(self.now, activation.id, activation.clause.rule.name, names, until))
+
+    def patience_of_rivals(self, activation: Activation) -> float | None:
+        """Return when the patience of the last pressured rival of a waiting activation ends (seconds)."""
+        names = activation.waits_for
+        times: list[float] = []
+        for group in activation.firm_groups():
+            times += [m.pressed for m in group.members if m.clause.rule.name in names and m.pressed != NEVER]
+            clauses = self.policy.clause_plans
+            times += [t for c, t in (group.pressed or {}).items() if clauses[c].rule.name in names]
+        return max(times, default=None)
+
+    def _press(self, group: Group, rival: Clause, member: Activation | None, by: Activation) -> None:
+        """Put a rival under pressure, unless it is already: an activation, or (None) the clause in stand-by (L16)."""
+        patience = self.patience if rival.rule.patience is None else rival.rule.patience
+        until = self.now + patience
+        if member is not None:
+            if member.pressed != NEVER:
+                return
+            member.pressed = until
+            self._deadlines.add(until, PATIENCE, member)
+        else:
+            if group.pressed is None:
+                group.pressed = {}
+            if rival.index in group.pressed:
+                return
+            group.pressed[rival.index] = until
+            self._deadlines.add(until, STANDBY, (group, rival.index, until))
+        if self.tracer is not None:
+            missing = rival.all_bits if member is None else member.missing
+            lacks = tuple(n.signal.name for n in rival.needs if n.bit & missing)
+            self.tracer(trace.Pressed(self.now, rival.rule.name, by.clause.rule.name, lacks, until))
+
+    def _pressed_for_nothing(self, rival: Activation) -> bool:
+        """Return whether a rival may stay at the end of its patience: no activation waits for it, or it is sure (L16)."""
+        slots = rival.clause.rule.slotset
+        groups = rival.firm_groups()
+        waited = any(
+            rival.clause.rule.name in waiter.waits_for and not waiter.clause.rule.slotset.isdisjoint(slots)
+            for group in groups
+            for waiter in group.members
+            if waiter.state == WAITING
+        )
+        if not waited:
+            return True
+        return all(Horizon(self).viable(rival.clause, rival, group, slots) == FIRM for group in groups)
+
+    def _start(self, activation: Activation) -> None:
+        """Start an activation: it takes its slots in its groups, and its function runs (L17)."""
+        activation.step(GRANT)
+        self._horizon = None
+        if activation.pressed != NEVER:
+            activation.pressed = NEVER
+        clause = activation.clause
+        rule = clause.rule
+        if activation.interests:
+            self._lose_interest(activation)
+        activation.recheck = NEVER
+        activation.blockers = activation.waits_for = ()
+        stands_on = activation.stands_on = activation.firm_spikes()
+        if rule.slots:
+            activation.groups = tuple(activation.firm_groups())
+            for group in activation.groups:
+                for slot in rule.slots:
+                    group.take(slot, (activation,))
+        elif len(clause.needs) > 1 or len(rule.clauses) > 1:
+            for spike in stands_on:
+                if spike.claims is None:
+                    spike.claims = {}
+                spike.claims[rule.index] = activation
+        self.running[activation.id] = activation
+        self._loops.runs += 1
+        if self._loops.runs > MANY and (loop := self._loops.trace(activation)):
+            self._fail(loop[0], RuleError(_endless(loop)), signal=True)
+        if rule.timeout is not None:
+            activation.deadline = self.now + rule.timeout
+            self._deadlines.add(activation.deadline, TIMEOUT, activation)
+        for until in rule.until:
+            self._watches.setdefault(until, {})[activation] = Watch(activation, until)
+        payloads = {spike.signal.name: spike.payload for spike in activation.spikes if spike is not None}
+        values: dict[str, Any] = {}
+        for slot in rule.readable:
+            values[self.policy.slot_plans[slot].name] = self.read(slot)
+        if self.tracer is not None:
+            ids = tuple(spike.id for spike in activation.spikes if spike is not None)
+            self.tracer(trace.Started(self.now, activation.id, rule.name, clause.number, ids))
+        self._acts = True
+        self._out.append(Run(activation.id, rule.rule, payloads, values))
+
+    def _set_flag(self, flag: SlotPlan, value: bool) -> None:
+        """Change a built-in flag, and signal the change only if something may hear it."""
+        if flag.heard or self.tracer is not None or self.watched or flag.index in self.policy.guarded:
+            self._change(flag, value, (), None)
+        else:
+            self.values[flag.index] = value
+
+    def _settle_flags(self) -> bool:
+        """Update ``core:activity`` and ``core:pressure`` (L22); return whether one has changed."""
+        pressure = any(not a.clause.reflexive for a in (*self.alternatives, *self.waiting))
+        if pressure != self.read(self._pressure.index):
+            self._set_flag(self._pressure, pressure)
+            return True
+        activity = self._busy > 0
+        if activity != self.read(self._activity.index):
+            self._set_flag(self._activity, activity)
+            return True
+        return False
+
+
+def _endless(rules: Sequence[RulePlan]) -> str:
+    """Return the message about a loop without an end."""
+    names = ", ".join(rule.name for rule in rules)
+    whom = "each other" if len(rules) > 1 else "itself"
+    return (
+        f"a loop without an end: {names} set {whom} off {MANY + TURNS:,} times within one instant; write "
+        ".min_age(seconds) behind a signal of the loop, so that time passes"
+    )

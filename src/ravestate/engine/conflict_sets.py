@@ -1,0 +1,84 @@
+"""Conflict sets: clauses that the same spike makes ready, while only one of them can run.
+
+A thousand rules on one signal that write one slot would be a thousand activations: one runs, and the rest give up. So
+only the best clause gets an activation; the other clauses are its queue of alternatives. If it resigns or fails, the
+next clause takes its place. The queue is *unfolded* into ordinary activations where it could make a difference: to
+judge a rival, to explain something, to retire or add a rule. The number of each activation is fixed from the start, so
+nothing depends on the moment of the unfolding.
+"""
+
+from __future__ import annotations
+
+from ravestate.engine.activation import Activation
+from ravestate.engine.holdings import Holdings
+from ravestate.engine.spike import Spike
+from ravestate.policy.model import Clause, SignalPlan
+
+__all__ = ["ConflictSets"]
+
+
+class ConflictSets(Holdings):
+    """The holdings, and the queues of alternatives."""
+
+    def unfold(self, activation: Activation) -> None:
+        """Make the activations of all alternatives of one."""
+        clauses, made, base = self.alternatives.pop(activation)
+        spike = activation.spikes[0]
+        assert spike is not None  # it is ready, or runs
+        for position in range(made, len(clauses)):
+            self._activate(clauses[position], base + position + 1, spike)
+
+    def unfold_all(self) -> None:
+        """Make the activations of all alternatives."""
+        for activation in list(self.alternatives):
+            self.unfold(activation)
+
+    def _offer_to_sets(self, signal: SignalPlan, spike: Spike) -> None:
+        """Offer a spike to the conflict sets of its signal."""
+        for clauses in signal.contests:
+            if spike.group.finished(clauses[0].rule.slots):
+                for clause in clauses if self.tracer is not None else ():
+                    self._pass_by(clause, spike, "consumed")
+                continue  # consumed for all of them
+            clauses = tuple(clause for clause in clauses if self._enters(clause, spike))
+            if not clauses:
+                continue
+            base = self._activations
+            self._activations += len(clauses)
+            self._next(clauses, 0, base, spike)
+        if self.tracer is not None:
+            self.unfold_all()
+
+    def _enters(self, clause: Clause, spike: Spike) -> bool:
+        """Return whether a clause takes a spike."""
+        if self.retired and clause.rule.index in self.retired:
+            return False
+        for predicate in clause.needs[0].predicates:
+            if not self._test(predicate, spike.payload, clause.rule):
+                self._pass_by(clause, spike, "payload")
+                return False
+        return True
+
+    def _next(self, clauses: tuple[Clause, ...], position: int, base: int, spike: Spike) -> None:
+        """Make the activation of the clause at a position, with the rest of its conflict set as alternatives."""
+        activation = self._activate(clauses[position], base + position + 1, spike)
+        if position + 1 < len(clauses):
+            self.alternatives[activation] = (clauses, position + 1, base)
+
+    def _substitute(self, activation: Activation) -> None:
+        """Put the next alternative in the place of an activation that has resigned or failed."""
+        queued = self.alternatives.pop(activation, None)
+        spike = activation.spikes[0]
+        if queued is not None and spike is not None:
+            clauses, made, base = queued
+            refused = spike.refused or ()
+            while made < len(clauses) and clauses[made].rule.index in refused:
+                made += 1  # another clause of a rule that gave the spike up for good
+            if made < len(clauses):
+                self._next(clauses, made, base, spike)
+
+    def _activate(self, clause: Clause, number: int, spike: Spike) -> Activation:
+        activation = self._new_activation(clause, number)
+        self._acquire(activation, clause.needs[0], spike)
+        self._complete(activation)
+        return activation

@@ -1,0 +1,191 @@
+"""The state of an engine: its tables, and the questions that they answer. No decision is made here.
+
+Each table is indexed by what an event concerns: live spikes by signal, activations by rule, and incomplete activations
+by the need that they lack. So the cost of an event does not grow with the number of rules.
+"""
+
+from __future__ import annotations
+
+import copy
+from types import MappingProxyType
+from typing import Any
+
+from ravestate.declare.condition import Holds
+from ravestate.declare.core import RuleFailure
+from ravestate.engine.activation import RUNNING, Activation
+from ravestate.engine.deadlines import (
+    EXPIRE,
+    PATIENCE,
+    RECHECK,
+    RIPEN,
+    STANDBY,
+    TIMEOUT,
+    WATCH,
+    Deadlines,
+    Entry,
+)
+from ravestate.engine.effects import Effect, Failed
+from ravestate.engine.group import Group
+from ravestate.engine.loops import Lineage, Loops
+from ravestate.engine.spike import Spike
+from ravestate.engine.trace import Tracer
+from ravestate.engine.watch import Watch
+from ravestate.policy.model import Clause, Need, RulePlan, SlotPlan
+from ravestate.policy.policy import Policy
+
+__all__ = ["State"]
+
+PASSIVE = (int, float, str, bytes, bool, type(None), MappingProxyType)
+"""Types whose values contexts may share: a default of another type is copied for each context."""
+
+
+class State:
+    """Slots, live spikes, activations, and the work that is still to be done."""
+
+    def __init__(self, policy: Policy) -> None:
+        self.policy = policy
+        self.now = 0.0
+        self.tracer: Tracer | None = None
+        self.values: dict[int, Any] = {}
+        """The slots that were written or read: index to value."""
+        self._unseen: dict[int, dict[str, Any]] = {}
+        """The items of each collection that nobody has read since its last change: they change further without a copy."""
+        self.live: dict[int, dict[Spike, None]] = {}
+        """Live spikes by signal, oldest first."""
+        self.active: dict[int, dict[Activation, None]] = {}
+        """Activations that hold a spike or run, by rule."""
+        self.lacking: dict[Need, dict[Activation, None]] = {}
+        """Activations that hold a spike, but none for this need."""
+        self.gated: dict[Activation, None] = {}
+        """Activations that hold all their spikes while a predicate on a slot is false."""
+        self.waiting: dict[Activation, None] = {}
+        """Ready activations that were refused consent."""
+        self.alternatives: dict[Activation, tuple[tuple[Clause, ...], int, int]] = {}
+        """Activations with a queue of alternatives (``conflict_sets.py``): the clauses of the conflict set, how many of
+        them have an activation, and the number before the first of these."""
+        self.hoping: dict[Activation, None] = {}
+        """Waiting activations whose rival may yet be helped by a live rule of another causal group."""
+        self.running: dict[int, Activation] = {}
+        """Activations whose function runs, by the number of the run."""
+        self.retired: set[int] = set()
+        """The rules that have retired, by number."""
+        self.dropped: dict[str, int] = {}
+        """How many spikes overflowed, by signal (L23)."""
+        self.watched: dict[str, int] = {}
+        """Signals whose spikes are reported as effects."""
+        self._out: list[Effect] = []
+        self._acts = False  # whether one of these effects starts or cancels a run
+        self._free: list[Activation] = []  # ready, without need of consent
+        self._asking: dict[Activation, None] = {}  # ready, and about to ask for consent
+        self._refused: dict[Activation, None] = {}  # refused since the last search for a stalemate
+        self._dirty: dict[Group, None] = {}  # groups in which something ended
+        self._stirred = False  # whether something ended that the `hoping` activations may have hoped for
+        self._watches: dict[Clause, dict[Activation, Watch]] = {}
+        self._watched_by: dict[
+            Spike, dict[Watch, None]
+        ] = {}  # spikes that a watch keeps until they are old enough
+        # Failures that ``core:error`` has yet to signal, each with the rules that led to it.
+        self._errors: list[tuple[RuleFailure, Lineage | None]] = []
+        self._loops = Loops()
+        self._blamed: set[int] = set()  # the ids of predicates whose failure was reported
+        self._deadlines = Deadlines(self._stands)
+        self._busy: int = 0  # activations of rules that are not in the background
+        self._activations: int = 0  # how many numbers are given
+        self._spikes = 0
+        self._groups = 0
+
+    def _new_activation(self, clause: Clause, number: int) -> Activation:
+        """Make the activation of a clause that is about to take its first spike."""
+        activation = Activation(number, clause)
+        rule = clause.rule
+        active = self.active.get(rule.index)
+        if active is None:
+            active = self.active[rule.index] = {}
+        active[activation] = None
+        if not (rule.background or clause.reflexive):
+            self._busy += 1
+        return activation
+
+    def _stands(self, entry: Entry) -> bool:
+        """Return whether a deadline still counts."""
+        time, kind, _, owner = entry
+        if kind is EXPIRE:
+            return bool(owner.holders) or owner in self.live.get(owner.signal.index, ())
+        if kind is RIPEN:
+            return owner.ripens == time
+        if kind is PATIENCE:
+            return owner.pressed == time
+        if kind is STANDBY:
+            group, clause, until = owner
+            pressed = group.root().pressed
+            return pressed is not None and pressed.get(clause) == until
+        if kind is RECHECK:
+            return owner.recheck == time
+        if kind is TIMEOUT:
+            return owner.deadline == time
+        if kind is WATCH:
+            return owner.due == time and owner.run.state == RUNNING
+        return owner in self.live.get(owner.signal.index, ())
+
+    def read(self, slot: int) -> Any:
+        """Return the value of a slot, by its number."""
+        if self._unseen:
+            self._unseen.pop(slot, None)
+        try:
+            return self.values[slot]
+        except KeyError:
+            default: Any = self.policy.slot_plans[slot].slot.default
+            if not isinstance(default, PASSIVE):
+                default = copy.deepcopy(default)  # contexts share no state
+            self.values[slot] = default
+            return self.values[slot]
+
+    def live_spike(self, need: Need) -> Spike | None:
+        """Return a live spike that fits a need, if there is one."""
+        return next(
+            (spike for spike in self.live.get(need.signal.index, ()) if self._fits(need, spike)), None
+        )
+
+    def _fits(self, need: Need, spike: Spike) -> bool:
+        """Return whether a live spike may meet a need: young enough, not given up, not consumed, of a fitting payload."""
+        rule = need.clause.rule
+        if spike.born + need.max_age <= self.now and need.max_age:
+            return False
+        if not need.detached:
+            if spike.refused is not None and rule.index in spike.refused:
+                return False
+            if spike.claims is not None and rule.index in spike.claims:
+                return False
+            if spike.group.root().finished(rule.slots):
+                return False
+            if need.clause.cyclic and spike.descends_from(rule.index):
+                return False
+        return all(self._test(predicate, spike.payload, rule) for predicate in need.predicates)
+
+    def holds(self, slot: SlotPlan, guard: Holds, rule: RulePlan) -> bool:
+        """Return whether a predicate on a slot's value is true. A predicate that raises counts as false, and is reported."""
+        return self._test(guard.predicate, self.read(slot.index), rule)
+
+    def opens(self, slot: SlotPlan, guard: Holds) -> bool:
+        """Return the same for a debugger: a predicate that raises counts as false, and is not reported."""
+        try:
+            return bool(guard.predicate(self.read(slot.index)))
+        except Exception:  # foreign code, as in `_test`
+            return False
+
+    def _test(self, predicate: Any, value: Any, rule: RulePlan) -> bool:
+        try:
+            return bool(predicate(value))
+        except Exception as exception:  # a predicate is the designer's code: it may raise anything
+            if id(predicate) not in self._blamed:
+                self._blamed.add(id(predicate))
+                self._fail(rule, exception, signal=True)
+            return False
+
+    def _fail(
+        self, rule: RulePlan, exception: BaseException, *, signal: bool, lineage: Lineage | None = None
+    ) -> None:
+        """Report a failure of a rule; with `signal`, ``core:error`` occurs next."""
+        self._out.append(Failed(rule.name, exception))
+        if signal:
+            self._errors.append((RuleFailure(rule.name, exception), lineage))

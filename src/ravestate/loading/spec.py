@@ -1,0 +1,197 @@
+"""An agent as its files describe it: modules, settings, seed and patience."""
+
+from __future__ import annotations
+
+import math
+import os
+import re
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from reprlib import repr as short
+from typing import Any, cast
+
+from ravestate.declare.module import Module
+from ravestate.errors import DeclarationError, DeclarationErrors, UsageError, nearest
+from ravestate.loading.modules import load_module
+from ravestate.modules import BUILT_IN
+from ravestate.settings import load_settings, value_of, variable_of
+from ravestate.yaml_text import load_yaml
+
+__all__ = ["AgentSpec"]
+
+KEYS = ("modules", "settings", "seed", "patience")
+NUMBERS: tuple[tuple[str, Callable[[Any], bool], str], ...] = (
+    ("seed", lambda value: type(value) is int, "a whole number"),
+    ("patience", lambda value: type(value) in (int, float) and 0 <= value < math.inf, "0 seconds or more"),
+)
+"""The numbers of an agent file: key, test, and the words for a good value."""
+VARIABLE = re.compile(r"\$\{([A-Za-z_][A-Za-z0-9_]*)(?::-([^}]*))?\}")
+
+
+@dataclass(slots=True)
+class AgentSpec:
+    """Modules, and the options of their contexts. Read it from files and options, then call `check`.
+
+    Attributes:
+        modules: The modules, in order.
+        settings: For each module's name the values of its fields.
+        seed: The seed of random choices; `None` for a new one in each run.
+        patience: Seconds that a rival under pressure has.
+        faults: Every mistake so far, one message each.
+    """
+
+    modules: list[Module] = field(default_factory=list[Module])
+    settings: dict[str, dict[str, Any]] = field(default_factory=dict[str, dict[str, Any]])
+    seed: int | None = None
+    patience: float = 1.0
+    faults: list[str] = field(default_factory=list[str])
+
+    @classmethod
+    def from_file(cls, path: Path) -> AgentSpec:
+        """Read an agent file and load its modules.
+
+        Raises:
+            UsageError: The file or something in it is wrong. The message has all mistakes.
+        """
+        spec = cls()
+        spec.load(spec.read(path))
+        spec.check()
+        return spec
+
+    def options(self) -> dict[str, Any]:
+        """Return the arguments for `ravestate.Context` besides the modules."""
+        return {"settings": self.settings, "seed": self.seed, "patience": self.patience}
+
+    def read(self, path: Path) -> list[tuple[str, Path]]:
+        """Take the settings and numbers of an agent file, and note its faults.
+
+        Returns:
+            The names of its modules, each with the folder of the file.
+
+        Raises:
+            UsageError: The file cannot be read at all.
+        """
+        try:
+            content: Any = load_yaml(path.read_text(encoding="utf-8"), str(path))
+        except OSError as error:
+            raise UsageError(f"cannot read {path}: {error.strerror}") from None
+        except UnicodeDecodeError as error:
+            raise UsageError(f"{path}: not valid YAML ({error})") from None
+        except DeclarationError as error:
+            raise UsageError(str(error)) from None
+        if not isinstance(content, dict):
+            raise UsageError(f"{path} must hold `modules: [...]`, and may hold {', '.join(KEYS[1:])}")
+        said = cast("dict[str, Any]", content)
+        wrong = [f"unknown key {key!r}{nearest(str(key), KEYS)}" for key in said if key not in KEYS]
+        modules: Any = said.get("modules", [])
+        if not isinstance(modules, list) or not all(isinstance(m, str) for m in cast("list[Any]", modules)):
+            wrong.append(f"modules must be a list of names, not {short(said['modules'])}")
+            modules = []
+        self._take_settings(_filled(said.get("settings") or {}, wrong), wrong)
+        for key, fits, kind in NUMBERS:
+            if key in said:
+                if fits(said[key]):
+                    setattr(self, key, said[key])
+                else:
+                    wrong.append(f"{key} must be {kind}, not {short(said[key])}")
+        self.faults += dict.fromkeys(f"{path}: {fault}" for fault in wrong)  # each once
+        return [(name, path.parent) for name in cast("list[str]", modules)]
+
+    def load(self, names: Iterable[tuple[str, Path]]) -> None:
+        """Load modules, each by its name and the folder that a relative file starts from.
+
+        Raises:
+            UsageError: The first fault of all is a module that cannot be loaded.
+        """
+        for name, folder in names:
+            try:
+                module = load_module(name, folder)
+            except UsageError as error:
+                if not self.faults:
+                    raise
+                self.faults.append(str(error))
+                continue
+            if module not in self.modules:
+                self.modules.append(module)
+
+    def set(self, text: str) -> None:
+        """Take ``module.key=value``, and note its faults. The settings themselves check the value."""
+        name, equals, said = text.partition("=")
+        module, dot, key = name.strip().partition(".")
+        if not equals or not dot or not module or not key:
+            self.faults.append(f"--set {text}: write --set module.key=value, e.g. --set idle.bored_after=10")
+            return
+        known = {found.name: found for found in _with_required(self.modules)}
+        if module not in known:
+            hint = (
+                ": name it too" if module in BUILT_IN else nearest(module, known) or nearest(module, BUILT_IN)
+            )
+            self.faults.append(f"--set {text}: module {module!r} is not part of this agent{hint}")
+        elif (settings := known[module].settings) is None:
+            self.faults.append(f"--set {text}: module {module!r} has no settings")
+        elif key not in settings.model_fields:
+            self.faults.append(
+                f"--set {text}: module {module!r} has no such setting{nearest(key, settings.model_fields)} "
+                f"(it has: {', '.join(settings.model_fields)})"
+            )
+        else:
+            value = value_of(said, settings, key, lambda text: load_yaml(text, "--set") if text else "")
+            self.settings.setdefault(module, {})[key] = value
+
+    def check(self) -> None:
+        """Raise all faults at once, together with those of the settings.
+
+        Settings alone raise nothing here: compiling the modules finds their faults.
+
+        Raises:
+            UsageError: There are faults.
+        """
+        if not self.faults:
+            return
+        try:
+            load_settings(_with_required(self.modules), self.settings)
+        except DeclarationErrors as faults:
+            self.faults += map(str, faults.exceptions)
+        raise UsageError("\n".join(self.faults))
+
+    def _take_settings(self, settings: Any, wrong: list[str]) -> None:
+        if not isinstance(settings, Mapping):
+            wrong.append(f"settings must map a module to its settings, not {short(settings)}")
+            return
+        for module, values in cast("Mapping[str, Any]", settings).items():
+            if not isinstance(values, Mapping):
+                wrong.append(f"settings of {module} must be keys and values, not {short(values)}")
+                continue
+            self.settings.setdefault(str(module), {}).update(
+                (key, value)
+                for key, value in cast("Mapping[str, Any]", values).items()
+                if variable_of(str(module), str(key)) not in os.environ  # the environment goes before a file
+            )
+
+
+def _filled(value: Any, wrong: list[str]) -> Any:
+    """Replace ``${NAME}`` and ``${NAME:-default}`` by the environment's values: secrets do not belong into files."""
+    if isinstance(value, str):
+
+        def fill(match: re.Match[str]) -> str:
+            default: str | None = match[2]  # None where none is written
+            found = os.environ.get(match[1], default)
+            if found is None:
+                wrong.append(f"the environment has no {match[1]}; set it, or write ${{{match[1]}:-default}}")
+            return found or ""
+
+        return VARIABLE.sub(fill, value)
+    if isinstance(value, dict):
+        return {key: _filled(item, wrong) for key, item in cast("dict[Any, Any]", value).items()}
+    if isinstance(value, list):
+        return [_filled(item, wrong) for item in cast("list[Any]", value)]
+    return value
+
+
+def _with_required(modules: Iterable[Module]) -> list[Module]:
+    """Return the modules and all that they require."""
+    found = list(modules)
+    for module in found:  # grows on the way
+        found += [required for required in module.requires if required not in found]
+    return found

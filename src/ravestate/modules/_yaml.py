@@ -1,0 +1,56 @@
+"""Read YAML as nodes, which know their lines: errors name file and line, and no values are built, so no code can run."""
+
+from __future__ import annotations
+
+from importlib.resources.abc import Traversable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ravestate.errors import DeclarationError, PlatformError, nearest
+from ravestate.yaml_text import compose_yaml
+
+if TYPE_CHECKING:
+    import yaml
+
+__all__ = ["fault", "kind_of", "line_of", "read_nodes"]
+
+
+def read_nodes(file: Path | Traversable, what: str) -> yaml.Node | None:
+    """Return the root node of a file; None for an empty one.
+
+    Args:
+        file: A path, or a file in a package.
+        what: The kind of file, for messages: ``file of types``.
+
+    Raises:
+        DeclarationError: The file is not YAML in UTF-8.
+        PlatformError: The file is missing or cannot be read.
+    """
+    try:
+        return compose_yaml(file.read_text(encoding="utf-8"), str(file))
+    except FileNotFoundError as error:
+        near = ""
+        if isinstance(file, Path) and file.parent.is_dir():
+            near = nearest(file.name, [other.name for other in file.parent.iterdir()])
+        raise PlatformError(f"the {what} {str(file)!r} does not exist{near}") from error
+    except OSError as error:
+        raise PlatformError(f"the {what} {str(file)!r} cannot be read: {error.strerror or error}") from error
+    except UnicodeDecodeError as error:
+        raise DeclarationError(
+            f"{file}: this is no text in UTF-8 ({error.reason} at byte {error.start})"
+        ) from None
+
+
+def kind_of(node: yaml.Node) -> str:
+    """Return ``mapping``, ``sequence`` or ``scalar``."""
+    return str(getattr(node, "id", ""))
+
+
+def line_of(file: str, node: yaml.Node) -> str:
+    """Return ``file:line`` of a node."""
+    return f"{file}:{node.start_mark.line + 1}"
+
+
+def fault(file: str, node: yaml.Node, problem: str) -> DeclarationError:
+    """Return the error for a problem at a node."""
+    return DeclarationError(f"{line_of(file, node)}: {problem}")

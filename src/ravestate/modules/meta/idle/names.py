@@ -1,0 +1,52 @@
+"""The module idle: its settings, signals and slot."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import Field
+
+import ravestate as rs
+from ravestate.modules import rawio
+
+Seconds = Annotated[float, Field(ge=0)]
+
+
+class Settings(rs.Settings):
+    """The lengths of awkward pauses."""
+
+    bored_after: Seconds = 5.0
+    """Seconds without activity after which the agent is bored."""
+    answer_time: Seconds = 12.0
+    """Seconds of silence after a question of the agent's, if that is longer."""
+    writing_time: Seconds = 20.0
+    """Seconds of silence after the last key of an unsent line."""
+    remarks: Annotated[int, Field(ge=0)] = 2
+    """The most remarks in a row that the agent makes out of boredom without a word or a key from the user."""
+    impatient_after: Seconds = 1.0
+    """Seconds that a ready rule waits before the agent is impatient."""
+
+
+module = rs.Module("idle", requires=[rawio], settings=Settings)
+
+bored = module.signal("bored")
+"""Nothing happens for ``bored_after`` seconds: once for each silence, the first after startup included.
+
+A rule that acts on it ends the silence. After ``remarks`` unanswered remarks, after a wish for quiet and after a goodbye,
+the agent stays quiet until the user speaks again.
+"""
+
+hushed = module.signal("hushed")
+"""The user wants quiet: "shut up", "stop", "please be quiet"."""
+
+impatient = module.signal("impatient")
+"""A ready rule has waited for ``impatient_after`` seconds."""
+
+asked: rs.Slot[str] = module.slot("asked", "")
+"""The question at the end of the agent's last utterance; empty without one."""
+
+remarked: rs.Slot[bool] = module.slot("remarked", True)
+"""Whether the agent has spoken since it was last bored."""
+
+unanswered: rs.Slot[int] = module.slot("unanswered", 0)
+"""The remarks that the agent has made out of boredom since the user last said or wrote something."""

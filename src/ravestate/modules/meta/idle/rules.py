@@ -1,0 +1,95 @@
+"""The rules that notice silence, delay and the wish for quiet."""
+
+from __future__ import annotations
+
+import ravestate as rs
+from ravestate.modules import rawio
+
+from .names import Settings, asked, bored, hushed, impatient, module, remarked, unanswered
+from .words import asks_for_quiet, last_question, takes_leave
+
+
+@module.rule(
+    when=rs.activity.false.max_age(None) | rs.startup.detached(),
+    reads=(rs.activity, rawio.input, asked, unanswered),
+    writes=remarked,
+    emits=bored,
+    until=rs.activity.true | rawio.typing,
+    detached=True,
+    background=True,
+)
+async def notice_silence(ctx: rs.RuleContext) -> rs.Resign | None:
+    """Emit `bored` after a long silence, unless the user wants it."""
+    settings: Settings = ctx.settings
+    if ctx[rs.activity]:
+        return rs.Resign("there is something to do")
+    if asks_for_quiet(ctx[rawio.input]) or takes_leave(ctx[rawio.input]):
+        return rs.Resign("the user wants quiet")
+    if ctx[unanswered] >= settings.remarks:
+        return rs.Resign("the user has not answered the last remarks")
+    await ctx.sleep(max(settings.bored_after, settings.answer_time if ctx[asked] else 0.0))
+    ctx[remarked] = False
+    ctx.emit(bored)
+    return None
+
+
+@module.rule(
+    when=rawio.input.changed.detached() | rawio.typing.detached() | rawio.picture.changed.detached(),
+    writes=(remarked, unanswered),
+    detached=True,
+    background=True,
+)
+async def notice_user(ctx: rs.RuleContext) -> None:
+    """Count remarks from zero again: the user is there."""
+    ctx[remarked] = True
+    ctx[unanswered] = 0
+
+
+@module.rule(
+    when=rawio.typing.max_age(None),
+    writes=remarked,
+    emits=bored,
+    until=rs.activity.true | rawio.typing | rawio.input.changed,
+    detached=True,
+    background=True,
+)
+async def notice_unfinished_line(ctx: rs.RuleContext) -> None:
+    """Emit `bored` if the user stops in the middle of a line."""
+    await ctx.sleep(max(ctx.settings.bored_after, ctx.settings.writing_time))
+    ctx[remarked] = False
+    ctx.emit(bored)
+
+
+@module.rule(
+    when=rs.pressure.true.min_age(Settings.impatient_after).max_age(None),
+    emits=impatient,
+    detached=True,
+    background=True,
+)
+async def notice_delay(ctx: rs.RuleContext) -> None:
+    """Emit `impatient`: a ready rule waits too long."""
+    ctx.emit(impatient)
+
+
+@module.rule(when=rawio.input.changed.where(asks_for_quiet), emits=hushed, background=True)
+async def notice_wish_for_quiet(ctx: rs.RuleContext) -> None:
+    """Emit `hushed` if the user asks for quiet."""
+    ctx.emit(hushed)
+
+
+def _has_words(text: str) -> bool:
+    return any(map(str.isalpha, text))
+
+
+@module.rule(
+    when=rawio.output.changed.where(_has_words).max_age(None).detached(),
+    writes=(asked, remarked, unanswered),
+    detached=True,
+    background=True,
+)
+async def notice_question(ctx: rs.RuleContext) -> None:
+    """Note the agent's question, whose answer gets more time; count the first words after boredom as a remark."""
+    ctx[asked] = last_question(ctx.payload(rawio.output.changed))
+    if not ctx[remarked]:
+        ctx[remarked] = True
+        ctx[unanswered] += 1

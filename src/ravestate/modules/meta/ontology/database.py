@@ -1,0 +1,71 @@
+"""Opening a ladybug database. A damaged file can end the process that opens it, so a trial takes one of its own."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+__all__ = ["connect", "survives"]
+
+BUFFER = 256 * 2**20
+"""Bytes of memory that pages of the file may take at most."""
+
+LARGEST = 2**36
+"""Bytes of address space for the file, which cannot grow beyond."""
+
+PATIENCE = 60.0
+"""Seconds that a trial may take."""
+
+
+def connect(path: Path, *, whole_log: bool = True) -> tuple[Any, Any]:
+    """Open a database and return it with a connection.
+
+    Args:
+        path: The file; made where it is missing.
+        whole_log: False to read a damaged log up to the damage, and to cut off the rest.
+
+    Raises:
+        Exception: Ladybug raises RuntimeError, and any other exception for a damaged file.
+    """
+    import ladybug
+
+    database = ladybug.Database(
+        str(path),
+        buffer_pool_size=BUFFER,
+        max_db_size=LARGEST,
+        max_num_threads=1,
+        auto_checkpoint=False,  # the store does it, where it may fail
+        throw_on_wal_replay_failure=whole_log,
+    )
+    connection = ladybug.Connection(database, num_threads=1)
+    connection.execute("CALL force_checkpoint_on_close=false")
+    return database, connection
+
+
+def survives(path: Path, *, whole_log: bool = True) -> bool:
+    """Return whether a process that opens the file and reads all of it lives on; an exception does no harm."""
+    command = [sys.executable, "-P", __file__, str(path), "whole" if whole_log else "part"]
+    try:
+        return subprocess.run(command, capture_output=True, timeout=PATIENCE, check=False).returncode >= 0
+    except subprocess.TimeoutExpired:
+        return False
+    except OSError:  # there is no such interpreter: an application in one file, say
+        return True
+
+
+def _read_all(path: Path, *, whole_log: bool) -> None:
+    connection: Any
+    _database, connection = connect(path, whole_log=whole_log)
+    for name, kind in connection.execute("CALL show_tables() RETURN name, type").get_all():
+        pattern, found = (f"(n:`{name}`)", "n") if kind == "NODE" else (f"()-[r:`{name}`]->()", "r")
+        connection.execute(f"MATCH {pattern} RETURN {found}").get_all()
+
+
+if __name__ == "__main__":
+    try:
+        _read_all(Path(sys.argv[1]), whole_log=sys.argv[2] == "whole")
+    finally:
+        os._exit(0)  # nothing is written on the way out

@@ -1,0 +1,53 @@
+"""The module ontology: its settings and its slot."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+from pydantic import Field, SecretStr, field_validator
+from pydantic_core import PydanticCustomError
+
+import ravestate as rs
+from ravestate.errors import RavestateError
+
+from .memory import Memory
+
+
+class Settings(rs.Settings):
+    """The place of memory, and the types of its nodes."""
+
+    types: tuple[Path, ...] = ()
+    """Your own files of types; they extend the built-in one."""
+    path: Path | None = None
+    """The file of memory. Default: ``ravestate/<agent>/memory.lbug`` in the user's data folder."""
+    agent: Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9._ -]*$")] = "default"
+    """The agent's name: each agent has its own file, unless `path` is given."""
+    url: str | None = None
+    """A server that speaks Bolt and Cypher, in place of a file: ``bolt://localhost:7687``."""
+    user: str = "neo4j"
+    """The user name at the server."""
+    password: SecretStr | None = None
+    """The password at the server. Set it in the environment: ``RAVESTATE_ONTOLOGY_PASSWORD``."""
+    database: str | None = None
+    """The database on the server, for memory alone. Default: the server's default database."""
+    timeout: Annotated[float, Field(gt=0)] = 10.0
+    """Seconds to wait for the server's answers."""
+
+    @field_validator("types")
+    @classmethod
+    def _can_be_read(cls, types: tuple[Path, ...]) -> tuple[Path, ...]:
+        """Report mistakes in the files before anything runs."""
+        from .type_files import types_in
+
+        try:
+            types_in(types)
+        except RavestateError as error:
+            raise PydanticCustomError("types", "{why}", {"why": str(error)}) from None
+        return types
+
+
+module = rs.Module("ontology", settings=Settings)
+
+memory: rs.Slot[Memory | None] = module.slot("memory", None, input=True)
+"""The open memory. None before ``rs.startup``, and if memory cannot be opened."""

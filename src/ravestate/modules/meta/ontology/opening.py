@@ -1,0 +1,63 @@
+"""Open memory where the settings say: in a file or on a server."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Any
+
+from ravestate.modules._folders import user_folder
+
+from .memory import Memory
+from .names import Settings
+from .type_files import types_in
+from .types import Types
+from .worker import StoreWorker
+
+__all__ = ["default_path", "open_memory", "path_of", "types_of"]
+
+
+def default_path(agent: str) -> Path:
+    """Return the file of an agent's memory in the user's data folder."""
+    return user_folder("data") / agent / "memory.lbug"
+
+
+def types_of(settings: Settings) -> Types:
+    """Return the built-in types and the user's; see `types_in`."""
+    return types_in(settings.types)
+
+
+def path_of(settings: Settings) -> Path | None:
+    """Return the file of memory with links resolved; None for a memory on a server."""
+    if settings.url is not None:
+        return None
+    return Path(os.path.realpath((settings.path or default_path(settings.agent)).expanduser()))
+
+
+def open_memory(settings: Settings) -> Memory:
+    """Begin to open memory where the settings say, in its own thread.
+
+    ``memory.opened()`` raises the errors.
+    """
+
+    def read() -> Types:
+        return types_of(settings)
+
+    path = path_of(settings)
+    if path is None:
+        return Memory(StoreWorker(str(settings.url), lambda: _server(settings)), read)
+    return Memory(StoreWorker.shared(str(path), lambda: _file(path)), read)
+
+
+def _file(path: Path) -> Any:
+    from .embedded import EmbeddedStore
+
+    return EmbeddedStore(path)
+
+
+def _server(settings: Settings) -> Any:
+    from .bolt import BoltStore
+
+    assert settings.url is not None  # `open_memory` has checked it
+    password = "" if settings.password is None else settings.password.get_secret_value()
+    return BoltStore(settings.url, settings.user, password, settings.database, settings.timeout)

@@ -1,0 +1,52 @@
+"""The module emotion: its settings, signals and slot."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import Field
+
+import ravestate as rs
+from ravestate.modules import interloc, rawio
+
+from .feeling import Feeling
+
+Probability = Annotated[float, Field(ge=0, le=1)]
+
+
+class Settings(rs.Settings):
+    """The agent's temperament, and its emoji."""
+
+    shy: Probability = 0.1
+    """The probability to be shy when the user talks about the agent."""
+    surprised: Probability = 0.03
+    """The probability to be surprised by a question."""
+    happy: Probability = 0.25
+    """The probability to be happy about a greeting or thanks."""
+    affectionate: Probability = 0.25
+    """The probability to be affectionate at a goodbye."""
+    names: tuple[str, ...] = ()
+    """The agent's names. Default: ``interloc.agent``. "Rosie is clever" means the same as "you are clever"."""
+    emoji: bool = True
+    """Whether feelings show as emoji in ``rawio.output``. Switch it off for an agent with a face or a voice."""
+
+
+module = rs.Module("emotion", requires=[rawio, interloc], settings=Settings)
+
+shy = module.signal("shy")
+"""The agent is shy: the user pays it a compliment, or talks about it."""
+
+surprised = module.signal("surprised")
+"""The agent is surprised."""
+
+happy = module.signal("happy")
+"""The agent is happy, by itself or with its user."""
+
+affectionate = module.signal("affectionate")
+"""The agent likes its user."""
+
+sad = module.signal("sad")
+"""The agent is sad: with its user, or because of an insult."""
+
+felt: rs.Slot[Feeling | None] = module.slot("felt", None, always=True, keep="latest")
+"""The agent's last feeling; None before the first."""

@@ -1,0 +1,17 @@
+"""The module interloc: its slot and its collection."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import ravestate as rs
+
+__all__ = ["agent", "module", "users"]
+
+module = rs.Module("interloc")
+
+agent: rs.Slot[str] = module.slot("agent", "Ravestate", type=str, input=True)
+"""The agent's name. A module that knows better writes it: `agentqa` has the name from the file of the agent's life."""
+
+users: rs.Collection[Any] = module.collection("users", input=True)
+"""The users present: a key that the platform chooses, and the user's name, or None while it is unknown."""

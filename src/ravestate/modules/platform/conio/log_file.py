@@ -1,0 +1,72 @@
+"""The log of a chat on a terminal goes to a file, so that no log line stands between the lines of the chat."""
+
+from __future__ import annotations
+
+import contextlib
+import logging
+import os
+import sys
+from collections.abc import Generator
+from logging.handlers import RotatingFileHandler
+from pathlib import Path
+
+from ravestate.modules._folders import user_folder
+
+__all__ = ["log_file", "log_to_file"]
+
+LARGEST = 1_000_000
+"""Bytes of a log file after which a new one is begun; one old file is kept."""
+
+
+def log_file() -> Path:
+    """Return the file for the log of chats, in the user's folder for state."""
+    return user_folder("state") / "log"
+
+
+@contextlib.contextmanager
+def log_to_file(file: Path) -> Generator[None]:
+    """Write the log to a file while the chat and the log would share a terminal.
+
+    Afterwards the log goes where it went before, and a line on standard error names the file if it got warnings or errors. If
+    either stream is redirected, or the file cannot be written, the log stays as it is.
+    """
+    if not all(stream is not None and stream.isatty() for stream in (sys.stdout, sys.stderr)):
+        yield
+        return
+    try:
+        file.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
+        os.close(os.open(file, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o600))  # for the user's eyes alone
+        handler = RotatingFileHandler(
+            file, maxBytes=LARGEST, backupCount=1, encoding="utf-8", errors="replace"
+        )
+    except OSError:
+        yield
+        return
+    handler.setFormatter(logging.Formatter("%(asctime)s %(levelname)s %(name)s: %(message)s"))
+    warnings = 0
+
+    def count(record: logging.LogRecord) -> bool:
+        nonlocal warnings
+        warnings += record.levelno >= logging.WARNING
+        return True
+
+    handler.addFilter(count)
+    root, stderr = logging.getLogger(), sys.stderr
+    replaced = [other for other in root.handlers if _writes_to_terminal(other)]
+    for other in replaced:
+        root.removeHandler(other)
+    root.addHandler(handler)
+    try:
+        yield
+    finally:
+        root.removeHandler(handler)
+        handler.close()
+        for other in replaced:
+            root.addHandler(other)
+        if warnings:
+            print(f"The log of this chat has {warnings} warning{'s'[: warnings > 1]}: {file}", file=stderr)
+
+
+def _writes_to_terminal(handler: logging.Handler) -> bool:
+    stream = getattr(handler, "stream", None)
+    return stream is not None and stream.isatty()

@@ -1,0 +1,27 @@
+"""The module conio: its settings and its slot."""
+
+from __future__ import annotations
+
+import ravestate as rs
+from ravestate.modules import interloc, rawio
+
+from .console import Console
+
+__all__ = ["Settings", "module", "screen"]
+
+
+class Settings(rs.Settings):
+    """The look of the console, and the data that it keeps."""
+
+    prompt: str = "> "
+    """The text before the line that the user types."""
+    history: bool = True
+    """Whether typed lines are kept from session to session, in the user's folder for state."""
+    name: str | None = None
+    """The name of the user at the console, if it is known."""
+
+
+module = rs.Module("conio", requires=(rawio, interloc), settings=Settings)
+
+screen: rs.Slot[Console | None] = module.slot("screen", None)
+"""The console while it is open."""

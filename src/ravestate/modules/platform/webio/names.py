@@ -1,0 +1,70 @@
+"""The names of `webio`: its settings, its module, and the slot with the visitor's conversation."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING, Annotated
+
+import pydantic
+
+import ravestate as rs
+from ravestate.modules import interloc, rawio
+
+from .serving import serve
+
+if TYPE_CHECKING:
+    from .session import Session
+
+__all__ = ["ORIGIN", "Settings", "module", "page"]
+
+ORIGIN = re.compile(r"https?://[^\s/?#@'\";,*]+")
+"""The origin of a web site: scheme, host and port."""
+
+
+def _origin(text: str) -> str:
+    if ORIGIN.fullmatch(text) is None:
+        raise ValueError("write an origin, e.g. https://museum.example")
+    return text.lower()
+
+
+class Settings(rs.Settings):
+    """Where the server listens, who may connect, and how much it takes."""
+
+    host: str = "127.0.0.1"
+    """The address to listen on. Any address that others can reach needs a token."""
+    port: int = pydantic.Field(8420, ge=0, le=65535)
+    """The port; 0 takes any free one."""
+    token: pydantic.SecretStr | None = None
+    """The secret that each visitor needs, as in a link with ``#token=...``. Set it as ``RAVESTATE_WEBIO_TOKEN``."""
+    origins: tuple[Annotated[str, pydantic.AfterValidator(_origin)], ...] = ()
+    """Web sites that may embed the page, e.g. ``https://museum.example``. Behind a proxy, also the page's own site."""
+    title: str | None = None
+    """The agent's name on the page, by default ``interloc.agent``."""
+    suggestions: tuple[Annotated[str, pydantic.Field(min_length=1, max_length=80)], ...] = pydantic.Field(
+        ("Hello!", "Who are you?", "What can you do?"), max_length=6
+    )
+    """Things to say that the page offers until the visitor has said something."""
+    keep: float = pydantic.Field(600.0, ge=0, allow_inf_nan=False)
+    """Seconds for which the server keeps a conversation after its visitor has disconnected."""
+    sessions: int = pydantic.Field(1000, ge=1)
+    """The most conversations at a time."""
+    per_address: int = pydantic.Field(100, ge=1)
+    """The most connections at a time from one address."""
+
+    @pydantic.field_validator("token")
+    @classmethod
+    def _long_enough(cls, token: pydantic.SecretStr | None) -> pydantic.SecretStr | None:
+        if token is None:
+            return None
+        secret = token.get_secret_value()
+        if len(secret) < 12:
+            raise ValueError("write at least 12 characters, such as secrets.token_urlsafe() makes")
+        if not secret.isprintable():
+            raise ValueError("write no control characters, such as a line feed")
+        return token
+
+
+module = rs.Module("webio", requires=(rawio, interloc), settings=Settings, serve=serve)
+
+page: rs.Slot[Session | None] = module.slot("page", None)
+"""The visitor's conversation of this context; None for a context without a page."""

@@ -1,0 +1,67 @@
+"""The two ways to serve an agent's page: by itself, or as an ASGI application in another one."""
+
+from __future__ import annotations
+
+import asyncio
+import importlib
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+from ravestate.errors import PlatformError
+
+if TYPE_CHECKING:
+    from starlette.applications import Starlette
+    from starlette.routing import BaseRoute
+
+    from ravestate.runtime.agent import Agent
+
+__all__ = ["app", "serve"]
+
+
+async def serve(agent: Agent) -> None:
+    """Serve an agent's page with the settings of ``webio`` until the task is cancelled.
+
+    Raises:
+        PlatformError: The port is in use, a token is missing, or starlette or uvicorn is not installed.
+    """
+    await asyncio.to_thread(_load)  # the imports take a quarter of a second, and other tasks may be running
+    from .server import Server
+
+    async with Server(agent) as server:
+        server.announce()
+        await server.until_failed()
+
+
+def app(agent: Agent, routes: Iterable[BaseRoute] = (), inside: str | None = None) -> Starlette:
+    """Return an agent's page as an ASGI application, to serve or to mount in another application.
+
+    The application's lifespan ends the conversations. A mounted application has no lifespan of its own: enter
+    ``chat.router.lifespan_context(chat)`` in the lifespan of the outer one. The outer server limits the connections.
+
+    Args:
+        agent: An agent with ``webio`` among its modules.
+        routes: More routes beside the page, behind the same checks of host and origin.
+        inside: The path of the board among those routes, e.g. ``board/``.
+
+    Raises:
+        PlatformError: Starlette is not installed.
+
+    Example:
+        ```python
+        from ravestate.runtime.agent import Agent
+
+        chat = webio.app(Agent(webio, my_module))
+        ```
+    """
+    _load()
+    from .application import make_app
+
+    return make_app(agent, routes, inside)
+
+
+def _load() -> None:
+    for name in ("starlette.applications", "uvicorn", "websockets"):
+        try:
+            importlib.import_module(name)
+        except ImportError as error:
+            raise PlatformError(f"webio needs {error.name}: pip install 'ravestate[web]'") from error

@@ -1,0 +1,188 @@
+"""The records of a policy: the numbered form of what a designer declares.
+
+Compiling numbers signals, slots, rules and clauses once, in declaration order, and fills the records in.
+Nothing changes them afterwards, so any number of engines share them. A signal's record lists the needs that
+hear it: a spike costs by what it concerns, never by how many rules there are.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+from ravestate.declare.condition import Holds, Predicate
+from ravestate.declare.rule import Rule
+from ravestate.declare.signal import Signal
+from ravestate.declare.slot import Slot
+
+__all__ = ["Clause", "ClauseView", "Need", "RulePlan", "SignalPlan", "SlotPlan"]
+
+
+@dataclass(frozen=True, slots=True)
+class ClauseView:
+    """A clause as `Policy.clauses` shows it.
+
+    Attributes:
+        signals: The signals of its constraints, as declared.
+        pathways: Its completed pathways (L8): the one with the least information first, then the cheapest.
+            There may be exponentially many; at most 256 are listed.
+        utility: The least self-information among its pathways, in nats (L9).
+    """
+
+    signals: tuple[Signal[Any], ...]
+    pathways: tuple[frozenset[Signal[Any]], ...]
+    utility: float
+
+
+@dataclass(slots=True, eq=False, repr=False)
+class SignalPlan:
+    """A signal: its listeners, and how it is kept."""
+
+    index: int
+    signal: Signal[Any]
+    slot: int | None
+    """The slot that owns the signal, if any."""
+    input: bool
+    """Whether it is an input (L8)."""
+    name: str = field(init=False)
+    keep_latest: bool = field(init=False)
+    limit: int = field(init=False)
+    listeners: tuple[Need, ...] = ()
+    """The needs of rule conditions, in declaration order."""
+    uncontested: tuple[Need, ...] = ()
+    """The listeners that are in none of the contests."""
+    contests: tuple[tuple[Clause, ...], ...] = ()
+    """Groups of clauses of which only one can have a spike, the best clause first."""
+    watchers: tuple[Need, ...] = ()
+    """The needs of `until` conditions (L21)."""
+    retain: float = -1.0
+    """Seconds for which a spike stays in sight of detached needs."""
+
+    def __post_init__(self) -> None:
+        self.name = self.signal.name
+        self.keep_latest = self.signal.keep == "latest"
+        self.limit = self.signal.limit
+
+    def __repr__(self) -> str:
+        return self.name
+
+
+@dataclass(slots=True, eq=False, repr=False)
+class SlotPlan:
+    """A slot and its signals."""
+
+    index: int
+    slot: Slot[Any]
+    signals: tuple[SignalPlan, ...]
+    """In the order of `Slot.signals`: changed first."""
+    name: str = field(init=False)
+    always: bool = field(init=False)
+    is_flag: bool = field(init=False)
+    is_collection: bool = field(init=False)
+    keep_latest: bool = field(init=False)
+    heard: bool = False
+    """Whether any rule hears one of its signals."""
+
+    def __post_init__(self) -> None:
+        self.name = self.slot.name
+        self.always = self.slot.always
+        self.is_flag = self.slot.kind == "flag"
+        self.is_collection = self.slot.kind == "collection"
+        self.keep_latest = self.slot.changed.keep == "latest"
+
+    def __repr__(self) -> str:
+        return self.name
+
+
+@dataclass(slots=True, eq=False, repr=False)
+class Need:
+    """One constraint of a clause; ages in seconds."""
+
+    clause: Clause
+    index: int
+    signal: SignalPlan
+    min_age: float
+    max_age: float
+    detached: bool
+    predicates: tuple[Predicate, ...]
+    bit: int = field(init=False)
+    kin: int = field(init=False)
+    """The bits of the needs that must hold spikes of the same causal group (L12)."""
+
+    def __post_init__(self) -> None:
+        self.bit = self.kin = 1 << self.index
+
+    def __repr__(self) -> str:
+        return f"{self.clause}:{self.signal}"
+
+
+@dataclass(slots=True, eq=False, repr=False)
+class Clause:
+    """A conjunction by which a rule may fire."""
+
+    index: int
+    number: int
+    """Its place within its rule."""
+    rule: RulePlan
+    source: str
+    """The conjunction as text."""
+    needs: tuple[Need, ...] = ()
+    guards: tuple[tuple[SlotPlan, Holds], ...] = ()
+    signals: tuple[Signal[Any], ...] = ()
+    """The signals of its constraints, as declared."""
+    least: int = 0
+    """The pathway with the least information, as bits of places (`Completion`)."""
+    utility: float = 0.0
+    """The information of that pathway, in nats (L9)."""
+    base: float = 0.0
+    """Its utility, or `NO_INFORMATION`, times the rule's weight."""
+    all_bits: int = 0
+    firm_bits: int = 0
+    """The bits of its non-detached needs."""
+    asks_detached: bool = False
+    """Whether some, but not all, of its needs are detached."""
+    simple: bool = False
+    """Whether it has one need of any age and no guard: an activation with a spike is ready."""
+    reflexive: bool = False
+    """Whether it hears the built-in flags; its activations change neither of them (L22)."""
+    cyclic: bool = False
+    """Whether its rule may cause one of its own needs without detachment."""
+
+    def __repr__(self) -> str:
+        return self.rule.name if len(self.rule.clauses) <= 1 else f"{self.rule.name}[{self.number}]"
+
+
+@dataclass(slots=True, eq=False, repr=False)
+class RulePlan:
+    """A rule, its numbers, and the indices of the slots and signals that it names."""
+
+    index: int
+    rule: Rule[Any, Any]
+    name: str = field(init=False)
+    detached: bool = field(init=False)
+    background: bool = field(init=False)
+    interruptible: bool = field(init=False)
+    """Whether a run can be cancelled; a thread cannot be stopped."""
+    weight: float = 1.0
+    cooldown: float = 0.0
+    patience: float | None = None
+    timeout: float | None = None
+    slots: tuple[int, ...] = ()
+    """The slots that it writes."""
+    slotset: frozenset[int] = frozenset()
+    readable: frozenset[int] = frozenset()
+    """The slots that it reads or writes."""
+    emits: frozenset[int] = frozenset()
+    raises: tuple[int, ...] = ()
+    """The signals that it emits, and the signals of the slots that it writes (L7)."""
+    clauses: tuple[Clause, ...] = ()
+    until: tuple[Clause, ...] = ()
+
+    def __post_init__(self) -> None:
+        self.name = self.rule.name
+        self.detached = self.rule.detached
+        self.background = self.rule.background
+        self.interruptible = self.rule.is_async
+
+    def __repr__(self) -> str:
+        return self.name

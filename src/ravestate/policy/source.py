@@ -1,0 +1,172 @@
+"""The source of a rule's function: reads, writes and emits that its declaration lacks, and a forgotten ``await``.
+
+A name in the source counts only if the function's globals or its closure hold a slot or a signal by that name.
+Names that the function binds itself, and everything else, are left to the run (L3).
+"""
+
+from __future__ import annotations
+
+import ast
+import contextlib
+import inspect
+import textwrap
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, field
+from types import FunctionType, ModuleType
+from typing import Any
+
+from ravestate.declare.signal import Signal
+from ravestate.declare.slot import Slot
+from ravestate.declare.wording import spelt
+from ravestate.policy.model import RulePlan
+
+__all__ = ["Acts", "Source", "acts_of", "undeclared"]
+
+OWNERS: tuple[type[Any], ...] = (ModuleType, Slot)
+"""Values whose attributes have no side effects, apart from a lazy import."""
+
+Source = Callable[[Any], str]
+"""A function that returns the source text of a function, such as ``inspect.getsource``."""
+
+
+@dataclass(slots=True)
+class Acts:
+    """The acts in a rule's function that could be resolved; for each slot or signal its first line."""
+
+    reads: dict[Slot[Any], int] = field(default_factory=dict[Slot[Any], int])
+    writes: dict[Slot[Any], int] = field(default_factory=dict[Slot[Any], int])
+    emits: dict[Signal[Any], int] = field(default_factory=dict[Signal[Any], int])
+    payloads: dict[Signal[Any], int] = field(default_factory=dict[Signal[Any], int])
+    forgotten: dict[str, int] = field(default_factory=dict[str, int])
+    """Methods of the context that the function calls without ``await``."""
+
+
+def acts_of(rule: RulePlan, source: Source) -> Acts:
+    """Find the acts of a rule's function; none if there is no source, or if a decorator stands around the function."""
+    acts = Acts()
+    function = rule.rule.function
+    if not isinstance(function, FunctionType) or hasattr(function, "__wrapped__"):
+        return acts
+    tree = None
+    with contextlib.suppress(OSError, TypeError, SyntaxError):
+        tree = ast.parse(textwrap.dedent(source(function)))
+    if tree is None or not tree.body or not isinstance(tree.body[0], (ast.FunctionDef, ast.AsyncFunctionDef)):
+        return acts
+    reader = _Reader(function, tree.body[0])
+    for node in sorted(
+        ast.walk(tree.body[0]), key=lambda node: (getattr(node, "lineno", 0), getattr(node, "col_offset", 0))
+    ):
+        reader.note(node, acts)
+    return acts
+
+
+def undeclared(rule: RulePlan, acts: Acts) -> Iterator[str]:
+    """Yield, in words, each act that the rule does not declare, and the argument to write instead."""
+    declared = rule.rule
+    kinds: tuple[tuple[str, dict[Any, int], Iterable[Any], Iterable[Any]], ...] = (
+        ("reads", acts.reads, declared.reads, (*declared.reads, *declared.writes, *acts.writes)),
+        ("writes", acts.writes, declared.writes, declared.writes),
+        ("emits", acts.emits, declared.emits, declared.emits),
+    )
+    home = rule.name.partition(":")[0]
+    for what, found, own, allowed in kinds:
+        known = set(allowed)
+        new = {thing: line for thing, line in found.items() if thing not in known}
+        if new:
+            names = [spelt(thing.name, home) for thing in (*own, *new)]
+            argument = names[0] if len(names) == 1 else f"({', '.join(names)})"
+            places = ", ".join(f"{thing.name} (line {line})" for thing, line in new.items())
+            yield f"{what} {places} without declaring it: write {what}={argument}"
+    heard = {need.signal.signal for clause in rule.clauses for need in clause.needs}
+    for signal, line in acts.payloads.items():
+        if signal not in heard:
+            yield f"asks for the payload of {signal} (line {line}), which its condition lacks: write when=... | {spelt(signal.name, home)}"
+
+
+class _Reader:
+    """Resolves the names of one function."""
+
+    def __init__(self, function: FunctionType, tree: ast.FunctionDef | ast.AsyncFunctionDef) -> None:
+        arguments = [*tree.args.posonlyargs, *tree.args.args]
+        self._first = function.__code__.co_firstlineno - 1
+        self._names = dict(function.__globals__)
+        for name, cell in zip(function.__code__.co_freevars, function.__closure__ or (), strict=True):
+            with contextlib.suppress(ValueError):  # a cell that is still empty
+                self._names[name] = cell.cell_contents
+        self._context = arguments[0].arg if arguments else ""
+        for node in ast.walk(tree):
+            for name in _bound(node):
+                if name == self._context and node is not arguments[0]:
+                    self._context = ""  # another value takes its name
+                self._names.pop(name, None)
+
+    def note(self, node: ast.AST, acts: Acts) -> None:
+        """Enter the act that a node of the function is, if it is one."""
+        match node:
+            case ast.Subscript(value=ast.Name(id=self._context), slice=slot, ctx=ast.Load()):
+                self._enter(slot, Slot, acts.reads)
+            case ast.Subscript(value=ast.Name(id=self._context), slice=slot, ctx=ast.Store()):
+                self._enter(slot, Slot, acts.writes)
+            case ast.Call(
+                func=ast.Attribute(
+                    value=ast.Subscript(value=ast.Name(id=self._context), slice=slot), attr="add" | "remove"
+                )
+            ):
+                if getattr(self._resolved(slot), "kind", "") == "collection":
+                    self._enter(slot, Slot, acts.writes)
+            case ast.Call(
+                func=ast.Attribute(value=ast.Name(id=self._context), attr="emit"), args=[signal, *_]
+            ):
+                self._enter(signal, Signal, acts.emits)
+            case ast.Call(
+                func=ast.Attribute(value=ast.Name(id=self._context), attr="payload"), args=[signal, *_]
+            ):
+                self._enter(signal, Signal, acts.payloads)
+            case ast.Expr(
+                value=ast.Call(
+                    func=ast.Attribute(value=ast.Name(id=self._context), attr="sleep" | "quiet" as method)
+                )
+            ):
+                acts.forgotten.setdefault(method, self._first + node.lineno)
+            case _:
+                pass
+
+    def _enter(self, expression: ast.expr, kind: type[Any], found: dict[Any, int]) -> None:
+        thing = self._resolved(expression)
+        if isinstance(thing, kind):
+            found.setdefault(thing, self._first + expression.lineno)
+
+    def _resolved(self, expression: ast.expr) -> object:
+        match expression:
+            case ast.Name(id=name):
+                return self._names.get(name)
+            case ast.Attribute(value=inner, attr=name):
+                owner = self._resolved(inner)
+                if not isinstance(owner, OWNERS):
+                    return inspect.getattr_static(owner, name, None)
+                with contextlib.suppress(Exception):  # a lazy import may fail
+                    return getattr(owner, name)
+                return None
+            case _:
+                return None
+
+
+def _bound(node: ast.AST) -> Iterator[str]:
+    """Yield the names that a node binds within a function."""
+    match node:
+        case ast.Name(id=name, ctx=ast.Store() | ast.Del()) | ast.arg(arg=name):
+            yield name
+        case ast.alias(name=name, asname=other):
+            yield other or name.partition(".")[0]
+        case (
+            ast.FunctionDef(name=str(name))
+            | ast.AsyncFunctionDef(name=str(name))
+            | ast.ClassDef(name=str(name))
+            | ast.ExceptHandler(name=str(name))
+            | ast.MatchAs(name=str(name))
+            | ast.MatchStar(name=str(name))
+            | ast.MatchMapping(rest=str(name))
+        ):
+            yield name
+        case _:
+            pass

@@ -1,0 +1,85 @@
+"""Warnings of rules that block the loop."""
+
+from __future__ import annotations
+
+import logging
+from time import perf_counter, thread_time
+from typing import Any
+
+from ravestate.declare.rule import Rule
+
+try:
+    import resource
+except ImportError:  # Windows
+    resource = None
+
+__all__ = ["BLOCKING", "StepTimer"]
+
+BLOCKING = 0.1
+"""Seconds that one step of an async rule may take before a warning names it: nothing else runs meanwhile."""
+
+FRESH = 0.01
+"""Seconds for which one reading of the thread's CPU time serves as the start of further steps."""
+
+ASLEEP = 0.05
+"""Mean seconds per sleep above which a step counts as sleeping. A thread that waits for the interpreter's lock sleeps
+again and again, for about 5 ms each time."""
+
+log = logging.getLogger("ravestate")
+
+
+class StepTimer:
+    """Measures the steps of async rules, and warns of those that block the loop; used on the loop's thread alone.
+
+    A step blocks the loop if it computes, or sleeps, for longer than `BLOCKING`. Time in which the thread waits for a
+    processor or for the interpreter's lock does not count: a busy machine raises no alarm. The system counts how often
+    the thread slept by its own choice, and how often it had to make room for another. If it had to, the step gets the
+    benefit of the doubt. On systems without these counts (Windows, macOS), only computing counts.
+
+    Reading the CPU time costs as much as a short rule. One reading serves all steps that begin within `FRESH` seconds,
+    so a reported time may be that much too long.
+    """
+
+    __slots__ = ("_cpu", "_fresh_until", "_sleeps")
+
+    def __init__(self) -> None:
+        self._fresh_until = 0.0
+        self._cpu = 0.0
+        self._sleeps = 0, 0
+
+    def begin(self) -> float:
+        """Return the time at which a step begins, for `end`."""
+        now = perf_counter()
+        if now > self._fresh_until:
+            self._fresh_until = now + FRESH
+            self._cpu = thread_time()
+            self._sleeps = _sleeps()
+        return now
+
+    def end(self, rule: Rule[Any, Any], began: float) -> None:
+        """Warn if the step that began then has blocked the loop."""
+        took = perf_counter() - began
+        if took > BLOCKING:
+            seconds, manner = self._judge(took)
+            if seconds > BLOCKING:
+                log.warning(
+                    "rule %s (%s) blocked the loop for %.0f ms by %s: make it a plain function (it then runs in a "
+                    "thread), or await what takes so long",
+                    *(rule.name, rule.origin, 1000 * seconds, manner),
+                )
+
+    def _judge(self, took: float) -> tuple[float, str]:
+        computed = min(took, thread_time() - self._cpu)
+        if computed > BLOCKING:
+            return computed, "computing"
+        chosen, forced = (now - before for now, before in zip(_sleeps(), self._sleeps, strict=True))
+        slept = took - computed
+        return slept if chosen and not forced and slept / chosen > ASLEEP else 0.0, "sleeping"
+
+
+def _sleeps() -> tuple[int, int]:
+    """Return how often this thread slept by its own choice, and how often it made room for another."""
+    if resource is None or not hasattr(resource, "RUSAGE_THREAD"):
+        return 0, 0
+    usage = resource.getrusage(resource.RUSAGE_THREAD)
+    return usage.ru_nvcsw, usage.ru_nivcsw

@@ -1,0 +1,29 @@
+"""Functions through which another part of the library follows a context."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from ravestate.engine.effects import Ended
+
+__all__ = ["Hooks"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Hooks:
+    """Functions that a context calls on its loop; `Context.start` takes them.
+
+    Attributes:
+        on_ended: Called with each run that has been settled.
+        on_failed: Called with the name of each rule that fails, and with its exception.
+        on_endless: Called with the rule that ran last, if an instant of virtual time does not end. The context's time
+            is virtual if this is given; plain functions then run one after another, so that threads do not race.
+        listeners: Functions by the names of signals. Each is called with the payload of every spike of its signal.
+    """
+
+    on_ended: Callable[[Ended], None] | None = None
+    on_failed: Callable[[str, BaseException], None] | None = None
+    on_endless: Callable[[str], None] | None = None
+    listeners: Mapping[str, Callable[[Any], None]] = field(default_factory=dict[str, Callable[[Any], None]])

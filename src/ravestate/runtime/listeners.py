@@ -1,0 +1,64 @@
+"""Functions and tasks that wait for the spikes of a signal."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from ravestate.engine.effects import Spiked
+
+__all__ = ["Listeners"]
+
+
+class Listeners:
+    """The listeners of one context, by the names of their signals.
+
+    Args:
+        watched: The engine's table of signals whose spikes it reports.
+        functions: Functions that stay for good. Each is called with the payload of every spike of its signal.
+    """
+
+    def __init__(self, watched: dict[str, int], functions: Mapping[str, Callable[[Any], None]]) -> None:
+        self._watched = watched
+        self._functions = functions
+        self._futures: dict[str, list[asyncio.Future[Any]]] = {}
+        watched.update(dict.fromkeys(functions, 1))
+
+    async def next(self, signal: str) -> Any:
+        """Wait for the next spike of a signal, and return its payload."""
+        future: asyncio.Future[Any] = asyncio.get_running_loop().create_future()
+        self._futures.setdefault(signal, []).append(future)
+        self._watched[signal] = 1
+        try:
+            return await future
+        finally:
+            waiting = self._futures.get(signal, [])
+            if future in waiting:
+                waiting.remove(future)
+                self._forget(signal)
+
+    def tell(self, spiked: Spiked) -> None:
+        """Call the signal's function, and wake the tasks that wait for the signal."""
+        function = self._functions.get(spiked.signal)
+        if function is not None:
+            function(spiked.payload)
+        futures = self._futures.pop(spiked.signal, [])
+        self._forget(spiked.signal)
+        for future in futures:
+            if not future.done():
+                future.set_result(spiked.payload)
+
+    def fail(self, error: Callable[[str], BaseException]) -> None:
+        """Wake all tasks that wait, each with an error made of its signal's name."""
+        for signal, futures in self._futures.items():
+            for future in futures:
+                if not future.done():
+                    future.set_exception(error(signal))
+        self._futures.clear()
+
+    def _forget(self, signal: str) -> None:
+        if not self._futures.get(signal):
+            self._futures.pop(signal, None)
+            if signal not in self._functions:
+                self._watched.pop(signal, None)

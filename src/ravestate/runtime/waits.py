@@ -1,0 +1,97 @@
+"""Tasks that wait until an engine reaches some state."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+from collections.abc import Callable, Mapping
+
+from ravestate.engine.activation import NEVER, Activation
+from ravestate.engine.engine import Engine
+
+__all__ = ["Waits"]
+
+
+class Waits:
+    """The tasks that wait for a state of one engine.
+
+    Args:
+        engine: The engine.
+        is_busy: Whether effects are still to be performed.
+        schedule: Make the loop perform effects, and `check` afterwards.
+    """
+
+    def __init__(self, engine: Engine, is_busy: Callable[[], bool], schedule: Callable[[], None]) -> None:
+        self.futures: dict[asyncio.Future[None], Callable[[], bool]] = {}
+        """For each task that waits, the condition that it waits for."""
+        self._engine = engine
+        self._is_busy = is_busy
+        self._schedule = schedule
+        self._ended = False
+
+    async def until(self, reached: Callable[[], bool]) -> None:
+        """Wait until all effects are performed and `reached` is true. Only effects and ends of runs may make it true."""
+        if not self._ended and (self._is_busy() or not reached()):
+            future: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+            self.futures[future] = reached
+            self._schedule()
+            await future
+
+    def check(self) -> None:
+        """Wake the tasks whose condition is true now."""
+        for future in [future for future, reached in self.futures.items() if reached()]:
+            del self.futures[future]
+            if not future.done():
+                future.set_result(None)
+
+    def end(self, error: BaseException | None = None) -> None:
+        """Wake all tasks, with an error if there is one. Further tasks do not wait."""
+        self._ended = True
+        for future in self.futures:
+            if future.done():
+                continue
+            if error is None:
+                future.set_result(None)
+            else:
+                future.set_exception(error)
+        self.futures.clear()
+
+    def is_quiet(self, slot: str | None = None) -> bool:
+        """Return whether no foreground rule runs or waits; with a slot, no such rule that may lead to a write of it."""
+        alive = [activation.clause.rule for activation in self.alive().values()]
+        if slot is not None and alive:
+            policy = self._engine.policy
+            leading = policy.causes.ancestors(policy.slot_of[slot].signals[0].index)
+            alive = [rule for rule in alive if rule.index in leading]
+        return all(rule.background for rule in alive)
+
+    def alive(self) -> dict[int, Activation]:
+        """Return the activations that run, or are ready and wait, by their numbers."""
+        return {a.id: a for a in (*self._engine.running.values(), *self._engine.waiting)}
+
+    async def until_others_end(self, known: Mapping[int, Activation], seconds: float) -> None:
+        """Wait until no activation but the `known` ones runs or waits, and no spike of ``rs.shutdown`` has yet to age.
+
+        A rule in the background that was at work before may begin again for ever. It counts only if it handles
+        ``rs.shutdown``.
+
+        Args:
+            known: Activations that do not count, by their numbers.
+            seconds: How long to wait at most.
+        """
+        engine = self._engine
+        shutdown = engine.policy.signal_of["core:shutdown"].index
+        loops = {a.clause.rule.name for a in known.values() if a.clause.rule.background}
+
+        def counts(activation: Activation) -> bool:
+            return activation.clause.rule.name not in loops or any(
+                spike is not None and spike.comes_from("core:shutdown") for spike in activation.spikes
+            )
+
+        def done() -> bool:
+            if any(holder.ripens != NEVER for s in engine.live.get(shutdown, ()) for holder in s.holders):
+                return False
+            return not any(n not in known and counts(a) for n, a in self.alive().items())
+
+        with contextlib.suppress(TimeoutError):
+            await asyncio.wait_for(self.until(done), seconds)

@@ -1,0 +1,112 @@
+"""Reading YAML that users write: bounded in depth and in size, with the file and line of every fault.
+
+A few lines of aliases can stand for billions of values ("billion laughs"), and deep nesting exhausts the stack.
+Both end at once here.
+"""
+
+from __future__ import annotations
+
+from typing import Any, cast
+
+import yaml
+from yaml.composer import Composer
+
+from ravestate.errors import DeclarationError
+
+__all__ = ["compose_yaml", "load_yaml"]
+
+DEEPEST = 50
+"""Levels of nesting that a text may have."""
+
+LARGEST = 100_000
+"""Values that a text may have, each alias counted with all that it stands for."""
+
+
+def load_yaml(text: str, name: str) -> Any:
+    """Return the value of a YAML text: mappings, lists, texts, numbers and dates; `None` if it is empty.
+
+    Args:
+        text: The text.
+        name: The name of its file, for messages.
+
+    Raises:
+        DeclarationError: The text is not valid YAML, nests too deeply, or stands for too many values.
+
+    Example:
+        >>> load_yaml("modules: [rawio, idle]", "agent.yaml")
+        {'modules': ['rawio', 'idle']}
+    """
+    try:
+        return yaml.load(text, _SafeLoader)
+    except yaml.YAMLError as error:
+        raise _fault(error, text, name) from None
+    except ValueError as error:  # the 30th of February, a number of 5,000 digits
+        raise DeclarationError(f"{name}: not valid YAML ({error})") from None
+
+
+def compose_yaml(text: str, name: str) -> yaml.Node | None:
+    """Return the nodes of a YAML text, which know their lines; every scalar is text. `None` if it is empty.
+
+    Args:
+        text: The text.
+        name: The name of its file, for messages.
+
+    Raises:
+        DeclarationError: As for `load_yaml`.
+    """
+    try:
+        return yaml.compose(text, Loader=_TextLoader)
+    except yaml.YAMLError as error:
+        raise _fault(error, text, name) from None
+
+
+class _Bounded(Composer):
+    """A composer that counts levels and values."""
+
+    depth = count = 0
+
+    def compose_node(self, parent: yaml.Node | None, index: int) -> yaml.Node | None:
+        event = cast("Any", self).peek_event()  # of the parser, which a loader mixes in
+        sizes: dict[object, int] = self.__dict__.setdefault("sizes", {})  # of finished nodes, by anchor
+        before = self.count
+        self.depth += 1
+        if self.depth > DEEPEST:
+            raise _LimitError(f"nested more than {DEEPEST} levels deep", event)
+        node = super().compose_node(parent, index)
+        self.depth -= 1
+        if not isinstance(event, yaml.AliasEvent):
+            self.count += 1
+            sizes[event.anchor] = self.count - before
+        elif event.anchor in sizes:
+            self.count += sizes[event.anchor]
+        else:
+            raise _LimitError(f"alias *{event.anchor} refers to itself", event)
+        if self.count > LARGEST:
+            raise _LimitError(f"more than {LARGEST:,} values once the aliases are followed", event)
+        return node
+
+
+class _SafeLoader(_Bounded, yaml.SafeLoader):
+    pass
+
+
+class _TextLoader(_Bounded, yaml.BaseLoader):
+    pass
+
+
+class _LimitError(yaml.MarkedYAMLError):
+    def __init__(self, problem: str, event: Any) -> None:
+        super().__init__(None, None, problem, event.start_mark)
+
+
+def _fault(error: yaml.YAMLError, text: str, name: str) -> DeclarationError:
+    if not isinstance(error, yaml.MarkedYAMLError):  # it has a position instead of a mark
+        line = text.count("\n", 0, getattr(error, "position", 0)) + 1
+        return DeclarationError(f"{name}:{line}: not valid YAML (a control character)")
+    mark = error.problem_mark or error.context_mark
+    place = name if mark is None else f"{name}:{mark.line + 1}"
+    if isinstance(error, _LimitError):
+        return DeclarationError(f"{place}: {error.problem}")
+    reason = ", ".join(filter(None, (error.context, error.problem)))
+    hint = "A text with : or # or braces in front wants quotes"
+    return DeclarationError(f"{place}: not valid YAML ({reason}). {hint}")

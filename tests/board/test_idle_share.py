@@ -1,0 +1,64 @@
+"""How much time a process has to spare: a starved one has none."""
+
+from pathlib import Path
+
+import pytest
+
+from ravestate.board import idle_share
+from ravestate.board.idle_share import IdleShare
+
+
+class Clocks:
+    """Three clocks (seconds), which the test sets forward."""
+
+    passed = computed = kept = 0.0
+
+    def on(self, passed: float, computed: float, kept: float = 0.0) -> None:
+        self.passed += passed
+        self.computed += computed
+        self.kept += kept
+
+
+@pytest.fixture
+def clocks(monkeypatch: pytest.MonkeyPatch) -> Clocks:
+    clocks = Clocks()
+    monkeypatch.setattr(idle_share, "perf_counter", lambda: clocks.passed)
+    monkeypatch.setattr(idle_share, "process_time", lambda: clocks.computed)
+    monkeypatch.setattr(idle_share, "_kept_waiting", lambda: clocks.kept)
+    return clocks
+
+
+def test_what_was_not_computed_is_to_spare(clocks: Clocks) -> None:
+    spare = IdleShare()
+    clocks.on(2.0, computed=0.5)
+    assert spare.share() == 0.75
+    clocks.on(1.0, computed=1.0)
+    assert spare.share() == 0.0  # since it was last asked
+
+
+def test_a_process_that_other_programs_keep_waiting_has_nothing_to_spare(clocks: Clocks) -> None:
+    spare = IdleShare()
+    clocks.on(3.0, computed=1.0, kept=2.0)
+    assert spare.share() == 0.0
+    clocks.on(4.0, computed=1.0, kept=1.0)
+    assert spare.share() == 0.5
+
+
+def test_several_threads_at_work_leave_nothing_to_spare(clocks: Clocks) -> None:
+    spare = IdleShare()
+    clocks.on(1.0, computed=1.8)
+    assert spare.share() == 0.0
+    assert spare.share() == 0.0  # no time has passed
+
+
+@pytest.mark.parametrize(
+    ("told", "seconds"), [("5000000000 1500000000 7\n", 1.5), ("", 0.0), ("5 x 7", 0.0), (None, 0.0)]
+)
+def test_a_system_that_does_not_tell_is_taken_to_have_kept_nobody_waiting(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, told: str | None, seconds: float
+) -> None:
+    file = tmp_path / "schedstat"
+    if told is not None:
+        file.write_text(told)
+    monkeypatch.setattr(idle_share, "SCHEDULE", str(file))
+    assert idle_share._kept_waiting() == seconds

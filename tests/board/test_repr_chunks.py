@@ -1,0 +1,224 @@
+"""A repr in pieces: the same text as Python's own, and no more of it than is asked for."""
+
+import dataclasses
+from collections import Counter, OrderedDict, defaultdict, deque
+from collections.abc import Iterator
+from itertools import islice
+from types import MappingProxyType
+from typing import Any, NamedTuple
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from ravestate.board.repr_chunks import DEEPEST, repr_chunks
+
+
+class Pair(NamedTuple):
+    left: Any
+    right: Any
+
+
+class Curt(NamedTuple):
+    left: Any
+
+    def __repr__(self) -> str:
+        return "curt"
+
+
+@dataclasses.dataclass(frozen=True)
+class Point:
+    x: Any
+    hidden: Any = dataclasses.field(default=None, repr=False)
+
+
+@dataclasses.dataclass
+class Own:
+    x: Any
+
+    def __repr__(self) -> str:
+        return "mine"
+
+
+@dataclasses.dataclass
+class Box:
+    x: Any
+
+
+class Tags(set[Any]):
+    pass
+
+
+class Row(list[Any]):
+    pass
+
+
+HASHABLE = st.recursive(
+    st.none() | st.integers() | st.floats(allow_nan=False) | st.text() | st.binary(),
+    lambda inner: st.tuples(inner, inner) | st.frozensets(inner, max_size=3) | st.builds(Point, inner),
+    max_leaves=5,
+)
+VALUES = st.recursive(
+    HASHABLE,
+    lambda inner: (
+        st.lists(inner, max_size=3)
+        | st.dictionaries(HASHABLE, inner, max_size=3)
+        | st.sets(HASHABLE, max_size=3)
+        | st.builds(Pair, inner, inner)
+        | st.builds(Point, inner)
+        | st.builds(Own, inner)
+        | st.builds(Curt, inner)
+        | st.builds(Row, st.lists(inner, max_size=2))
+        | st.lists(inner, max_size=3).map(deque)
+        | st.builds(deque[Any], st.lists(inner, max_size=3), st.integers(0, 3))
+        | st.dictionaries(HASHABLE, inner, max_size=3).map(OrderedDict)
+        | st.dictionaries(HASHABLE, inner, max_size=3).map(lambda items: defaultdict(list, items))
+    ),
+    max_leaves=12,
+)
+
+
+@given(VALUES)
+def test_it_is_what_python_says(value: object) -> None:
+    assert "".join(repr_chunks(value)) == repr(value)
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        ((), "()"),
+        ((1,), "(1,)"),
+        (set[int](), "set()"),
+        (frozenset[int](), "frozenset()"),
+        (Tags({1}), "Tags({1})"),
+        (bytearray(b"x"), "bytearray(b'x')"),
+        (deque([1]), "deque([1])"),
+        (deque([1], maxlen=3), "deque([1], maxlen=3)"),
+        (deque[int](maxlen=0), "deque([], maxlen=0)"),
+        (defaultdict(int, {1: 2}), "defaultdict(<class 'int'>, {1: 2})"),
+        (defaultdict[int, int](), "defaultdict(None, {})"),
+        (Counter("aab"), "Counter({'a': 2, 'b': 1})"),
+        (Counter[str](), "Counter()"),
+        (MappingProxyType({1: Own(2)}), "mappingproxy({1: mine})"),
+        (Pair(1, [object]), "Pair(left=1, right=[<class 'object'>])"),
+    ],
+)
+def test_what_is_said_of_containers(value: object, text: str) -> None:
+    assert "".join(repr_chunks(value)) == repr(value) == text
+
+
+ORDERED: list[OrderedDict[Any, Any]] = [
+    OrderedDict({1: "a", 2: Own(1)}),
+    OrderedDict(),
+    OrderedDict({1: {2: 3}}),
+]
+
+
+@pytest.mark.parametrize("value", ORDERED)
+def test_what_python_says_otherwise_from_3_12_on(value: object) -> None:
+    assert "".join(repr_chunks(value)) == repr(value)
+
+
+class Sly(list[Any]):
+    def __iter__(self) -> Iterator[Any]:
+        yield 99
+
+    def __len__(self) -> int:
+        raise RuntimeError("no")
+
+
+class SlyText(str):
+    __slots__ = ()
+
+    def __getitem__(self, key: Any) -> str:
+        raise RuntimeError("no")
+
+
+class SlyDict(dict[Any, Any]):
+    def items(self) -> Any:
+        raise RuntimeError("no")
+
+
+class Bytes(bytearray):
+    pass
+
+
+@dataclasses.dataclass(repr=False, frozen=True)
+class Further(Point):
+    y: Any = 0
+
+
+@pytest.mark.parametrize(
+    "value", [Sly([1, 2]), SlyText("x"), SlyDict({1: 2}), Bytes(b"x"), Further(1, 2, 3)], ids=repr
+)
+def test_what_is_made_from_pythons_own_is_shown_by_what_it_holds(value: object) -> None:
+    assert "".join(repr_chunks([value])) == repr([value])
+
+
+def test_of_things_that_are_counted_the_first_comes_first() -> None:
+    assert "".join(repr_chunks(Counter("abb"))) == "Counter({'a': 1, 'b': 2})"
+
+
+def test_what_is_within_itself_is_left_out_as_python_does() -> None:
+    inner: list[Any] = []
+    row: deque[Any] = deque([inner], maxlen=3)
+    ordered: OrderedDict[int, Any] = OrderedDict({1: inner})
+    default: defaultdict[int, Any] = defaultdict(None, {1: inner})
+    for value in ((inner,), (1, inner), row, ordered, default, Box(inner), {1: inner}):
+        inner[:] = [value]
+        assert "".join(repr_chunks(value)) == repr(value)
+
+
+def test_what_is_within_itself_is_said_once() -> None:
+    loop: list[Any] = [1]
+    loop += [loop, {2: loop}]
+    assert "".join(repr_chunks(loop)) == repr(loop) == "[1, [...], {2: [...]}]"
+
+
+def test_what_is_too_deep_is_left_out() -> None:
+    deep: list[Any] = []
+    for _ in range(100_000):
+        deep = [deep]
+    assert "".join(repr_chunks(deep)) == "[" * (DEEPEST + 2) + "..." + "]" * (DEEPEST + 2)
+
+
+class Loud:
+    def __repr__(self) -> str:
+        raise RuntimeError("no")
+
+
+def test_what_fails_is_told_in_its_place() -> None:
+    assert "".join(repr_chunks([1, Loud()])) == "[1, <Loud whose repr fails: RuntimeError>]"
+
+
+class Watched:
+    """Counts how often it is asked for its repr."""
+
+    asked = 0
+
+    def __repr__(self) -> str:
+        Watched.asked += 1
+        return "w"
+
+
+def things() -> Iterator[Watched]:
+    return (Watched() for _ in range(1000))
+
+
+@pytest.mark.parametrize(
+    "value",
+    [
+        list(things()), tuple(things()), set(things()), frozenset(things()), deque(things()), Point(set(things())),
+        dict(enumerate(things())), dict.fromkeys(things()), [Pair(0, set(things()))],
+        MappingProxyType(dict.fromkeys(things())), Counter(things()), {1: tuple(things())}, Tags(things()),
+    ],
+    ids=lambda value: type(value).__name__,
+)  # fmt: skip
+def test_no_more_is_made_than_is_taken(value: object) -> None:
+    Watched.asked = 0
+    list(islice(repr_chunks(value), 20))
+    assert 0 < Watched.asked <= 20
+
+
+def test_a_huge_text_is_cut_before_it_is_spelt() -> None:
+    assert len("".join(repr_chunks(["x" * 10**7, b"x" * 10**7]))) < 250_000

@@ -1,0 +1,48 @@
+"""What an inspector does to a conversation, and who asked for it being gone."""
+
+import asyncio
+import contextlib
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+from board.looking import in_virtual_time, passing
+from ravestate.board.source import _outside_of_any_task  # pyright: ignore[reportPrivateUsage]
+
+
+def fail() -> None:
+    raise ValueError("no")
+
+
+@in_virtual_time
+async def test_what_is_called_outside_of_any_task_answers_who_asked() -> None:
+    assert await _outside_of_any_task(asyncio.current_task) is None
+    with pytest.raises(ValueError, match="no"):
+        await _outside_of_any_task(fail)
+
+
+@pytest.mark.parametrize("work", [int, fail], ids=["done", "failed"])
+@pytest.mark.parametrize("by_itself", [False, True], ids=["before", "by it"])
+def test_who_asked_may_be_gone_when_it_is_done(work: Callable[[], object], by_itself: bool) -> None:
+    @in_virtual_time
+    async def test() -> None:
+        said: list[Any] = []
+        asyncio.get_running_loop().set_exception_handler(lambda _, context: said.append(context))
+        called: list[bool] = []
+
+        def call() -> object:
+            called.append(True)
+            if by_itself:
+                asking.cancel()
+            return work()
+
+        asking = asyncio.create_task(_outside_of_any_task(call))
+        if not by_itself:  # after it has asked, and before it is answered
+            asyncio.get_running_loop().call_soon(asking.cancel)
+        await passing(1)
+        with contextlib.suppress(asyncio.CancelledError):
+            await asking
+        assert (called, said, asking.cancelled()) == ([True], [], True)
+
+    test()

@@ -1,0 +1,77 @@
+"""Conflict sets: with and without a trace the same happens."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+import ravestate as rs
+from ravestate.testing import simulate
+
+pytestmark = pytest.mark.parametrize("trace", [True, False])
+
+
+def test_a_rule_of_two_clauses_gives_a_spike_up_for_both(trace: bool) -> None:
+    m = rs.Module("m")
+    a, out, ran = m.signal("a"), m.slot("out", ""), list[str]()
+
+    @m.rule(when=a.where(lambda _: True) | a, writes=out)
+    async def asks(ctx: Any) -> rs.Resign:
+        ran.append("asks")
+        return rs.Resign("no")
+
+    @m.rule(when=a, writes=out, weight=0.5)
+    async def fallback(ctx: Any) -> None:
+        ctx[out] = "fallback"
+
+    with simulate(m, trace=trace) as sim:
+        sim.emit(a)
+        assert (ran, sim.read(out)) == (["asks"], "fallback")
+
+
+def test_groups_merge_with_and_without_a_listener_of_the_slot(trace: bool) -> None:
+    m = rs.Module("m")
+    a, b = m.signal("a"), m.signal("b")
+    unheard, wanted = m.slot("unheard", 0), m.slot("wanted", 0)
+
+    @m.rule(when=a, writes=wanted)
+    async def first(ctx: Any) -> None:
+        ctx[wanted] = 1
+
+    @m.rule(when=a & b, writes=unheard)
+    async def joins(ctx: Any) -> None:
+        ctx[unheard] = 1
+
+    @m.rule(when=b.min_age(0.5), writes=wanted)
+    async def second(ctx: Any) -> None:
+        ctx[wanted] = 2
+
+    with simulate(m, trace=trace) as sim:
+        sim.emit(a)
+        sim.emit(b)
+        sim.advance(1.0)
+        assert sim.read(wanted) == 1
+
+
+def test_an_exception_without_a_repr_is_a_failure_like_any_other(trace: bool) -> None:
+    class Bad(Exception):
+        def __repr__(self) -> str:
+            raise ValueError
+
+        __str__ = __repr__
+
+    m = rs.Module("m")
+    a, out = m.signal("a"), m.slot("out", "")
+
+    @m.rule(when=a, writes=out, weight=2.0)
+    async def fails(ctx: Any) -> None:
+        raise Bad
+
+    @m.rule(when=a, writes=out)
+    async def fallback(ctx: Any) -> None:
+        ctx[out] = "fallback"
+
+    with simulate(m, trace=trace) as sim:
+        sim.emit(a)
+        assert sim.read(out) == "fallback"

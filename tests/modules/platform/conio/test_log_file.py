@@ -1,0 +1,161 @@
+"""The log of a chat never stands between its lines."""
+
+import logging
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from ravestate.modules.platform.conio.log_file import log_file, log_to_file
+
+LIMIT = 20
+
+AGENT = """
+import logging
+import ravestate as rs
+from ravestate.modules import conio, rawio
+
+logging.basicConfig()
+parrot = rs.Module("parrot", requires=[rawio])
+
+@parrot.rule(when=rawio.input.changed, writes=rawio.output)
+async def repeat(ctx):
+    ctx.log.warning("careful: %s", ctx.payload(rawio.input.changed))
+    ctx[rawio.output] = ctx.payload(rawio.input.changed).upper()
+
+rs.run(parrot, conio)
+"""
+
+terminals = pytest.mark.skipif(os.name != "posix", reason="pseudo-terminals")
+
+
+def talk(folder: Path, *, redirected: bool) -> tuple[bytes, str]:
+    """Type two lines on a terminal; return what it shows, and what a redirected standard error gets."""
+    ours, theirs = os.openpty()
+    run = subprocess.Popen(
+        [sys.executable, "-c", AGENT],
+        stdin=theirs,
+        stdout=theirs,
+        stderr=subprocess.PIPE if redirected else theirs,
+        env={**os.environ, "TERM": "xterm", "XDG_STATE_HOME": str(folder), "HOME": str(folder)},
+        start_new_session=True,
+    )
+    os.close(theirs)
+    seen = b""
+    errors = b""
+
+    def read() -> bool:
+        """Act as the terminal; return whether the other side is still there."""
+        nonlocal seen
+        try:
+            received = os.read(ours, 4096)
+        except OSError:  # on a Unix terminal the end of the other side is an error of reading
+            return False
+        seen += received
+        os.write(ours, b"\x1b[1;1R" * received.count(b"\x1b[6n"))
+        return bool(received)
+
+    with run:
+        for text, keys in ((b"\x1b[?2004h", b"hello\r"), (b"HELLO", b"again\r"), (b"AGAIN", b"\x04")):
+            while text not in seen:
+                assert read(), seen
+            os.write(ours, keys)
+        while read():
+            pass
+        if run.stderr is not None:
+            errors = run.stderr.read()
+        assert run.wait(LIMIT) == 0
+    os.close(ours)
+    return seen, errors.decode()
+
+
+@terminals
+def test_log_lines_do_not_stand_between_the_lines_of_a_chat(tmp_path: Path) -> None:
+    seen, _ = talk(tmp_path, redirected=False)
+    (file,) = tmp_path.rglob("log")
+    lines = file.read_text().splitlines()
+    assert [line.partition(" WARNING ")[2] for line in lines] == [
+        "ravestate.parrot.repeat: careful: hello",
+        "ravestate.parrot.repeat: careful: again",
+    ]
+    assert file.stat().st_mode & 0o777 == 0o600
+    assert b"careful" not in seen
+    assert seen.decode().rstrip().endswith(f"The log of this chat has 2 warnings: {file}")
+
+
+@terminals
+def test_a_redirected_log_stays_where_it_is(tmp_path: Path) -> None:
+    seen, errors = talk(tmp_path, redirected=True)
+    assert b"careful" not in seen
+    assert errors.splitlines() == [
+        "WARNING:ravestate.parrot.repeat:careful: hello",
+        "WARNING:ravestate.parrot.repeat:careful: again",
+    ]
+    assert not list(tmp_path.rglob("log"))
+
+
+class Terminal:
+    """A stream that is a terminal, and keeps its text."""
+
+    def __init__(self) -> None:
+        self.text = ""
+
+    def isatty(self) -> bool:
+        return True
+
+    def write(self, text: str) -> int:
+        self.text += text
+        return len(text)
+
+    def flush(self) -> None: ...
+
+
+def on_terminal(monkeypatch: pytest.MonkeyPatch) -> Terminal:
+    """Put both standard streams on a terminal; pytest would undo this in a fixture."""
+    terminal = Terminal()
+    monkeypatch.setattr(sys, "stdout", terminal)
+    monkeypatch.setattr(sys, "stderr", terminal)
+    return terminal
+
+
+def test_afterwards_the_log_goes_where_it_went_before(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    terminal = on_terminal(monkeypatch)
+    log, handler = logging.getLogger(), logging.StreamHandler(terminal)
+    log.addHandler(handler)
+    try:
+        before = list(log.handlers)
+        with log_to_file(tmp_path / "state" / "log"):
+            log.warning("inside")
+        assert set(log.handlers) == set(before)
+        log.warning("outside")
+    finally:
+        log.removeHandler(handler)
+    assert terminal.text == f"The log of this chat has 1 warning: {tmp_path / 'state' / 'log'}\noutside\n"
+
+
+def test_a_quiet_chat_ends_without_a_word_about_its_log(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    terminal = on_terminal(monkeypatch)
+    with log_to_file(tmp_path / "log"):
+        pass
+    assert terminal.text == ""
+
+
+def test_a_file_that_cannot_be_written_leaves_the_log_as_it_is(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    on_terminal(monkeypatch)
+    before = list(logging.getLogger().handlers)
+    with log_to_file(tmp_path):  # a folder
+        assert logging.getLogger().handlers == before
+
+
+def test_the_file_is_in_the_folder_for_state(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setattr(sys, "platform", "linux")
+    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path))
+    assert log_file() == tmp_path / "ravestate" / "log"

@@ -1,0 +1,155 @@
+"""Who may come in."""
+
+import asyncio
+
+import pytest
+
+from modules.platform.webio.visit import in_virtual_time
+from ravestate.modules import webio
+from ravestate.modules.platform.webio import Settings
+from ravestate.modules.platform.webio.access import Access, is_local
+from ravestate.modules.platform.webio.protocol import ProtocolError
+from ravestate.settings import load_settings
+
+TOKEN = "open sesame, please"
+
+
+@pytest.mark.parametrize("host", ["127.0.0.1", "localhost", "::1", "[::1]", "127.9.9.9"])
+def test_addresses_of_this_machine(host: str) -> None:
+    assert is_local(host)
+
+
+@pytest.mark.parametrize(
+    "host", ["0.0.0.0", "::", "192.168.0.7", "museum.example", "", "localhost.evil.example"]
+)
+def test_addresses_that_others_reach(host: str) -> None:
+    assert not is_local(host)
+
+
+@pytest.mark.parametrize(
+    ("host", "origin"),
+    [
+        ("127.0.0.1:8420", None),
+        ("localhost:8420", "http://localhost:8420"),
+        ("[::1]:8420", "http://[::1]:8420"),
+        ("LOCALHOST:8420", "http://localhost:8420"),
+        ("chat.museum.example", "https://chat.museum.example"),
+        ("127.0.0.1:8420", "https://chat.museum.example"),
+    ],
+)
+def test_the_page_and_those_who_may_embed_it_come_in(host: str, origin: str | None) -> None:
+    access = Access(Settings(origins=("https://chat.museum.example",)))
+    assert access.refusal({"host": host} | ({"origin": origin} if origin else {})) is None
+
+
+@pytest.mark.parametrize(
+    ("host", "origin"),
+    [
+        ("127.0.0.1:8420", "https://evil.example"),
+        ("127.0.0.1:8420", "http://127.0.0.1:9999"),
+        ("127.0.0.1:8420", "null"),
+        ("127.0.0.1:8420", "http://["),
+        ("127.0.0.1:8420", "https://museum.example.evil.example"),
+        ("evil.example:8420", "http://evil.example:8420"),  # a name that was made to point here
+        ("evil.example", None),
+        ("127.0.0.1.evil.example", None),
+        ("", None),
+        ("[", None),
+    ],
+)
+def test_others_do_not(host: str, origin: str | None) -> None:
+    access = Access(Settings(origins=("https://museum.example",)))
+    refusal = access.refusal({"host": host} | ({"origin": origin} if origin else {}))
+    assert refusal is not None
+    assert "webio.origins" in refusal
+
+
+@pytest.mark.parametrize(
+    ("host", "origin"),
+    [
+        ("127.0.0.1:8420", None),
+        ("127.0.0.1:8420", "http://127.0.0.1:8420"),
+        ("chat.museum.example", "https://chat.museum.example"),
+        ("CHAT.museum.example:444", "https://chat.museum.example:444"),
+    ],
+)
+def test_the_page_itself_looks_inside(host: str, origin: str | None) -> None:
+    access = Access(Settings(origins=("https://museum.example",)))
+    assert access.refusal_of_board({"host": host} | ({"origin": origin} if origin else {})) is None
+
+
+@pytest.mark.parametrize("origin", ["https://museum.example", "http://127.0.0.1:9999", "null"])
+def test_who_may_embed_the_page_does_not_look_inside(origin: str) -> None:
+    access = Access(Settings(origins=("https://museum.example",)))
+    refusal = access.refusal_of_board({"host": "127.0.0.1:8420", "origin": origin})
+    assert refusal is not None
+    assert f"{origin!r} may not look inside" in refusal
+
+
+EMBEDDED = {"host": "127.0.0.1:8420", "sec-fetch-dest": "iframe"}
+
+
+@pytest.mark.parametrize(
+    "referer", ["http://museum.example/", "HTTP://museum.example/a?b", "http://museum.example"]
+)
+def test_a_page_that_may_not_show_the_chat_is_named(referer: str) -> None:
+    assert Access(Settings()).foreign_embedder({**EMBEDDED, "referer": referer}) == "http://museum.example"
+
+
+@pytest.mark.parametrize(
+    "headers",
+    [
+        {**EMBEDDED, "referer": "https://museum.example/"},  # one that may
+        {**EMBEDDED, "referer": "http://127.0.0.1:8420/"},  # its own
+        {**EMBEDDED, "referer": "https://evil.example/", "sec-fetch-dest": "document"},  # a link
+        {**EMBEDDED, "referer": "about:client"},
+        EMBEDDED,
+        {},
+    ],
+)
+def test_who_may_or_does_not_tell_is_no_stranger(headers: dict[str, str]) -> None:
+    assert Access(Settings(origins=("https://museum.example",))).foreign_embedder(headers) is None
+
+
+def test_with_a_token_it_answers_to_any_name_but_not_to_any_page() -> None:
+    access = Access(Settings(token=TOKEN))
+    assert access.refusal({"host": "robot.lan", "origin": "http://robot.lan"}) is None
+    assert access.refusal({"host": "robot.lan", "origin": "https://evil.example"}) is not None
+
+
+@pytest.mark.parametrize("token", [None, "", "open sesame", TOKEN + "!", "ö", "\ud800"])
+def test_a_wrong_token_is_refused(token: str | None) -> None:
+    assert not Access(Settings(token=TOKEN)).admits(token)
+
+
+def test_the_right_one_is_taken_and_none_is_needed_where_none_is_set() -> None:
+    assert Access(Settings(token=TOKEN)).admits(TOKEN)
+    assert Access(Settings()).admits(None)
+
+
+@in_virtual_time
+async def test_guessing_takes_long() -> None:
+    access, now = Access(Settings(token=TOKEN)), asyncio.get_running_loop().time
+    with pytest.raises(ProtocolError, match="the token is wrong"):
+        await access.check_token("guess")
+    assert now() == 1.0
+    with pytest.raises(ProtocolError, match="a token is needed"):
+        await access.check_token(None)
+
+
+@pytest.mark.parametrize(
+    "origin", ["museum.example", "https://museum.example/", "*", "https://a; script-src *"]
+)
+def test_what_is_no_origin_is_no_setting(origin: str) -> None:
+    with pytest.raises(ValueError, match=r"write an origin, e\.g\. https://museum\.example"):
+        Settings(origins=(origin,))
+
+
+def test_a_short_token_is_no_setting() -> None:
+    with pytest.raises(ValueError, match="write at least 12 characters"):
+        Settings(token="secret")
+
+
+def test_a_token_of_digits_is_text_in_the_environment_too() -> None:
+    variables = {"RAVESTATE_WEBIO_TOKEN": "123456789012"}
+    assert Access(load_settings([webio.module], None, variables)["webio"]).admits("123456789012")

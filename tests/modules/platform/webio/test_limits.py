@@ -1,0 +1,213 @@
+"""Whom the server waits for, before the application hears of them, and while it answers."""
+
+import asyncio
+from typing import Any
+from unittest.mock import Mock
+
+import pytest
+import uvicorn
+from starlette.types import Receive, Scope, Send
+from uvicorn.server import ServerState
+from websockets.protocol import State
+from websockets.server import ServerProtocol
+
+from modules.platform.webio.visit import in_virtual_time, past
+from ravestate.modules.platform.webio.limits import LOWEST_RATE, TIMEOUT, LimitedHTTP, LimitedWebSocket
+
+
+class Reader:
+    """An application that reads what is sent and then says how much it was.
+
+    Args:
+        before, after: Seconds that it takes before it reads, and before it answers.
+    """
+
+    def __init__(self, before: float = 0.0, after: float = 0.0) -> None:
+        self._before = before
+        self._after = after
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        await past(self._before)
+        size, more = 0, True
+        while more:
+            message = await receive()
+            if message["type"] == "http.disconnect":
+                return
+            size += len(message["body"])
+            more = message["more_body"]
+        await past(self._after)
+        body = f"{size} bytes".encode()
+        headers = [(b"content-length", b"%d" % len(body))]
+        await send({"type": "http.response.start", "status": 200, "headers": headers})
+        await send({"type": "http.response.body", "body": body})
+
+
+class Refuser:
+    """An application that answers before it has read anything."""
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        await send({"type": "http.response.start", "status": 401, "headers": [(b"content-length", b"0")]})
+        await send({"type": "http.response.body", "body": b""})
+
+
+class Caller(asyncio.Transport):
+    """A client that has connected, from the server's side."""
+
+    def __init__(self, app: Any) -> None:
+        super().__init__({"peername": ("127.0.0.1", 50000), "sockname": ("127.0.0.1", 8420)})
+        config = uvicorn.Config(app, log_config=None, access_log=False, lifespan="off", timeout_keep_alive=15)
+        state = ServerState()
+        self.limits = LimitedHTTP(config=config, server_state=state, app_state={}, per_address=9, most=9)
+        self.answer = b""
+        self.reads = True
+        """Whether the server reads what is sent."""
+        self.hung_up: float | None = None
+        """When the server has closed the connection (seconds)."""
+        self.limits.connection_made(self)
+
+    def send(self, data: bytes) -> None:
+        """Send something."""
+        assert self.reads
+        self.limits.data_received(data)
+
+    async def send_slowly(self, data: bytes, rate: float) -> None:
+        """Send something, so many bytes in each second, as far as the server reads it."""
+        while data and self.hung_up is None:
+            await past(1.0)
+            if self.reads and self.hung_up is None:
+                self.send(data[: int(rate)])
+                data = data[int(rate) :]
+
+    def get_protocol(self) -> asyncio.BaseProtocol:
+        return self.limits
+
+    def write(self, data: Any) -> None:
+        self.answer += data
+
+    def is_closing(self) -> bool:
+        return self.hung_up is not None
+
+    def pause_reading(self) -> None:
+        self.reads = False
+
+    def resume_reading(self) -> None:
+        self.reads = True
+
+    def abort(self) -> None:
+        if self.hung_up is None:
+            loop = asyncio.get_running_loop()
+            self.hung_up = loop.time()
+            loop.call_soon(self.limits.connection_lost, None)
+
+    close = abort
+
+
+def request(size: int) -> bytes:
+    return b"POST / HTTP/1.1\r\nhost: 127.0.0.1\r\ncontent-length: %d\r\n\r\n" % size
+
+
+@in_virtual_time
+async def test_what_comes_all_the_time_is_taken_however_long_it_takes() -> None:
+    size = int(2 * LOWEST_RATE * 20 * TIMEOUT)
+    caller = Caller(Reader())
+    caller.send(request(size))
+    await caller.send_slowly(b"x" * size, rate=2 * LOWEST_RATE)
+    await past(0.1)
+    assert asyncio.get_running_loop().time() > 20 * TIMEOUT
+    assert caller.answer.endswith(b"%d bytes" % size)
+
+
+@in_virtual_time
+async def test_what_hardly_comes_is_not_waited_for() -> None:
+    caller = Caller(Reader())
+    caller.send(request(10**6))
+    await caller.send_slowly(b"x" * 10**6, rate=100)
+    assert caller.hung_up == 2 * TIMEOUT
+
+
+@in_virtual_time
+async def test_what_comes_in_fits_and_starts_is_taken_if_it_is_enough_all_in_all() -> None:
+    size = int(LOWEST_RATE * 20 * TIMEOUT)
+    caller = Caller(Reader())
+    caller.send(request(size))
+    for _ in range(20):
+        caller.send(b"x" * (size // 20))
+        await past(TIMEOUT / 2)
+        assert caller.hung_up is None
+        await past(TIMEOUT / 2)
+    assert caller.answer.endswith(b"%d bytes" % size)
+
+
+@in_virtual_time
+async def test_what_comes_in_fits_and_starts_is_not_waited_for_if_it_is_too_little() -> None:
+    size, each = 10**7, int(LOWEST_RATE * TIMEOUT)
+    caller = Caller(Reader())
+    caller.send(request(size))
+    while caller.hung_up is None:  # half of what should come
+        caller.send(b"x" * each)
+        await past(2 * TIMEOUT)
+        assert asyncio.get_running_loop().time() < 10 * TIMEOUT
+
+
+@pytest.mark.parametrize(("share", "looks"), [(0.6, 3), (0.9, 10)])
+def test_the_less_is_missing_the_later_it_is_noticed(share: float, looks: int) -> None:
+    @in_virtual_time
+    async def test() -> None:
+        caller = Caller(Reader())
+        caller.send(request(10**6))
+        await caller.send_slowly(b"x" * 10**6, rate=share * LOWEST_RATE)
+        assert caller.hung_up == looks * TIMEOUT
+
+    test()
+
+
+@in_virtual_time
+async def test_who_hardly_gets_to_the_end_of_the_headers_is_not_waited_for() -> None:
+    caller = Caller(Reader())
+    await caller.send_slowly(b"GET / HTTP/1.1\r\nx: " + b"x" * 1000, rate=1)
+    assert caller.hung_up == TIMEOUT
+
+
+@in_virtual_time
+async def test_who_has_to_wait_for_an_answer_is_not_hung_up_on() -> None:
+    caller = Caller(Reader(after=10 * TIMEOUT))
+    caller.send(request(5) + b"hello")
+    await past(10 * TIMEOUT + 1)
+    assert caller.answer.endswith(b"5 bytes")
+
+
+@in_virtual_time
+async def test_who_has_to_wait_until_its_request_is_read_is_not_hung_up_on() -> None:
+    size = 10**6
+    caller = Caller(Reader(before=10 * TIMEOUT + 3))
+    caller.send(request(size))
+    await caller.send_slowly(b"x" * size, rate=2 * LOWEST_RATE)
+    await past(0.1)
+    assert caller.answer.endswith(b"%d bytes" % size)
+
+
+@in_virtual_time
+async def test_who_sends_on_after_the_answer_is_hung_up_on() -> None:
+    caller = Caller(Refuser())
+    caller.send(request(10**7))
+    await caller.send_slowly(b"x" * 10**7, rate=2 * LOWEST_RATE)
+    assert caller.hung_up == 2 * TIMEOUT
+
+
+@in_virtual_time
+async def test_who_does_not_read_the_answer_is_hung_up_on() -> None:
+    caller = Caller(Reader(after=1.0))
+    caller.send(request(5) + b"hello")
+    caller.limits.pause_writing()  # as the transport does when nothing is read
+    await past(5 * TIMEOUT)
+    assert caller.hung_up == 2 * TIMEOUT
+
+
+def test_a_server_stops_while_a_client_is_closing_its_connection() -> None:
+    socket = object.__new__(LimitedWebSocket)
+    socket.conn = ServerProtocol(state=State.CLOSING)
+    socket.transport, socket.queue = Mock(), Mock()
+    socket.close_sent, socket.handshake_complete = False, True
+    socket.stop_keepalive = lambda: None  # type: ignore[method-assign]
+    socket.shutdown()
+    socket.transport.close.assert_called_once()

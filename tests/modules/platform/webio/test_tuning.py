@@ -1,0 +1,48 @@
+"""How the interpreter is set while a page is served."""
+
+import contextlib
+import gc
+import sys
+
+import pytest
+
+from modules.platform.webio.visit import parrot
+from ravestate.modules import webio
+from ravestate.modules.platform.webio.server import Server
+from ravestate.modules.platform.webio.tuning import COLLECT, SWITCH, low_latency
+from ravestate.runtime.agent import Agent
+from runtime.on_loop import on_loop
+
+
+def setting() -> tuple[float, tuple[int, int, int]]:
+    return sys.getswitchinterval(), gc.get_threshold()
+
+
+OURS = (pytest.approx(SWITCH), COLLECT)
+
+
+def test_it_is_as_before_once_the_last_has_left_whoever_that_is() -> None:
+    before = setting()
+    first, second = contextlib.ExitStack(), contextlib.ExitStack()
+    first.enter_context(low_latency())
+    second.enter_context(low_latency())
+    assert setting() == OURS
+    first.close()
+    assert setting() == OURS
+    second.close()
+    assert setting() == before
+
+
+def test_it_is_as_before_also_after_a_failure() -> None:
+    before = setting()
+    with pytest.raises(OSError, match="the disk"), low_latency():
+        raise OSError("the disk")
+    assert setting() == before
+
+
+@on_loop
+async def test_a_server_keeps_pace() -> None:
+    before = setting()
+    async with Server(Agent(parrot, webio, settings={"webio": {"port": 0}})):
+        assert setting() == OURS
+    assert setting() == before

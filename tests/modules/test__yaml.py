@@ -1,0 +1,47 @@
+"""YAML nodes: clear errors with file and line."""
+
+from pathlib import Path
+
+import pytest
+
+from ravestate.errors import DeclarationError, PlatformError
+from ravestate.modules._yaml import fault, kind_of, read_nodes
+
+
+def test_nodes_know_their_kind_and_line(tmp_path: Path) -> None:
+    file = tmp_path / "a.yaml"
+    file.write_text("a: 1\nb: [2]")
+    root = read_nodes(file, "file of tests")
+    assert root is not None and kind_of(root) == "mapping"
+    (_, (_, items)) = root.value
+    assert kind_of(items) == "sequence" and str(fault("a.yaml", items, "wrong")) == "a.yaml:2: wrong"
+
+
+def test_an_empty_file_has_no_node(tmp_path: Path) -> None:
+    (tmp_path / "a.yaml").write_text("# nothing")
+    assert read_nodes(tmp_path / "a.yaml", "file of tests") is None
+
+
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [
+        (b"a: b: c", r"a\.yaml:1: this is no YAML .*\. Ask for help"),
+        (b"a: 1\nb: \x07", r"a\.yaml:2: this is no YAML \(a control character\)"),
+        (b"a: \xff", r"a\.yaml: this is no text in UTF-8 .* at byte 3"),
+        (b"[" * 5000, r"a\.yaml: the nesting is too deep for a file of tests"),
+    ],
+)
+def test_a_file_that_is_no_yaml(tmp_path: Path, content: bytes, message: str) -> None:
+    (tmp_path / "a.yaml").write_bytes(content)
+    with pytest.raises(DeclarationError, match=message):
+        read_nodes(tmp_path / "a.yaml", "file of tests", ". Ask for help")
+
+
+def test_a_file_that_cannot_be_read(tmp_path: Path) -> None:
+    (tmp_path / "a.yaml").touch()
+    with pytest.raises(
+        PlatformError, match=r"the file of tests .*/b\.yaml' does not exist; did you mean 'a\.yaml'"
+    ):
+        read_nodes(tmp_path / "b.yaml", "file of tests")
+    with pytest.raises(PlatformError, match="cannot be read"):
+        read_nodes(tmp_path, "file of tests")

@@ -1,0 +1,133 @@
+"""Undeclared acts and forgotten awaits, seen in the source of a rule's function."""
+
+import functools
+import inspect
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+import ravestate as rs
+from ravestate.policy.source import Acts, acts_of, undeclared
+
+demo = rs.Module("demo")
+go, done, late = demo.signal("go", input=True), demo.signal("done"), demo.signal("late")
+mood, face, lit = demo.slot("mood"), demo.slot("face"), demo.flag("lit")
+people = demo.collection("people")
+
+
+class Names:
+    light = lit
+
+
+def acts(
+    function: Callable[..., Any], source: Any = inspect.getsource, **options: Any
+) -> tuple[Acts, list[str]]:
+    """Make a rule of a function, and return its acts and the undeclared ones in words."""
+    module = rs.Module("rules", requires=[demo])
+    module.rule(when=go, name="work", **options)(function)
+    plan = rs.compile(module).rule_plan("rules:work")
+    found = acts_of(plan, source)
+    return found, list(undeclared(plan, found))
+
+
+async def everything(ctx: Any) -> None:
+    if ctx[mood] == "calm" and ctx[Names.light]:
+        ctx[face] = "smile"
+    ctx[mood] += "er"
+    ctx[people].add("ada", 1)
+    for _ in range(2):
+        ctx.emit(done, payload=ctx.payload(late))
+    await ctx.sleep(1)
+
+
+def test_every_act_is_found() -> None:
+    found, faults = acts(everything)
+    assert list(found.reads) == [mood, lit, people]
+    assert list(found.writes) == [face, mood, people]
+    assert (list(found.emits), list(found.payloads), found.forgotten) == ([done], [late], {})
+    first = everything.__code__.co_firstlineno
+    assert faults == [
+        f"reads demo:lit (line {first + 1}) without declaring it: write reads=demo.lit",
+        f"writes demo:face (line {first + 2}), demo:mood (line {first + 3}), demo:people (line {first + 4}) without "
+        "declaring it: write writes=(demo.face, demo.mood, demo.people)",
+        f"emits demo:done (line {first + 6}) without declaring it: write emits=demo.done",
+        f"asks for the payload of demo:late (line {first + 6}), which its condition lacks: write when=... | demo.late",
+    ]
+
+
+def test_declared_acts_are_no_faults() -> None:
+    _, faults = acts(everything, reads=lit, writes=(face, mood, people), emits=done)
+    assert len(faults) == 1 and "payload" in faults[0]
+
+
+def test_names_of_a_closure_and_of_modules_are_resolved() -> None:
+    here = rs.Module("here").slot("here")
+    from ravestate.modules import rawio
+
+    async def work(ctx: Any) -> None:
+        ctx[here] = ctx[rawio.output]
+
+    found, _ = acts(work)
+    assert (list(found.writes), list(found.reads)) == ([here], [rawio.output])
+
+
+async def shadowed(ctx: Any, mood: Any = None) -> None:
+    face = demo
+    ctx[mood] = ctx[face]
+    for done in ():
+        ctx.emit(done)
+
+
+async def replaced(ctx: Any) -> None:
+    ctx = {}
+    ctx[mood] = 1
+
+
+async def inner(ctx: Any) -> None:
+    def helper(ctx: Any) -> None:
+        ctx[mood] = 1
+
+    helper({})
+
+
+async def unknown(ctx: Any) -> None:
+    ctx[nowhere] = ctx[mood.changed.name][face.nothing]  # noqa: F821
+    ctx.emit([done][0])
+    ctx.log[mood] = 1
+
+
+@functools.wraps(everything)
+async def wrapped(ctx: Any) -> None:
+    await everything(ctx)
+
+
+@pytest.mark.parametrize(
+    "function", [shadowed, replaced, inner, unknown, wrapped, functools.partial(everything)]
+)
+def test_names_that_cannot_be_resolved_raise_no_alarm(function: Any) -> None:
+    found, faults = acts(function)
+    assert (found, faults) == (Acts(), [])
+
+
+@pytest.mark.parametrize("error", [OSError, TypeError, SyntaxError])
+def test_a_function_without_source_raises_no_alarm(error: type[Exception]) -> None:
+    def source(function: Any) -> str:
+        raise error
+
+    assert acts(everything, source) == (Acts(), [])
+
+
+def test_an_import_that_fails_raises_no_alarm() -> None:
+    def broken(ctx: Any) -> None:
+        ctx[rs.nowhere] = ctx[rs.errors.nowhere]  # type: ignore[attr-defined]
+
+    assert acts(broken) == (Acts(), [])
+
+
+def test_a_closure_without_its_value_yet_raises_no_alarm() -> None:
+    def work(ctx: Any) -> None:
+        ctx[later] = 1
+
+    assert acts(work) == (Acts(), [])
+    later = 1

@@ -1,0 +1,45 @@
+"""Sentences that worked go on working, all but a few."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+import pytest
+
+from quality.language import LABELLED, SETS, measured, triples_of
+from quality.measure import labelled
+
+FLOOR = 0.97
+LABELS = {
+    "questions_rows": {"PERSON", "PLACE", "OBJECT", "FORM", "TIME", "REASON", "AMOUNT", "YES_NO", "-"},
+    "yesno_rows": {"yes 2", "yes 1", "no 2", "no 1", "unsure", "-"},
+    "intents_rows": {"hi", "bye", "play", "-"},
+    "quiet_rows": {"quiet", "leave", "-"},
+    "emotion_rows": {"shy", "surprised", "happy", "affectionate", "sad", "-"},
+}
+
+
+@pytest.mark.parametrize("name", SETS)
+def test_known_sentences_are_understood(name: str) -> None:
+    result = measured(name)
+    share = result.shares["exact" if name == "triples_rows" else "right"]
+    print(f"{name}: {share:.1%} of {result.cases}", *result.misses, sep="\n  ")
+    assert share >= FLOOR, "\n".join(result.misses)
+
+
+@pytest.mark.parametrize("name", SETS)
+def test_no_sentence_counts_twice(name: str) -> None:
+    assert [text for text, count in Counter(text for text, _ in labelled(name)).items() if count > 1] == []
+
+
+@pytest.mark.parametrize("name", LABELLED)
+def test_each_label_is_known_and_occurs(name: str) -> None:
+    assert {label for _, label in labelled(name)} == LABELS[name]
+
+
+def test_the_notation_of_triples() -> None:
+    assert triples_of("My_sister sing _; I not_like tea") == {
+        ("My sister", "sing", ""),
+        ("I", "not like", "tea"),
+    }
+    assert triples_of("") == frozenset()

@@ -1,0 +1,115 @@
+"""Rules that block the loop are named; a busy machine is no rule's fault."""
+
+import asyncio
+import logging
+import re
+from dataclasses import dataclass
+
+import pytest
+
+import ravestate as rs
+from ravestate.runtime import blocking
+from ravestate.testing import simulate
+
+HERE = re.escape(__file__)
+
+
+@dataclass
+class Machine:
+    """A machine as the system describes it to the loop's thread."""
+
+    time: float = 0.0
+    computed: float = 0.0
+    chosen: int = 0
+    forced: int = 0
+
+    def compute(self, seconds: float) -> None:
+        self.time += seconds
+        self.computed += seconds
+
+    def sleep(self, seconds: float) -> None:
+        self.time += seconds
+        self.chosen += 1
+
+    def wait_for_a_processor(self, seconds: float) -> None:
+        self.time += seconds
+        self.forced += 1
+
+    def wait_for_the_interpreter(self, seconds: float) -> None:
+        self.time += seconds
+        self.chosen += int(seconds / 0.005)
+
+
+@pytest.fixture
+def machine(monkeypatch: pytest.MonkeyPatch) -> Machine:
+    machine = Machine()
+    monkeypatch.setattr(blocking, "perf_counter", lambda: machine.time)
+    monkeypatch.setattr(blocking, "thread_time", lambda: machine.computed)
+    monkeypatch.setattr(blocking, "_sleeps", lambda: (machine.chosen, machine.forced))
+    return machine
+
+
+WHAT = pytest.mark.parametrize("first_step", [True, False])
+
+
+def warnings_of(
+    machine: Machine, caplog: pytest.LogCaptureFixture, first_step: bool, **did: float
+) -> list[str]:
+    """Run a rule that does these things in one step, and return what is logged."""
+    m = rs.Module("m")
+
+    @m.rule(when=rs.startup)
+    async def work(ctx: rs.RuleContext) -> None:
+        if not first_step:
+            await asyncio.sleep(0)
+        for act, seconds in did.items():
+            getattr(machine, act)(seconds)
+
+    with caplog.at_level(logging.WARNING), simulate(m) as sim:
+        assert sim.fired == ["m:work"]
+    return [record.getMessage() for record in caplog.records]
+
+
+@WHAT
+def test_a_rule_that_computes_too_long_is_named(
+    machine: Machine, caplog: pytest.LogCaptureFixture, first_step: bool
+) -> None:
+    (text,) = warnings_of(machine, caplog, first_step, compute=0.25)
+    assert re.match(
+        rf"rule m:work \({HERE}:\d+\) blocked the loop for 250 ms by computing: make it a plain", text
+    )
+
+
+@WHAT
+def test_a_rule_that_sleeps_too_long_is_named(
+    machine: Machine, caplog: pytest.LogCaptureFixture, first_step: bool
+) -> None:
+    (text,) = warnings_of(machine, caplog, first_step, compute=0.01, sleep=5.0)
+    assert re.match(
+        rf"rule m:work \({HERE}:\d+\) blocked the loop for 5000 ms by sleeping: make it a plain", text
+    )
+
+
+@WHAT
+@pytest.mark.parametrize("wait", ["wait_for_a_processor", "wait_for_the_interpreter"])
+def test_a_busy_machine_raises_no_false_alarm(
+    machine: Machine, caplog: pytest.LogCaptureFixture, first_step: bool, wait: str
+) -> None:
+    assert warnings_of(machine, caplog, first_step, compute=0.05, **{wait: 5.0}) == []
+
+
+def test_short_steps_that_follow_each_other_cause_no_warning(
+    machine: Machine, caplog: pytest.LogCaptureFixture
+) -> None:
+    m = rs.Module("m")
+    count = m.slot("count", 0)
+
+    @m.rule(when=rs.startup | count.changed, writes=count, detached=True)
+    async def work(ctx: rs.RuleContext) -> None:
+        machine.compute(0.05)
+        if ctx[count] < 10:
+            ctx[count] += 1
+
+    with simulate(m) as sim:
+        assert sim.read(count) == 10
+    assert not caplog.records

@@ -1,0 +1,82 @@
+"""Reading YAML: the plain case, and texts that must end at once with a message."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from ravestate.errors import DeclarationError
+from ravestate.modules.meta.ontology.type_files import read_types
+from ravestate.modules.meta.verbaliser.phrases import PhraseBook
+from ravestate.modules.skill.agentqa.life_file import read_life
+from ravestate.yaml_text import compose_yaml, load_yaml
+
+LAUGHS = "a: &a [x, x, x, x, x, x, x, x, x, x]\n" + "".join(
+    f"{name}: &{name} [{', '.join([f'*{before}'] * 10)}]\n"
+    for before, name in zip("abcdefghijkl", "bcdefghijklm", strict=True)
+)
+"""A trillion values in 13 lines."""
+
+HOSTILE = {
+    "aliases": (LAUGHS, "file.yaml:5: more than 100,000 values once the aliases are followed"),
+    "lists": ("[" * 5_000, "file.yaml:1: nested more than 50 levels deep"),
+    "mappings": ("{a: " * 5_000, "file.yaml:1: nested more than 50 levels deep"),
+    "lines": ("- " * 5_000, "file.yaml:1: nested more than 50 levels deep"),
+    "a circle": ("a: 1\nb: &b [*b]", "file.yaml:2: alias *b refers to itself"),
+}
+
+
+def test_values_are_read() -> None:
+    assert load_yaml("a: &a [1, two, 3.0, yes]\nb: *a\nc: {<<: {d: e}}\n", "file.yaml") == {
+        "a": [1, "two", 3.0, True], "b": [1, "two", 3.0, True], "c": {"d": "e"},
+    }  # fmt: skip
+    assert load_yaml("", "file.yaml") is compose_yaml("", "file.yaml") is None
+
+
+@pytest.mark.parametrize("read", [load_yaml, compose_yaml])
+@pytest.mark.parametrize(("text", "message"), HOSTILE.values(), ids=HOSTILE)
+def test_hostile_texts_end_at_once(read: Callable[[str, str], Any], text: str, message: str) -> None:
+    with pytest.raises(DeclarationError) as caught:
+        read(text, "file.yaml")
+    assert str(caught.value) == message
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        (
+            "a: 1\nb: [",
+            "file.yaml:2: not valid YAML (while parsing a flow node, expected the node content, but ",
+        ),
+        ("a: b: c", "file.yaml:1: not valid YAML (mapping values are not allowed here). A text with : or #"),
+        ("a: 1\n\x07", "file.yaml:2: not valid YAML (a control character)"),
+        ("a: *b", "file.yaml:1: not valid YAML (found undefined alias 'b')"),
+        ("a: !!python/name:os.system", "file.yaml:1: not valid YAML (could not determine a constructor"),
+        ("a: 2023-02-30", "file.yaml: not valid YAML (day "),
+        (f"a: {'1' * 5_000}", "file.yaml: not valid YAML (Exceeds the limit"),
+    ],
+)
+def test_a_text_that_is_not_valid_is_refused_with_its_line(text: str, message: str) -> None:
+    with pytest.raises(DeclarationError) as caught:
+        load_yaml(text, "file.yaml")
+    assert str(caught.value).startswith(message)
+
+
+READERS: dict[str, Callable[[Path], object]] = {
+    "types": lambda path: read_types([path]),
+    "phrases": lambda path: PhraseBook.load([path]),
+    "life": read_life,
+}
+
+
+@pytest.mark.parametrize("read", READERS.values(), ids=READERS)
+@pytest.mark.parametrize("kind", ["aliases", "mappings"])
+def test_every_file_of_a_user_is_read_within_bounds(
+    read: Callable[[Path], object], kind: str, tmp_path: Path
+) -> None:
+    text, message = HOSTILE[kind]
+    (tmp_path / "file.yaml").write_text(text, encoding="utf-8")
+    with pytest.raises(DeclarationError) as caught:
+        read(tmp_path / "file.yaml")
+    assert message.partition(":")[2] in str(caught.value) and "file.yaml" in str(caught.value)
