@@ -253,9 +253,7 @@ class OpenAIBackend:
         except ValueError:
             document = None
         if not isinstance(document, dict):
-            raise PlatformError(
-                f"wildtalk: {self._place} sent no JSON object: {self._safe(_short(payload))}"
-            )
+            raise PlatformError(f"wildtalk: {self._place} sent no JSON object: {self._safe(_short(payload))}")
         document = cast("dict[str, Any]", document)
         if document.get("error"):
             raise PlatformError(
