@@ -138,9 +138,7 @@ def _fields(name: str, schema: Schema, records: Mapping[str, Schema]) -> str:
         tag = record["properties"]["type"]["const"]
         frames[tag] = {field: kind for field, kind in kinds.items() if kind and field != "type"}
     comment = _comment(f"The fields that each {name} must have, by what `typeof` calls them.")
-    return (
-        f'{comment}export const FIELDS: Record<{name}["type"], Record<string, string>> = {_literal(frames)};'
-    )
+    return f'{comment}export const FIELDS: Record<{name}["type"], Record<string, string>> = {_literal(frames)};'
 
 
 # ------------------------------------------------------------------------------------ types
@@ -167,9 +165,7 @@ def _type(schema: Schema) -> str:
             return f"({kind})[]" if " | " in kind else f"{kind}[]"
         case "object":
             values = schema.get("additionalProperties")
-            return (
-                f"Record<string, {_type(cast('Schema', values)) if isinstance(values, dict) else 'unknown'}>"
-            )
+            return f"Record<string, {_type(cast('Schema', values)) if isinstance(values, dict) else 'unknown'}>"
         case _:
             return "unknown"
 

@@ -46,9 +46,7 @@ def test_a_recording_that_was_sent_is_looked_at(trace: bytes) -> None:
     test()
 
 
-def test_of_recordings_that_come_together_one_is_read_at_a_time(
-    trace: bytes, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_of_recordings_that_come_together_one_is_read_at_a_time(trace: bytes, monkeypatch: pytest.MonkeyPatch) -> None:
     taken: list[str] = []
 
     async def slowly(work: Callable[..., Any], *arguments: Any) -> Any:
@@ -62,9 +60,7 @@ def test_of_recordings_that_come_together_one_is_read_at_a_time(
         async with board() as app, client(app) as browser:
             with monkeypatch.context() as patch:
                 patch.setattr(asyncio, "to_thread", slowly)
-                answers = await asyncio.gather(
-                    *(browser.post("/board/recordings", content=trace) for _ in range(2))
-                )
+                answers = await asyncio.gather(*(browser.post("/board/recordings", content=trace) for _ in range(2)))
             assert [answer.status_code for answer in answers] == [201, 201]
 
     test()
@@ -100,9 +96,7 @@ def test_more_than_a_few_uploads_at_once_are_refused(trace: bytes) -> None:
     async def test() -> None:
         async with board() as app, client(app) as browser:
             slow = [
-                asyncio.create_task(
-                    browser.post("/board/recordings", content=drops(trace, 5.0, 1 + len(trace) // 3))
-                )
+                asyncio.create_task(browser.post("/board/recordings", content=drops(trace, 5.0, 1 + len(trace) // 3)))
                 for _ in range(application.AT_ONCE)
             ]
             await passing(1)
@@ -187,9 +181,7 @@ async def test_a_site_that_may_embed_the_chat_may_not_connect_to_the_board_nor_s
             assert (look.accepted, refused["status"]) == (False, 403)
         async with Look(app, origin=HERE) as look:
             assert (await look.begin())["type"] == "welcome"
-        assert (
-            await browser.post("/board/recordings", content=b"{}", headers={"origin": site})
-        ).status_code == 403
+        assert (await browser.post("/board/recordings", content=b"{}", headers={"origin": site})).status_code == 403
         framing = {}
         for path in ("/", "/board", "/board/", "/board/index.html", "/board/nothing", "/board/recordings"):
             policy = (await browser.get(path)).headers["content-security-policy"]

@@ -149,9 +149,7 @@ async def test_why_not_is_answered_with_the_right_reason() -> None:
         look.tell("why", rule="gossip:answer", spike=spike)
         found = await look.answer("why")
     assert found["verdict"] == "untouched"
-    assert found["missing"][0]["raisers"][0]["words"].startswith(
-        "gossip:classify finished without raising it"
-    )
+    assert found["missing"][0]["raisers"][0]["words"].startswith("gossip:classify finished without raising it")
     assert found["whole"] is True
 
 

@@ -105,9 +105,7 @@ def test_a_wrong_payload_is_refused(signal: rs.Signal[Any], payload: dict[str, A
 def test_an_untyped_slot_takes_any_json_unless_its_value_is_beyond_json(holds: object) -> None:
     check_value(free, "new", holds)
     for foreign in (Point(1), [Point(1)], {"a": Point(1)}, {1: 2}, (1, 2), [(1, 2)]):
-        with pytest.raises(
-            rs.RavestateError, match=rf"lab:free holds a {type(foreign).__name__}, which JSON"
-        ):
+        with pytest.raises(rs.RavestateError, match=rf"lab:free holds a {type(foreign).__name__}, which JSON"):
             check_value(free, "new", foreign)
         with pytest.raises(rs.RavestateError, match="lab:free holds a"):
             emit(free.changed, foreign, payload="new")
@@ -151,9 +149,7 @@ def test_of_a_type_of_containers_the_container_is_asked_for(
             check_payload(slot.changed, Emit(type="emit", signal="boxes:box:changed", payload=value), slot)
 
 
-@pytest.mark.parametrize(
-    "kind", [tuple[str, ...], frozenset[str], set[int], Callable[[], None], tuple[int] | set[str]]
-)
+@pytest.mark.parametrize("kind", [tuple[str, ...], frozenset[str], set[int], Callable[[], None], tuple[int] | set[str]])
 def test_containers_that_json_does_not_know_are_not_written(kind: Any) -> None:
     slot = rs.Module("boxes").slot("box", 0, type=kind)
     for value in ("banana", ["a"], None):

@@ -185,9 +185,7 @@ async def test_shortening_during_a_gap_misses_no_more() -> None:
         await passing(1)
         context.emit(tick)
         await passing(1)
-    after = [
-        record.spike for record in recorder.records if isinstance(record, Born) and record.spike > before
-    ]
+    after = [record.spike for record in recorder.records if isinstance(record, Born) and record.spike > before]
     assert recorder.missed == after[0] - before - 1 > 30
 
 

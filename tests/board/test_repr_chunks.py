@@ -148,9 +148,7 @@ class Further(Point):
     y: Any = 0
 
 
-@pytest.mark.parametrize(
-    "value", [Sly([1, 2]), SlyText("x"), SlyDict({1: 2}), Bytes(b"x"), Further(1, 2, 3)], ids=repr
-)
+@pytest.mark.parametrize("value", [Sly([1, 2]), SlyText("x"), SlyDict({1: 2}), Bytes(b"x"), Further(1, 2, 3)], ids=repr)
 def test_a_subclass_of_a_container_shows_its_items(value: object) -> None:
     assert "".join(repr_chunks([value])) == repr([value])
 

@@ -46,9 +46,7 @@ def spike_of(sim: Simulation, signal: str, number: int = 0) -> int:
 
 def ask(sim: Simulation, rule: str, signal: str = "demo:input:changed", number: int = 0) -> WhyNot:
     policy = sim.context.policy
-    found = why_not(
-        sim.trace, describe(policy), f"demo:{rule}", spike_of(sim, signal, number), gates_of(policy)
-    )
+    found = why_not(sim.trace, describe(policy), f"demo:{rule}", spike_of(sim, signal, number), gates_of(policy))
     assert str(found)  # there is always a text
     return found
 
@@ -142,9 +140,7 @@ def test_it_failed_before_and_after_a_write(stage: Stage) -> None:
         sim.emit(stage.touch)
         first, second = ask(sim, "early"), ask(sim, "late", "demo:touch")
     assert first.verdict == "failed"
-    assert first.words.startswith(
-        "it ran at 0.000 s and failed: ValueError('no such word') (test_why_not.py:"
-    )
+    assert first.words.startswith("it ran at 0.000 s and failed: ValueError('no such word') (test_why_not.py:")
     assert second.verdict == "fired"
     assert "failed after its write" in second.words
 
@@ -488,10 +484,7 @@ def test_a_signal_of_another_cause_is_distinguished(stage: Stage) -> None:
         sim.put(stage.input, "hello")
         found = ask(sim, "qa", number=1)
     assert found.verdict == "untouched"
-    assert (
-        found.missing[0].words
-        == "demo:question did not occur for this cause (it did for another, at 0.000 s)"
-    )
+    assert found.missing[0].words == "demo:question did not occur for this cause (it did for another, at 0.000 s)"
     assert found.missing[0].raisers[0].words == (
         "demo:classify did not run: it did not take demo:input:changed: its payload did not match the predicate"
     )
@@ -515,9 +508,7 @@ def test_causes_are_followed_back_and_circles_end(stage: Stage) -> None:
         found = ask(sim, "both", "demo:touch")
     assert found.verdict == "lacked"
     assert [missing.signal for missing in found.missing] == ["demo:one", "demo:two"]
-    assert (
-        "demo:to_one did not run: it took demo:touch but lacked demo:two" in found.missing[0].raisers[0].words
-    )
+    assert "demo:to_one did not run: it took demo:touch but lacked demo:two" in found.missing[0].raisers[0].words
 
 
 def test_a_running_rule_runs(stage: Stage) -> None:
@@ -586,8 +577,7 @@ def test_a_gate_that_shut_while_it_waited_is_not_another_that_answered(stage: St
     assert "another rule" not in str(found)
     assert found.words.startswith("it was ready and waited for demo:fused (")
     assert found.words.endswith(
-        "nats ahead); then demo:lit.holds(bool) was false; "
-        "demo:input:changed reached its maximum age of 5 s at 5.000 s"
+        "nats ahead); then demo:lit.holds(bool) was false; demo:input:changed reached its maximum age of 5 s at 5.000 s"
     )
     assert unseen.verdict == "gated"  # a recording has no predicates to evaluate
 

@@ -88,7 +88,5 @@ async def test_the_page_loads_little_and_nothing_from_elsewhere(stage: Stage) ->
         await expect(page.get_by_text("Good evening.")).to_be_visible()
         loaded = await page.evaluate("performance.getEntriesByType('resource').map((entry) => entry.name)")
         assert all(address.startswith(served.address) for address in loaded), loaded
-        scripts = [
-            PAGE / address.removeprefix(served.address) for address in loaded if address.endswith(".js")
-        ]
+        scripts = [PAGE / address.removeprefix(served.address) for address in loaded if address.endswith(".js")]
         assert 0 < sum(len(gzip.compress(script.read_bytes())) for script in scripts) < SCRIPT

@@ -208,9 +208,7 @@ async def test_why_not_is_answered_with_the_right_reason(stage: Stage) -> None:
         await say(page, "Nice.")
         await until_lane(page, "keeper:small_talk", "done")
         await page.get_by_role("tab", name="Rule").click()
-        await page.wait_for_function(
-            "old => document.querySelector('#cause option')?.value !== old", arg=option
-        )
+        await page.wait_for_function("old => document.querySelector('#cause option')?.value !== old", arg=option)
         await page.locator("#cause").select_option(index=0)
         await expect(answered).to_contain_text("keeper:classify finished without raising it")
 
@@ -237,9 +235,7 @@ async def test_the_clock_pauses_steps_and_goes_on_while_the_view_is_another_thin
         assert await lane(page, "keeper:classify") != []
         assert not any(bar["ended"] for bar in await lane(page, "keeper:classify"))
         assert await page.evaluate("window.raveboard.now()") == before
-        await step_until(
-            page, "window.raveboard.trace.lanes.get('keeper:small_talk')?.bars.at(-1)?.outcome === 'done'"
-        )
+        await step_until(page, "window.raveboard.trace.lanes.get('keeper:small_talk')?.bars.at(-1)?.outcome === 'done'")
         assert await page.evaluate("window.raveboard.paused")
         await page.get_by_role("button", name="Continue").click()
         await expect(page.locator(".status")).to_have_text("live")
@@ -436,9 +432,7 @@ async def test_the_result_of_the_newest_input_links_to_its_rules(stage: Stage) -
         await say(page, "Since when?")
         await until_lane(page, "keeper:answer", "done")
         await page.get_by_role("tab", name="Rule").click()
-        lost = page.get_by_role(
-            "button", name="keeper:small_talk gave up: keeper:classify → keeper:answer answered"
-        )
+        lost = page.get_by_role("button", name="keeper:small_talk gave up: keeper:classify → keeper:answer answered")
         await lost.click()
         await expect(page.locator(".answer")).to_have_attribute("data-verdict", "outrun")
         await page.get_by_role("button", name="Close this rule").click()

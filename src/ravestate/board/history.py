@@ -14,8 +14,6 @@ from operator import attrgetter
 from ravestate.engine import trace as t
 from ravestate.engine.reasons import Outcome
 
-__all__ = ["Attempt", "History"]
-
 NEVER = float("inf")
 BY_TIME = attrgetter("time")
 
@@ -169,9 +167,7 @@ class History:
             hears: For each rule that counts, the signals that each of its clauses takes. A detached constraint takes
                 none (L19).
         """
-        return next(
-            (a for a in self._answers if a.rule in hears and self._is_taken(a, hears[a.rule][a.clause])), None
-        )
+        return next((a for a in self._answers if a.rule in hears and self._is_taken(a, hears[a.rule][a.clause])), None)
 
     def _is_taken(self, attempt: Attempt, signals: Collection[str]) -> bool:
         """Return whether an attempt took a spike of one of these signals in the group."""

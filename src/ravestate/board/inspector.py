@@ -25,8 +25,6 @@ if TYPE_CHECKING:
     from ravestate.modules.platform.webio.session import Session
     from ravestate.modules.platform.webio.sessions import Sessions
 
-__all__ = ["Inspector"]
-
 FRAME = 0.05
 """Seconds between two frames of records."""
 
@@ -126,9 +124,7 @@ class Inspector:
         finally:
             if session is not None:
                 self._sessions.exit(session, self)
-                if isinstance(source, LiveSource) and not any(
-                    isinstance(o, Inspector) for o in session.onlookers
-                ):
+                if isinstance(source, LiveSource) and not any(isinstance(o, Inspector) for o in session.onlookers):
                     source.leave()
 
     # ------------------------------------------------------------------------------------ the first frame
@@ -142,9 +138,7 @@ class Inspector:
         if not isinstance(command, protocol.Hello):
             raise ProtocolError("malformed", f"begin with {HELLO}")
         if command.v != protocol.VERSION:
-            raise ProtocolError(
-                "version", f'"v": {command.v}: this side speaks version {protocol.VERSION} only'
-            )
+            raise ProtocolError("version", f'"v": {command.v}: this side speaks version {protocol.VERSION} only')
         await self._access.check_token(command.token)
         return command
 
@@ -287,9 +281,7 @@ class Inspector:
         listed = running[-LIST:]
         if own in running[:-LIST]:
             listed[0] = own
-        return protocol.Conversations(
-            [_conversation(session) for session in listed], len(running) - len(listed)
-        )
+        return protocol.Conversations([_conversation(session) for session in listed], len(running) - len(listed))
 
     async def _send(self, frame: protocol.ServerFrame) -> None:
         await self._channel.send(protocol.serialise(frame))

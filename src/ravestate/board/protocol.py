@@ -389,9 +389,7 @@ def fields_of(record: Any) -> dict[str, Any]:
 
 def _changed(record: Any) -> dict[str, Any]:
     defaults = {field.name: field.default for field in dataclasses.fields(record) if field.name != "type"}
-    return {
-        name: value for name, value in fields_of(record).items() if value is not defaults.get(name, _NONE)
-    }
+    return {name: value for name, value in fields_of(record).items() if value is not defaults.get(name, _NONE)}
 
 
 _NONE = object()

@@ -34,8 +34,6 @@ from ravestate.policy.policy import Policy
 if TYPE_CHECKING:
     from ravestate.modules.platform.webio.session import Session
 
-__all__ = ["LiveSource", "RecordedSource", "Source", "gates_of"]
-
 T = TypeVar("T")
 
 
@@ -124,9 +122,7 @@ class LiveSource:
             RavestateError: It is refused.
         """
         context = self._context
-        if isinstance(command, Say | Put | Emit) and (
-            self._session.leaving or self._session.ended is not None
-        ):
+        if isinstance(command, Say | Put | Emit) and (self._session.leaving or self._session.ended is not None):
             about = "is ending" if self._session.ended is None else "has ended"
             raise RavestateError(f"this conversation {about}: it takes no more input")
         match command:
@@ -198,9 +194,7 @@ async def _outside_of_any_task(function: Callable[[], T]) -> T:
 
 def gates_of(policy: Policy) -> Opens:
     """Return a function that evaluates the slot predicates of a policy."""
-    guards = {
-        (rule.name, clause.number): clause.guards for rule in policy.rule_plans for clause in rule.clauses
-    }
+    guards = {(rule.name, clause.number): clause.guards for rule in policy.rule_plans for clause in rule.clauses}
 
     def opens(rule: str, clause: int, number: int, value: Any) -> bool | None:
         found = guards.get((rule, clause), ())
@@ -239,10 +233,7 @@ class RecordedSource:
     def look(self) -> State:
         """Return the last written value of each slot."""
         values = {record.slot: record.value for record in self._records if isinstance(record, Set)}
-        slots = {
-            name: value if isinstance(value, Rendered) else render(value, VALUE)
-            for name, value in values.items()
-        }
+        slots = {name: value if isinstance(value, Rendered) else render(value, VALUE) for name, value in values.items()}
         return State(slots, [], *self.clock())
 
     def explain(self, rule: str) -> Explained:

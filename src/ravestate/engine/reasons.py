@@ -5,8 +5,6 @@ from __future__ import annotations
 from enum import StrEnum
 from typing import Any, Self
 
-__all__ = ["DropReason", "LossReason", "Outcome", "PassReason", "Reason", "StopReason", "Verdict"]
-
 
 def reason(*parts: str) -> Any:
     """Return the value of a `Reason` member. A bare tuple would hide from the type checker that members are strings."""

@@ -93,9 +93,7 @@ async def test_a_thousand_connections_that_say_nothing_are_bounded() -> None:
             try:
                 refused = 0
                 for one in silent[100:]:
-                    refused += b"too many connections from your address" in await asyncio.to_thread(
-                        everything, one
-                    )
+                    refused += b"too many connections from your address" in await asyncio.to_thread(everything, one)
                 assert refused > 850
                 assert served.files() - open_before <= 100
             finally:

@@ -135,9 +135,7 @@ async def test_a_token_with_a_control_character_is_refused_and_not_logged() -> N
                     await visit.recv()
                 assert visit.close_code == 4401
         reader, writer = await asyncio.open_connection("127.0.0.1", served.port)
-        writer.write(
-            f"GET /ws HTTP/1.1\r\nhost: {served.host}\r\nauthorization: Bearer {TOKEN}\0\r\n\r\n".encode()
-        )
+        writer.write(f"GET /ws HTTP/1.1\r\nhost: {served.host}\r\nauthorization: Bearer {TOKEN}\0\r\n\r\n".encode())
         assert b"400 Bad Request" in await reader.read()
         writer.close()
         assert served.end() == 0

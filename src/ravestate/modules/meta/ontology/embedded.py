@@ -33,8 +33,6 @@ from .store import RawNode, RawRelation
 from .tables import missing_tables, undeclared_types
 from .types import Types
 
-__all__ = ["EmbeddedStore"]
-
 RESERVE = 16 * 2**20
 """Free bytes on the disk that a write must leave: ladybug cannot recover from a failed write."""
 

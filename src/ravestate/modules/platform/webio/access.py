@@ -15,8 +15,6 @@ from .protocol import ProtocolError
 if TYPE_CHECKING:
     from .names import Settings
 
-__all__ = ["Access", "is_local"]
-
 PAUSE = 1.0
 """Seconds before the server refuses a wrong token, so that guessing takes long."""
 

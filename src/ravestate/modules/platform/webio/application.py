@@ -28,8 +28,6 @@ if TYPE_CHECKING:
 
     from .names import Settings
 
-__all__ = ["PAGE", "AccessMiddleware", "make_app"]
-
 PAGE = Path(__file__).parent / "page"
 """The output of ``npm run build`` in ``frontend/``."""
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-__all__ = ["Bucket"]
-
 
 class Bucket:
     """A rate limit: a burst, then so many a second.

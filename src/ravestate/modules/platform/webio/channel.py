@@ -11,8 +11,6 @@ from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from .protocol import CLOSING_CODES, Error, ProtocolError, serialise
 
-__all__ = ["LONGEST", "Channel"]
-
 LONGEST = 128 * 1024
 """The most bytes of a frame: the longest text has 10,000 characters, and JSON may need twelve bytes for each."""
 
@@ -43,9 +41,7 @@ class Channel:
                 await serve()
             except ProtocolError as error:
                 await self.send(serialise(Error(error.code, str(error))))
-                await self._socket.close(
-                    CLOSING_CODES.get(error.code, CLOSING_CODES["malformed"]), error.code
-                )
+                await self._socket.close(CLOSING_CODES.get(error.code, CLOSING_CODES["malformed"]), error.code)
         except WebSocketDisconnect:
             pass
 

@@ -37,8 +37,6 @@ if TYPE_CHECKING:
     from .access import Access
     from .sessions import Sessions
 
-__all__ = ["Connection"]
-
 BURST, RATE = 20, 5.0
 """Frames that a client may send at once, and each second after that. The server reads further frames later, and loses none.
 `Writing` has a limit of its own with the same numbers; the server ignores the rest."""
@@ -98,9 +96,7 @@ class Connection:
             first, newest = session.history.first, session.history.last
             agent = self._name_of(session)
             await self._send(
-                Welcome(
-                    VERSION, session.id, resumed, first, agent, self._inside, newest, True, self._suggestions
-                )
+                Welcome(VERSION, session.id, resumed, first, agent, self._inside, newest, True, self._suggestions)
             )
             await self._channel.both(self._read(session), self._write(session, max(last, first - 1), agent))
         finally:
@@ -193,9 +189,7 @@ def _common(one: str, other: str) -> int:
     """Return the length of the common beginning of two texts."""
     if other.startswith(one):  # the usual case: it grows
         return len(one)
-    return next(
-        (n for n, (a, b) in enumerate(zip(one, other, strict=False)) if a != b), min(len(one), len(other))
-    )
+    return next((n for n, (a, b) in enumerate(zip(one, other, strict=False)) if a != b), min(len(one), len(other)))
 
 
 def _units(text: str) -> int:

@@ -8,8 +8,6 @@ from typing import Literal
 
 from .protocol import Message
 
-__all__ = ["History"]
-
 Speaker = Literal["user", "agent"]
 
 MESSAGES = 500

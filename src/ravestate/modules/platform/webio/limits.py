@@ -17,8 +17,6 @@ from uvicorn.protocols.utils import ClientDisconnected
 from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
 from websockets.exceptions import InvalidState
 
-__all__ = ["LimitedHTTP", "LimitedWebSocket"]
-
 TIMEOUT = 10.0
 """Seconds that a client has to send its request, and then to read the answer."""
 
@@ -28,7 +26,9 @@ LOWEST_RATE = 8 * 1024
 STALL_TIMEOUT = 20.0
 """Seconds for which a client may leave data unread."""
 
-FULL = b"HTTP/1.1 503 Service Unavailable\r\nconnection: close\r\ncontent-type: text/plain\r\ncontent-length: %d\r\n\r\n%s"
+FULL = (
+    b"HTTP/1.1 503 Service Unavailable\r\nconnection: close\r\ncontent-type: text/plain\r\ncontent-length: %d\r\n\r\n%s"
+)
 
 FOREIGN = (
     "Invalid HTTP request received.",

@@ -12,8 +12,6 @@ from starlette.responses import PlainTextResponse, Response
 from starlette.types import Receive, Scope, Send
 from starlette.websockets import WebSocket
 
-__all__ = ["Pages"]
-
 KINDS = {
     ".css": "text/css; charset=utf-8",
     ".html": "text/html; charset=utf-8",
@@ -48,9 +46,7 @@ class Pages:
                 data = file.read_bytes()
                 packed = None if file.suffix in COMPRESSED else gzip.compress(data, mtime=0)
                 tag = f'"{hashlib.sha256(data).hexdigest()[:16]}"'
-                self._files[f"/{file.relative_to(folder).as_posix()}"] = _File(
-                    data, packed, KINDS[file.suffix], tag
-                )
+                self._files[f"/{file.relative_to(folder).as_posix()}"] = _File(data, packed, KINDS[file.suffix], tag)
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Answer a request; a WebSocket has no page here."""

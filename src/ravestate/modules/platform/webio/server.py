@@ -30,8 +30,6 @@ if TYPE_CHECKING:
 
     from .names import Settings
 
-__all__ = ["Server"]
-
 SPARE = 128
 """Open files of the process that the server leaves to others."""
 
@@ -77,9 +75,7 @@ class Server:
         """
         settings = self._settings
         self._socket = _listen(settings.host, settings.port)
-        limits = functools.partial(
-            LimitedHTTP, per_address=settings.per_address, most=_most(2 * settings.sessions)
-        )
+        limits = functools.partial(LimitedHTTP, per_address=settings.per_address, most=_most(2 * settings.sessions))
         self._uvicorn = _Uvicorn(
             uvicorn.Config(
                 self._app,
@@ -148,8 +144,7 @@ class Server:
 
         def lines(address: Callable[[str], str]) -> str:
             return (
-                "\n".join(f"The {name} is at {address(path)}" for name, path in pages.items())
-                + " (Ctrl-C ends it)\n"
+                "\n".join(f"The {name} is at {address(path)}" for name, path in pages.items()) + " (Ctrl-C ends it)\n"
             )
 
         if self._settings.token is None or sys.stdout.isatty():

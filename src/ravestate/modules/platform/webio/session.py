@@ -21,8 +21,6 @@ from .protocol import LONGEST_NAME, name_of
 if TYPE_CHECKING:
     from ravestate.runtime.context import Context
 
-__all__ = ["Ending", "Onlooker", "Session"]
-
 REMEMBERED = 512
 """The ids of a client's messages that a session remembers, to ignore repeated ones."""
 

@@ -12,8 +12,6 @@ from .session import Ending, Onlooker, Session
 if TYPE_CHECKING:
     from ravestate.runtime.agent import Agent
 
-__all__ = ["Sessions"]
-
 ONLOOKERS = 8
 """The most windows of one conversation at a time."""
 
@@ -33,9 +31,7 @@ class Sessions:
         self._keep = keep
         self._sessions: dict[str, Session] = {}
         self._tasks: dict[Session, asyncio.Task[None]] = {}
-        self._timers: dict[
-            Session, asyncio.TimerHandle
-        ] = {}  # those without a window; the oldest timer first
+        self._timers: dict[Session, asyncio.TimerHandle] = {}  # those without a window; the oldest timer first
         self._closed = False
 
     def __len__(self) -> int:
@@ -77,9 +73,7 @@ class Sessions:
             ProtocolError: The conversation has too many already.
         """
         if len(session.onlookers) >= ONLOOKERS:
-            raise ProtocolError(
-                "full", f"{ONLOOKERS} windows show this conversation already: close one of them"
-            )
+            raise ProtocolError("full", f"{ONLOOKERS} windows show this conversation already: close one of them")
         session.onlookers.add(onlooker)
         timer = self._timers.pop(session, None)
         if timer is not None:
@@ -108,9 +102,7 @@ class Sessions:
             await asyncio.wait(list(self._tasks.values()))
 
     def _abandon(self, session: Session) -> None:
-        self._timers[session] = asyncio.get_running_loop().call_later(
-            self._keep, self.leave, session, Ending.ABANDONED
-        )
+        self._timers[session] = asyncio.get_running_loop().call_later(self._keep, self.leave, session, Ending.ABANDONED)
 
     async def _make_room(self) -> None:
         """End a conversation without a window: one without words if possible, else the one left longest ago."""

@@ -8,8 +8,6 @@ import sys
 from collections.abc import Generator
 from dataclasses import dataclass
 
-__all__ = ["COLLECT", "SWITCH", "low_latency"]
-
 SWITCH = 0.0005
 """Seconds after which a computing thread gives way. An answer takes several turns of the event loop. With Python's
 default, each turn would wait 5 ms while a thread analyses a sentence."""
