@@ -57,9 +57,7 @@ def _arguments() -> argparse.Namespace:
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("question", nargs="*", help="which to ask; all by default")
-    parser.add_argument(
-        "--quick", action="store_true", help="fewer repetitions: a first look in about a minute"
-    )
+    parser.add_argument("--quick", action="store_true", help="fewer repetitions: a first look in about a minute")
     parser.add_argument("--json", type=Path, metavar="FILE", help="write the figures to a file as well")
     options = parser.parse_args()
     for name in options.question:

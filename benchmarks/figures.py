@@ -86,6 +86,4 @@ def measured(
 ) -> Figure:
     """Return a figure of ours alone; the target concerns the value."""
     spread = Spread.of(ours)
-    return Figure(
-        question, what, unit, spread, target=target, reached=None if reach is None else reach(spread.median)
-    )
+    return Figure(question, what, unit, spread, target=target, reached=None if reach is None else reach(spread.median))

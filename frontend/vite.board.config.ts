@@ -13,6 +13,7 @@ export default defineConfig({
     emptyOutDir: true,
     target: "es2022",
     assetsInlineLimit: 0,
+    license: { fileName: "assets/script-licences.md" }, // of the bundled packages
     modulePreload: { polyfill: false },
     rolldownOptions: {
       output: {

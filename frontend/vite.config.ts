@@ -1,22 +1,23 @@
-// The pages. What is built goes into the Python package and is committed, so that users need no Node.
+// The chat page. The build goes into the Python package and is committed, so users need no Node.
 import { svelte } from "@sveltejs/vite-plugin-svelte";
 import { defineConfig } from "vitest/config";
 
 export const outDir = "../src/ravestate/modules/platform/webio/page";
 
 export default defineConfig({
-  base: "./", // a page may be mounted anywhere
+  base: "./", // an application may mount the page anywhere
   plugins: [svelte()],
   build: {
     outDir,
     emptyOutDir: true,
     target: "es2022",
     assetsInlineLimit: 0,
+    license: { fileName: "assets/script-licences.md" }, // of the bundled packages
     modulePreload: { polyfill: false },
     rolldownOptions: {
       input: { chat: "index.html" },
       output: {
-        // Fixed names: the server tells versions apart by their content.
+        // Fixed names: the server tells versions apart by a hash of their content.
         entryFileNames: "assets/[name].js",
         chunkFileNames: "assets/[name].js",
         assetFileNames: "assets/[name][extname]",

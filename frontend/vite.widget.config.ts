@@ -1,4 +1,4 @@
-// The widget: one classic script, so that any page can load it from anywhere and it leaves no names behind.
+// The widget: one classic script, which any page can load and which defines no global names.
 import { defineConfig } from "vite";
 import { outDir } from "./vite.config.ts";
 

@@ -20,9 +20,7 @@ from ravestate.errors import nearest
         (rs.Resign, rs.RavestateError),
     ],
 )
-def test_each_error_derives_from_the_root_and_a_builtin(
-    error: type[Exception], builtin: type[Exception]
-) -> None:
+def test_each_error_derives_from_the_root_and_a_builtin(error: type[Exception], builtin: type[Exception]) -> None:
     assert issubclass(error, rs.RavestateError)
     assert issubclass(error, builtin)
 

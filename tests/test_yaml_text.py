@@ -72,9 +72,7 @@ READERS: dict[str, Callable[[Path], object]] = {
 
 @pytest.mark.parametrize("read", READERS.values(), ids=READERS)
 @pytest.mark.parametrize("kind", ["aliases", "mappings"])
-def test_every_file_of_a_user_is_read_within_bounds(
-    read: Callable[[Path], object], kind: str, tmp_path: Path
-) -> None:
+def test_every_file_of_a_user_is_read_within_bounds(read: Callable[[Path], object], kind: str, tmp_path: Path) -> None:
     text, message = HOSTILE[kind]
     (tmp_path / "file.yaml").write_text(text, encoding="utf-8")
     with pytest.raises(DeclarationError) as caught:

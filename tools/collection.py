@@ -364,9 +364,7 @@ def _geography(entry: Entry) -> Iterator[Sentence]:
     if like := first("Geography", "Area - comparative"):
         yield f"Compared in size, {name} is {short(semicolons(like))}.", "how big large area comparison"
     borders = re.sub(r"\s*\([^)]*\)", "", first("Geography", "Land boundaries", "border countries"))
-    neighbours = [
-        re.sub(r"\s+[\d,.]+ km.*$", "", item).strip() for item in re.split(r"; ?", borders) if item.strip()
-    ]
+    neighbours = [re.sub(r"\s+[\d,.]+ km.*$", "", item).strip() for item in re.split(r"; ?", borders) if item.strip()]
     if neighbours:
         count = f"{len(neighbours)} neighbouring {'countries' if len(neighbours) > 1 else 'country'}"
         yield (
@@ -451,9 +449,7 @@ def _people(entry: Entry) -> Iterator[Sentence]:
             f"The population of {name} is {population.partition(';')[0]}.",
             "how many people live inhabitants residents populated number of",
         )
-    noun = re.sub(
-        r"\((?:s|es|singular and plural)\)", "", get("People and Society", "Nationality", "noun")
-    ).strip()
+    noun = re.sub(r"\((?:s|es|singular and plural)\)", "", get("People and Society", "Nationality", "noun")).strip()
     noun = re.split(r"[;¦]", noun)[0]
     adjective = re.split(r"[;¦]", get("People and Society", "Nationality", "adjective"))[0]
     if noun and adjective:
@@ -461,9 +457,7 @@ def _people(entry: Entry) -> Iterator[Sentence]:
             f"Somebody from {name} is called {noun}; the adjective is {adjective}.",
             "nationality people inhabitants called citizens",
         )
-    languages = first("People and Society", "Languages", "Languages") or first(
-        "People and Society", "Languages"
-    )
+    languages = first("People and Society", "Languages", "Languages") or first("People and Society", "Languages")
     languages = re.sub(r"^[^:]{3,30}: ", "", languages)
     official = official_in(languages)
     asked = "language speak spoken talk which"
@@ -495,9 +489,7 @@ def _people(entry: Entry) -> Iterator[Sentence]:
         ("Tobacco use", "total", "share of people who use tobacco", "smoke smokers"),
         ("Alcohol consumption per capita", "total", "alcohol consumption per head", "drink capita"),
     ):  # fmt: skip
-        value = (
-            first("People and Society", field) if key == "text" else first("People and Society", field, key)
-        )
+        value = first("People and Society", field) if key == "text" else first("People and Society", field, key)
         if value:
             yield (
                 f"The {what} of {name} is {short(value.replace('children born/woman', 'children per woman'))}.",
@@ -513,9 +505,7 @@ def _people(entry: Entry) -> Iterator[Sentence]:
             "dense crowded",
         )
     cities = first("People and Society", "Major urban areas - population")
-    found = re.findall(
-        r"([\d.,]+(?: million)?) ([^\W\d][^,]*?)(?: \((?:capital)[^)]*\))?(?=,|\s\(\d{4}\)|$|;)", cities
-    )
+    found = re.findall(r"([\d.,]+(?: million)?) ([^\W\d][^,]*?)(?: \((?:capital)[^)]*\))?(?=,|\s\(\d{4}\)|$|;)", cities)
     if found:
         towns = [f"{person(town).strip()} ({count})" for count, town in found]
         yield (
@@ -665,9 +655,7 @@ def across(entries: list[Entry]) -> Iterator[tuple[str, list[Sentence]]]:
         return number(entry.first("People and Society", "Population", "total"))
 
     def ranked(among: list[Entry], value: Callable[[Entry], float | None]) -> list[tuple[float, Entry]]:
-        return sorted(
-            ((v, e) for e in among if (v := value(e)) is not None), key=lambda pair: (-pair[0], pair[1].code)
-        )
+        return sorted(((v, e) for e in among if (v := value(e)) is not None), key=lambda pair: (-pair[0], pair[1].code))
 
     for where, among in (
         ("the world", states),
@@ -705,9 +693,7 @@ def across(entries: list[Entry]) -> Iterator[tuple[str, list[Sentence]]]:
             )
             life = ranked(
                 states,
-                lambda e: number(
-                    e.first("People and Society", "Life expectancy at birth", "total population")
-                ),
+                lambda e: number(e.first("People and Society", "Life expectancy at birth", "total population")),
             )
             said.append(
                 (
@@ -731,9 +717,7 @@ def across(entries: list[Entry]) -> Iterator[tuple[str, list[Sentence]]]:
             )
             many = ranked(
                 states,
-                lambda e: float(
-                    len(re.findall(r"\d km", e.first("Geography", "Land boundaries", "border countries")))
-                ),
+                lambda e: float(len(re.findall(r"\d km", e.first("Geography", "Land boundaries", "border countries")))),
             )
             said.append(
                 (
@@ -755,11 +739,7 @@ def across(entries: list[Entry]) -> Iterator[tuple[str, list[Sentence]]]:
                 )
             )
         if where == "the world":  # which is what is meant where nothing is said
-            said += [
-                (text.replace(" in the world", "", 1), asked)
-                for text, asked in said
-                if " in the world" in text
-            ]
+            said += [(text.replace(" in the world", "", 1), asked) for text, asked in said if " in the world" in text]
         yield ("World" if where == "the world" else where), said
 
     by_currency: dict[str, list[str]] = {}
@@ -810,11 +790,7 @@ def world(entry: Entry) -> Iterator[Sentence]:
             yield f"The ten {label.split()[0]} {singular} in the world are {listed(items)}.", asked
     oceans = re.search(r"top ten largest water bodies: ?([^¦]*)", entry.get("Geography", "Area - rankings"))
     if oceans:
-        items = [
-            item.strip().replace("sq km", "square kilometres")
-            for item in oceans[1].split(";")
-            if item.strip()
-        ]
+        items = [item.strip().replace("sq km", "square kilometres") for item in oceans[1].split(";") if item.strip()]
         yield f"The largest ocean in the world is the {items[0]}.", "biggest sea"
         yield (
             f"The smallest ocean in the world is the {next(i for i in items if 'Arctic Ocean' in i)}.",

@@ -27,9 +27,9 @@ ROOT = Path(__file__).parents[1]
 sys.path.insert(0, str(ROOT / "tests"))
 
 import ravestate as rs  # noqa: E402
-from ravestate.engine import trace as t  # noqa: E402
 from ravestate.draw.style import NODE_COLOURS, PAPER, TEXT  # noqa: E402
 from ravestate.draw.text import width  # noqa: E402
+from ravestate.engine import trace as t  # noqa: E402
 from repo.snippets import Page  # noqa: E402
 
 FOLDER = ROOT / "docs" / "pictures"
@@ -192,9 +192,7 @@ def timeline(page: ModuleType, variable: str, *, end: float) -> str:
     signals = [name for name in signals if name != "rawio:output:changed"]
     bars = list(_bars(records, end))
     rules = _seen(bar.rule for bar in bars)
-    said = [
-        (r.time, r.payload) for r in records if isinstance(r, t.Born) and r.signal == "rawio:output:changed"
-    ]
+    said = [(r.time, r.payload) for r in records if isinstance(r, t.Born) and r.signal == "rawio:output:changed"]
     left = 24 + max(width(name, 13) for name in (*signals, *rules, "said"))
     scale, row, top = (860 - left) / end, 34.0, 20.0
     rows = {name: top + row * (place + 0.5) for place, name in enumerate([*signals, *rules, "said"])}
@@ -227,9 +225,7 @@ def timeline(page: ModuleType, variable: str, *, end: float) -> str:
             sheet.text(begin + wide + (14 if followed else 6), rows[bar.rule] + 4, bar.words, "tiny", "start")
     for time, words in said:
         sheet.box(x(time) - 3, rows["said"] - 9, 6, 18, "slot", 2)
-        sheet.text(
-            x(time) + 8, rows["said"] + 4, words if len(words) < 40 else words[:38] + "…", "tiny", "start"
-        )
+        sheet.text(x(time) + 8, rows["said"] + 4, words if len(words) < 40 else words[:38] + "…", "tiny", "start")
     at = left + 16
     for kind, words in (("signal", "a spike is born"), ("holds", "holds, not yet ready"), ("waits", "ready, and waits"), ("rule", "runs"), ("slot", "output is written")):  # fmt: skip
         if kind == "signal":
@@ -312,9 +308,7 @@ def groups(page: ModuleType, variable: str) -> str:
                 if py != y:
                     sheet.line(f"M{px + pw:.1f} {py:.1f}L{x - 2:.1f} {y:.1f}")
                     continue
-                near = min(
-                    (p for p in place if place[p][1] == y and place[p][0] > px), key=lambda p: place[p][0]
-                )
+                near = min((p for p in place if place[p][1] == y and place[p][0] > px), key=lambda p: place[p][0])
                 if near == spike.spike:
                     sheet.line(f"M{px + pw:.1f} {py:.1f}H{x - 2:.1f}")
                 else:
@@ -383,9 +377,7 @@ def instant() -> str:
     y = 96
     sheet.state(98, y, 172, "Something happens", ["an input, a deadline,", "a rule that ends"], "signal")
     sheet.state(320, y, 176, "1  Free rules start", ["that write nothing,", "and so exclude nobody"], "rule")
-    sheet.state(
-        560, y, 190, "2  Writers ask", ["for consent, the greatest", "effective utility first"], "waits"
-    )
+    sheet.state(560, y, 190, "2  Writers ask", ["for consent, the greatest", "effective utility first"], "waits")
     sheet.state(814, y, 168, "3  Flags settle", ["core:pressure, then", "core:activity"], "slot")
     for begin, end in ((184, 232), (408, 465), (655, 730)):
         sheet.line(f"M{begin} {y}H{end - 2}")
@@ -416,9 +408,7 @@ def main(arguments: list[str]) -> int:
     """Write or check."""
     if "--check" in arguments:
         names = stale()
-        print(
-            "\n".join(f"docs/pictures/{name} is not up to date" for name in names), end="\n" if names else ""
-        )
+        print("\n".join(f"docs/pictures/{name} is not up to date" for name in names), end="\n" if names else "")
         return 1 if names else 0
     FOLDER.mkdir(parents=True, exist_ok=True)
     for name, text in pictures().items():

@@ -19,7 +19,7 @@ import sys
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 from pydantic import TypeAdapter
 
@@ -99,6 +99,8 @@ def _constants(code: str) -> Iterator[tuple[str, str]]:
                 ast.Expr(value=ast.Constant(value=str(text))),
             ):
                 yield name, text
+            case _:
+                pass
 
 
 # ------------------------------------------------------------------------------------ declarations
@@ -136,9 +138,7 @@ def _fields(name: str, schema: Schema, records: Mapping[str, Schema]) -> str:
         tag = record["properties"]["type"]["const"]
         frames[tag] = {field: kind for field, kind in kinds.items() if kind and field != "type"}
     comment = _comment(f"The fields that each {name} must have, by what `typeof` calls them.")
-    return (
-        f'{comment}export const FIELDS: Record<{name}["type"], Record<string, string>> = {_literal(frames)};'
-    )
+    return f'{comment}export const FIELDS: Record<{name}["type"], Record<string, string>> = {_literal(frames)};'
 
 
 # ------------------------------------------------------------------------------------ types
@@ -165,7 +165,7 @@ def _type(schema: Schema) -> str:
             return f"({kind})[]" if " | " in kind else f"{kind}[]"
         case "object":
             values = schema.get("additionalProperties")
-            return f"Record<string, {_type(values) if isinstance(values, dict) else 'unknown'}>"
+            return f"Record<string, {_type(cast('Schema', values)) if isinstance(values, dict) else 'unknown'}>"
         case _:
             return "unknown"
 
@@ -180,8 +180,8 @@ def _typeof(schema: Schema) -> str:
     """Return what ``typeof`` says of a value; nothing if it may be one of several."""
     if "$ref" in schema:
         return "object"
-    kinds = {"integer": "number", "array": "object"}
-    return kinds.get(schema.get("type", ""), schema.get("type", ""))
+    kind = str(schema.get("type", ""))
+    return {"integer": "number", "array": "object"}.get(kind, kind)
 
 
 # ------------------------------------------------------------------------------------ text
@@ -193,7 +193,8 @@ def _literal(value: Any, indent: int = 0) -> str:
     if not value:
         return "{}"
     pad = " " * (indent + 2)
-    inner = "".join(f"{pad}{_key(key)}: {_literal(entry, indent + 2)},\n" for key, entry in value.items())
+    entries = cast("dict[str, Any]", value).items()
+    inner = "".join(f"{pad}{_key(key)}: {_literal(entry, indent + 2)},\n" for key, entry in entries)
     return f"{{\n{inner}{' ' * indent}}}"
 
 

@@ -71,9 +71,7 @@ class Agent:
             self.env.define_function(speak, name)
             act = f"(assert (output (text ({name} ?text))))"
         # The output is taken once there is one: that is what keeps the fallback quiet.
-        self.env.build(
-            f"(defrule {name} (declare (salience {salience})) ({on} (text ?text)) (not (output)) => {act})"
-        )
+        self.env.build(f"(defrule {name} (declare (salience {salience})) ({on} (text ?text)) (not (output)) => {act})")
 
     def turn(self, text: str, expected: str) -> tuple[Seconds, Seconds]:
         """Put an input. Returns the time to the answer, and the time with clearing away for the next."""

@@ -55,9 +55,7 @@ def ask(bench: Bench) -> Iterable[Figure]:
             target="<= 1",
             reach=lambda r: r <= 1,
         )
-        yield compare(
-            "answer", f"k={k}: answered", mine, "CLIPS, rules assert in C", theirs["CLIPS quickest"]
-        )
+        yield compare("answer", f"k={k}: answered", mine, "CLIPS, rules assert in C", theirs["CLIPS quickest"])
         yield compare("answer", f"k={k}: and ready for the next", turn, "CLIPS", theirs["CLIPS turn"])
         yield compare("answer", f"k={k}: answered, virtual time", virtual, "CLIPS", theirs["CLIPS"])
         yield compare("answer", f"k={k}: answered", mine, f"floor: {k + 1} bare callbacks", theirs["floor"])

@@ -98,9 +98,7 @@ def ask(bench: Bench) -> Iterable[Figure]:
     for _ in bench.rounds(7, 2):
         for spikes in (FEW, MANY):
             repeated = 10 if spikes == FEW else 1  # so few spikes are too short a while to measure
-            bursts[spikes].append(
-                statistics.median(ours.ask("burst", spikes=spikes) for _ in range(repeated))
-            )
+            bursts[spikes].append(statistics.median(ours.ask("burst", spikes=spikes) for _ in range(repeated)))
             waits = [ours.ask("in_wait", spikes=spikes) for _ in range(repeated)]
             more[spikes].append(statistics.median(wait["one more"] for wait in waits))
             beside[spikes].append(statistics.median(wait["answer"] for wait in waits))

@@ -89,15 +89,11 @@ def ask(bench: Bench) -> Iterable[Figure]:
     """Measure decisions, the prompt and memory, against the claims."""
     found = bench.ours(__name__).ask("decide", rounds=bench.several(8, 2))
     decided = found["decided"]
-    yield measured(
-        "text_agent", "who answers is decided", decided, target="< 15 ms", reach=lambda s: s < DECIDE
-    )
+    yield measured("text_agent", "who answers is decided", decided, target="< 15 ms", reach=lambda s: s < DECIDE)
     slow = [statistics.quantiles(decided, n=20)[-1]]
     yield measured("text_agent", "... in 19 of 20 cases", slow)
     prompts = [_prompt() for _ in bench.rounds(9, 3)]
-    yield measured(
-        "text_agent", "from start to prompt", prompts, target="< 1.5 s", reach=lambda s: s < PROMPT
-    )
+    yield measured("text_agent", "from start to prompt", prompts, target="< 1.5 s", reach=lambda s: s < PROMPT)
     yield measured("text_agent", "held", found["held"], unit="B", target="< 500 MB", reach=lambda b: b < HOLD)
 
 

@@ -146,9 +146,7 @@ def ask(bench: Bench) -> Iterable[Figure]:
         for times, found in zip((bare, mounted, watched), ours.ask("answered"), strict=True):
             times += found
     for title, times in (("recorded, nobody looks on", mounted), ("a board looks on", watched)):
-        yield compare(
-            "watching", title, times, "no board", bare, target="<= 1.05", reach=lambda ratio: ratio <= 1.05
-        )
+        yield compare("watching", title, times, "no board", bare, target="<= 1.05", reach=lambda ratio: ratio <= 1.05)
 
 
 if __name__ == "__main__":

@@ -133,9 +133,7 @@ async def serve_echo(tell: Any) -> None:
 
     listener = socket.create_server(("127.0.0.1", 0))
     tell(listener.getsockname()[1])
-    config = uvicorn.Config(
-        echo, log_config=None, log_level="error", ws_per_message_deflate=False, lifespan="off"
-    )
+    config = uvicorn.Config(echo, log_config=None, log_level="error", ws_per_message_deflate=False, lifespan="off")
     server = uvicorn.Server(config)
     server.install_signal_handlers = lambda: None  # type: ignore[attr-defined]  # not in a thread
     await server.serve(sockets=[listener])

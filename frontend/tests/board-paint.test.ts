@@ -4,7 +4,7 @@ import type { TraceRecord } from "../src/board/protocol";
 import { Trace } from "../src/board/trace";
 import { View } from "../src/board/view";
 
-/** A canvas that remembers which words are written on it, and where; each character is 6 pixels wide. */
+/** A canvas that records its texts and their places. Each character is 6 pixels wide. */
 function canvas() {
   const written: [string, number, number][] = [];
   const kept: Record<string, unknown> = {
@@ -56,27 +56,27 @@ function words(records: TraceRecord[], more: Partial<Scene> = {}): string[] {
   return written.map(([text]) => text).filter((text) => !/^\d+ s$/.test(text));
 }
 
-test("what was said stands beside its dot", () => {
+test("a text appears beside its dot", () => {
   expect(words([born(1, 1, '"Who is there?"'), born(2, 5, "null"), born(3, 8, "7")])).toEqual([
     "“Who is there?”",
   ]);
 });
 
-test("it is shortened where the next dot comes soon, and left out where there is no room", () => {
+test("a text is shortened before the next dot, and left out without room", () => {
   expect(words([born(1, 1, '"Who is there, and why?"'), born(2, 2, "null")])).toEqual(["“Who is the…"]);
   expect(words([born(1, 1, '"Who is there, and why?"'), born(2, 1.4, "null")])).toEqual([]);
 });
 
-test("what the context itself raises leaves room for it", () => {
+test("the context's own spikes leave room for a text", () => {
   const own = born(2, 1.1, "true", "core:pressure:changed");
   expect(words([born(1, 1, '"Who is there?"'), own])).toEqual(["“Who is there?”"]);
 });
 
-test("a text that was cut is shown as far as it goes", () => {
+test("a cut text appears as far as it goes", () => {
   expect(words([born(1, 1, '"Who is th')])).toEqual(["“Who is th…"]);
 });
 
-test("a bar that waits says for whom, if it is wide enough", () => {
+test("a waiting bar names its rivals if it is wide enough", () => {
   const waits: TraceRecord[] = [
     {
       kind: "held",
@@ -94,14 +94,14 @@ test("a bar that waits says for whom, if it is wide enough", () => {
   expect(words(waits, { now: 1.2 })).toEqual([]);
 });
 
-test("what is pointed at is what was said, and what the context raises where that is drawn, below it", () => {
+test("the pointer finds input, and the context's own spikes below it", () => {
   const both = scene([born(1, 1, '"Who is there?"'), born(2, 1.01, "true", "core:activity:true")]);
   expect(at(both, 100, AXIS + 13).spike?.id).toBe(1);
   expect(at(both, 100, AXIS + 22).spike?.id).toBe(2);
   expect(at(both, 300, AXIS + 13)).toEqual({});
 });
 
-test("of a crowd of spikes the first and the last have a line, and whichever is pointed at", () => {
+test("a crowd of spikes has lines for the first, the last and the chosen one", () => {
   const piece = (spike: number) =>
     ({ ...born(spike, spike / 10, "null", "m:piece"), parents: [1] }) as TraceRecord;
   const lines = (pieces: number, kin: number[]) => {

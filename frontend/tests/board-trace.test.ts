@@ -65,7 +65,7 @@ test("an activation gathers, has all, waits, runs and is done", () => {
   expect(trace.lane("m:r").longest).toBe(4);
 });
 
-test("one that gives up its last spike has ended, and says who answered", () => {
+test("an activation ends with its last spike, and names the rule that answered", () => {
   const trace = new Trace();
   trace.add([held(1, 7, "m:r", 1, ["m:u"]), held(1, 7, "m:r", 2, ["m:u"]), gaveup(2, 7, 1, "age")]);
   expect(trace.bar(7)?.to).toBeNull();
@@ -74,7 +74,7 @@ test("one that gives up its last spike has ended, and says who answered", () => 
   expect([bar.to, bar.outcome, gaveUp(bar, trace)]).toEqual([3, "consumed", "m:best answered it"]);
 });
 
-test("who answered is told with the rule that raised what it heard", () => {
+test("the answering rule is named with the rule that raised its input", () => {
   spikes = 0;
   const trace = new Trace();
   trace.add([
@@ -85,13 +85,13 @@ test("who answered is told with the rule that raised what it heard", () => {
     held(1, 7, "m:r", 1),
     gaveup(2, 7, 1, "consumed", "m:verbalise", 6),
     held(1, 8, "m:r", 1),
-    gaveup(2, 8, 1, "consumed", "m:verbalise"), // from a trace that does not tell the run
+    gaveup(2, 8, 1, "consumed", "m:verbalise"), // from an older trace, without runs
   ]);
   expect(gaveUp(trace.bar(7) as Bar, trace)).toBe("m:skill → m:verbalise answered it");
   expect(gaveUp(trace.bar(8) as Bar, trace)).toBe("m:verbalise answered it");
 });
 
-test("of two runs that which answered is told, and what raised a spike of another cause has no part in it", () => {
+test("the run that answered is named, without rules of other causes", () => {
   spikes = 0;
   const trace = new Trace();
   trace.add([
@@ -114,13 +114,13 @@ test("of two runs that which answered is told, and what raised a spike of anothe
   expect(gaveUp(trace.bar(9) as Bar, trace)).toBe("m:one → m:say answered it");
 });
 
-test("one whose rule resigned by another run says so", () => {
+test("a resignation of another run is named", () => {
   const trace = new Trace();
   trace.add([held(1, 7, "m:r", 1), gaveup(2, 7, 1, "resigned", "m:r", 6)]);
   expect(gaveUp(trace.bar(7) as Bar, trace)).toBe("the rule resigned");
 });
 
-test("who was behind the answer is looked for when it is told, not while the records come in", () => {
+test("the rule behind an answer is looked up on demand", () => {
   const trace = new Trace();
   let asked = 0;
   trace.spike =
@@ -143,13 +143,13 @@ test("who was behind the answer is looked for when it is told, not while the rec
   expect(trace.bar(1001)?.run).toBe(1000);
 });
 
-test("one that loses a spike after it had all gathers again", () => {
+test("an activation that loses a spike gathers again", () => {
   const trace = new Trace();
   trace.add([held(1, 7, "m:r", 1, ["m:t"]), held(2, 7, "m:r", 2), gaveup(3, 7, 2, "withdrawn")]);
   expect(bars(trace, "m:r")).toEqual([[1, null, "", ["gathering", "complete", "gathering"]]]);
 });
 
-test("activations of one rule at one time lie in rows, and rows are used again", () => {
+test("simultaneous activations lie in rows, and rows are reused", () => {
   const trace = new Trace();
   trace.add([held(1, 1, "m:r", 1), held(2, 2, "m:r", 2)]);
   expect(trace.lane("m:r").rows).toBe(2);
@@ -159,7 +159,7 @@ test("activations of one rule at one time lie in rows, and rows are used again",
   expect(trace.lane("m:r").rows).toBe(4);
 });
 
-test("a spike knows the rule that raised it, and its kin in both directions", () => {
+test("a spike knows its rule, ancestors and descendants", () => {
   spikes = 0;
   const trace = new Trace();
   trace.add([
@@ -186,7 +186,7 @@ test("groups that merge are one", () => {
   expect(found()).toEqual([1, 1, 1, 9]); // asked again
 });
 
-test("after a gap, bars that are alive no more are ended, and those that are new are shown", () => {
+test("after a gap, dead bars end and new ones appear", () => {
   const trace = new Trace();
   trace.add([held(1, 1, "m:r", 1), { kind: "gap", time: 2, spikes: 40 }]);
   const alive = { condition: "", lacks: [], waits_for: [], until: null };
@@ -196,7 +196,7 @@ test("after a gap, bars that are alive no more are ended, and those that are new
   expect(trace.gaps).toEqual([{ time: 2, spikes: 40 }]);
 });
 
-test("the oldest is forgotten, with all that is of it, and the rest stays", () => {
+test("the oldest records go with everything that depends on them", () => {
   spikes = 0;
   const trace = new Trace(1000);
   for (let i = 0; i < 3000; i++) {
@@ -215,7 +215,7 @@ test("the oldest is forgotten, with all that is of it, and the rest stays", () =
   expect(trace.first).toBe(trace.records[0]?.time);
 });
 
-test("a file in which groups merge in circles is read all the same", () => {
+test("a file with circular merges is readable", () => {
   const trace = new Trace();
   trace.add([
     { kind: "merged", time: 1, group: 2, into: 1 },
@@ -224,7 +224,7 @@ test("a file in which groups merge in circles is read all the same", () => {
   expect([trace.group(1), trace.group(2)]).toEqual([1, 1]);
 });
 
-test("groups stay one though those between them are forgotten", () => {
+test("groups stay merged when those between them are forgotten", () => {
   spikes = 0;
   const trace = new Trace(10);
   trace.add([
@@ -270,7 +270,7 @@ test("the first item at or after a time is found", () => {
   expect([-1, 0, 1.5, 9].map((time) => from([0, 1, 2, 3], time, (item) => item))).toEqual([0, 0, 2, 4]);
 });
 
-test("what came of a cause is what took a spike of its group, merged ones too, in order", () => {
+test("the result of a cause has all activations on its group, in order", () => {
   const trace = new Trace();
   spikes = 0;
   trace.add([

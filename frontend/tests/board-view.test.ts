@@ -2,7 +2,7 @@ import { expect, test } from "vitest";
 import { label, step, View } from "../src/board/view";
 import { typed, value } from "../src/board/words";
 
-test("while it follows, now is at the right edge", () => {
+test("while the view follows, the present is at the right edge", () => {
   const view = new View();
   view.advance(100);
   expect(view.x(100, 1000)).toBeCloseTo(960);
@@ -11,13 +11,13 @@ test("while it follows, now is at the right edge", () => {
   expect(view.x(101, 1000)).toBeCloseTo(960);
 });
 
-test("at the beginning, time begins at the left edge", () => {
+test("at first, the start is at the left edge", () => {
   const view = new View();
   view.advance(3);
   expect(view.x(0, 1000)).toBeCloseTo(40);
 });
 
-test("who moves it holds it", () => {
+test("moving the view stops it from following", () => {
   const view = new View();
   view.advance(100);
   view.pan(-5);
@@ -39,7 +39,7 @@ test("zooming keeps the time under the pointer where it is, within bounds", () =
   expect(view.span).toBe(View.MOST);
 });
 
-test("marks of an axis are round, and as exact as they need be", () => {
+test("the marks of an axis are round", () => {
   expect(step(10, 1000, 90)).toBe(1);
   expect(step(0.01, 1000, 90)).toBeCloseTo(0.001);
   expect(step(3600, 1000, 90)).toBe(600);
@@ -51,7 +51,7 @@ test("marks of an axis are round, and as exact as they need be", () => {
   ]);
 });
 
-test("what is typed is JSON, or else text", () => {
+test("a typed value is JSON, or else text", () => {
   expect([typed("7"), typed('{"a": [1]}'), typed("hello"), typed('"7"')]).toEqual([
     7,
     { a: [1] },
@@ -60,7 +60,7 @@ test("what is typed is JSON, or else text", () => {
   ]);
 });
 
-test("a value that was cut shows that it was", () => {
+test("a cut value ends with dots", () => {
   expect(value({ text: "abc", cut: true })).toBe("abc…");
   expect(value({ text: "abcdef" }, 3)).toBe("abc…");
 });

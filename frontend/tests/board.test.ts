@@ -69,7 +69,7 @@ const POLICY: Description = {
   diagram: { nodes: [], edges: [] },
 };
 
-/** A server that only remembers what it was told. */
+/** A server that records its frames. */
 class Server {
   sent: Record<string, unknown>[] = [];
   kept: Address[] = [];
@@ -120,20 +120,20 @@ const input = (spike: number, time: number, text: string): TraceRecord => ({
   payload: { text },
 });
 
-test("it says what it looks at, and asks for the diagram", () => {
+test("it asks for its conversation and the diagram", () => {
   const [server, board] = Server.open();
   expect(server.sent[0]).toEqual({ type: "hello", v: 1, session: "secret" });
   expect(server.sent[1]).toEqual({ type: "diagram", unfolded: ["m"] });
   expect([board.status, board.title, board.live]).toEqual(["open", "Elske", true]);
 });
 
-test("it is called as the agent calls itself", () => {
+test("the title is the agent's name", () => {
   const [server, board] = Server.open();
   server.tell({ type: "renamed", title: "Robin" });
   expect(board.title).toBe("Robin");
 });
 
-test("why not is asked of the newest input, and the answer shows rules that can be followed", async () => {
+test("why-not is about the newest input, and the answer links to rules", async () => {
   const [server, board] = Server.open();
   server.tell({
     type: "records",
@@ -167,7 +167,7 @@ test("why not is asked of the newest input, and the answer shows rules that can 
   expect(board.rule).toBe("m:answer");
 });
 
-test("an answer to what was asked before is left aside", () => {
+test("an answer to an earlier question is ignored", () => {
   const [server, board] = Server.open();
   server.tell({
     type: "records",
@@ -183,7 +183,7 @@ test("an answer to what was asked before is left aside", () => {
   expect(board.why).toBeNull();
 });
 
-test("what went unseen is counted: by the server's gaps, and by who was too slow", () => {
+test("missed spikes are counted, from gaps and from a slow connection", () => {
   const [server, board] = Server.open();
   server.tell({
     type: "records",
@@ -211,7 +211,7 @@ test("a slot is written as JSON or as text; markup in a value is shown as text",
   expect(container.textContent).toContain(markup);
   await fireEvent.click(screen.getByRole("button", { name: "Edit m:secret" }));
   const field = screen.getByLabelText("New value of m:secret, as JSON or as text");
-  expect(field).toHaveProperty("value", ""); // what is no JSON cannot be edited, only replaced
+  expect(field).toHaveProperty("value", ""); // a value beyond JSON can only be replaced
   await fireEvent.input(field, { target: { value: '{"a": 1}' } });
   await fireEvent.click(screen.getByRole("button", { name: "Write" }));
   expect(server.sent.at(-1)).toEqual({ type: "put", slot: "m:secret", value: { a: 1 } });
@@ -223,7 +223,7 @@ test("the time stands still while the clock is paused", () => {
   expect([board.paused, board.now()]).toEqual([true, 7.25]);
 });
 
-test("what is exported is a trace that the board opens", () => {
+test("the board can open its export", () => {
   const [server, board] = Server.open();
   server.tell({ type: "records", records: [input(3, 1, "1")], missed: 0, behind: 0, now: 2, paused: false });
   const file = JSON.parse(board.export());
@@ -239,7 +239,7 @@ test("a chosen conversation that has ended is not tried again", () => {
   expect(board.trouble).toContain("not connected");
 });
 
-test("the search finds rules by all of its words, in what they are called, hear, write or emit", () => {
+test("the search matches all words in names, conditions, slots and signals", () => {
   const [, board] = Server.open();
   expect(board.found).toBe(null);
   board.search = " Output ANSWER ";
@@ -248,7 +248,7 @@ test("the search finds rules by all of its words, in what they are called, hear,
   expect(board.found?.size).toBe(0);
 });
 
-test("what came of the newest cause is told, and leads to the rules", async () => {
+test("the result of the newest cause links to its rules", async () => {
   const [server, board] = Server.open();
   const took = (rule: string, activation: number): TraceRecord => ({
     kind: "held",
@@ -278,7 +278,7 @@ test("what came of the newest cause is told, and leads to the rules", async () =
   expect([board.rule, board.spike]).toEqual(["m:answer", 3]);
 });
 
-test("why not follows the newest cause until one is chosen by hand, and again when that is let go", async () => {
+test("why-not follows the newest cause unless the user chooses one", async () => {
   const [server, board] = Server.open();
   const came = (...records: TraceRecord[]) =>
     server.tell({ type: "records", records, missed: 0, behind: 0, now: 2, paused: false });
@@ -296,14 +296,14 @@ test("why not follows the newest cause until one is chosen by hand, and again wh
   expect(asked()).toEqual([3, 4, 3, 5]);
 });
 
-test("what is raised by hand is a cause, although rules raise it as well", () => {
+test("a signal that a user raises is a cause, even if rules raise it, too", () => {
   const [server, board] = Server.open();
   const born = { ...input(3, 1, '"Hugo"'), signal: "m:named" } as TraceRecord; // no input of the policy
   server.tell({ type: "records", records: [born], missed: 0, behind: 0, now: 2, paused: false });
   expect(board.causes.map((spike) => spike.signal)).toEqual(["m:named"]);
 });
 
-test("a cause is called by what was said, which slot was written, or which signal was raised", () => {
+test("a cause has the name of its text, slot or signal", () => {
   const [server, board] = Server.open();
   const came = (spike: number, signal: string, text: string, json = true): TraceRecord =>
     ({ ...input(spike, spike, text), signal, payload: json ? { text } : { text, json } }) as TraceRecord;
@@ -324,7 +324,7 @@ test("a cause is called by what was said, which slot was written, or which signa
   ]);
 });
 
-test("what only background rules hear does not take the place of what was said", () => {
+test("a signal for background rules does not replace the input", () => {
   const [server, board] = Server.open();
   const talk = { ...rule("m:talk"), background: false };
   const watch = { ...rule("m:watch"), background: true };
@@ -334,14 +334,14 @@ test("what only background rules hear does not take the place of what was said",
   const came = (spike: number, signal: string) => ({ ...input(spike, spike, "null"), signal }) as TraceRecord;
   const clock = { missed: 0, behind: 0, now: 9, paused: false };
   server.tell({ type: "records", records: [came(3, "m:typing")], ...clock });
-  expect(board.cause?.id).toBe(3); // nothing was said yet
+  expect(board.cause?.id).toBe(3); // no input yet
   server.tell({ type: "records", records: [came(4, "m:said"), came(5, "m:typing")], ...clock });
   expect(board.cause?.id).toBe(4);
   board.point(5);
   expect(board.cause?.id).toBe(5);
 });
 
-test("however long somebody writes, what was said before stays the cause", () => {
+test("typing does not replace the last input", () => {
   const [server, board] = Server.open();
   const signals = [
     { ...POLICY.signals[0], name: "m:typing", slot: null, hearers: ["m:watch"] },
@@ -373,14 +373,14 @@ test("a write counts as heard if any of its signals is", () => {
   expect(board.cause?.id).toBe(5);
 });
 
-test("what a rule raised is no cause, though it went unseen that the rule ran", () => {
+test("a rule's signal is no cause, even if its run was missed", () => {
   const [server, board] = Server.open();
   const born = { ...input(3, 1, "1"), source: 77 } as TraceRecord;
   server.tell({ type: "records", records: [born], missed: 5, behind: 0, now: 2, paused: false });
   expect(board.causes).toEqual([]);
 });
 
-test("the signals of one write are one cause, and that which was pointed at stands for it", () => {
+test("the signals of one write are one cause, represented by the chosen one", () => {
   const [server, board] = Server.open();
   const records = [
     { ...input(3, 1, "true"), signal: "m:lit:changed" },
@@ -394,7 +394,7 @@ test("the signals of one write are one cause, and that which was pointed at stan
   expect(board.cause?.id).toBe(3);
 });
 
-test("to choose a cause is to see what came of it; the newest one is followed again", () => {
+test("choosing a cause shows its time; Newest follows again", () => {
   const [server, board] = Server.open();
   const records: TraceRecord[] = [
     input(3, 1, '"hi"'),
@@ -410,7 +410,7 @@ test("to choose a cause is to see what came of it; the newest one is followed ag
   expect([board.cause?.id, board.follows]).toEqual([4, true]);
 });
 
-test("of a cause that is still worked at, all until now is seen; of a recording, the newest cause is", () => {
+test("an open cause is visible up to the present; a recording shows its newest cause", () => {
   const [server, board] = Server.open();
   const records: TraceRecord[] = [
     input(3, 10, '"hi"'),
@@ -430,7 +430,7 @@ test("of a cause that is still worked at, all until now is seen; of a recording,
   expect([board.view.left < 50, board.view.right > 50]).toEqual([true, true]);
 });
 
-test("what came of it has everybody, however many pieces an answer had", () => {
+test("the result has all rules, however many parts an answer has", () => {
   const [server, board] = Server.open();
   const records: TraceRecord[] = [input(3, 1, '"hi"')];
   for (let run = 1; run <= 700; run++) {
@@ -450,7 +450,7 @@ test("what came of it has everybody, however many pieces an answer had", () => {
   expect(board.view.right).toBeGreaterThan(9);
 });
 
-test("what came of it follows each step while the clock stands still", () => {
+test("the result follows each step of a stopped clock", () => {
   vi.useFakeTimers();
   try {
     const [server, board] = Server.open();
@@ -473,11 +473,11 @@ test("what came of it follows each step while the clock stands still", () => {
   }
 });
 
-test("who looked at a rule comes back to the cause that he chose, or else to the newest", () => {
+test("closing a rule returns to the chosen cause, or else to the newest", () => {
   const [server, board] = Server.open();
   const records = [input(3, 1, "1"), input(4, 2, "2")];
   server.tell({ type: "records", records, missed: 0, behind: 0, now: 9, paused: false });
-  board.enter("m:talk", 4); // which was the newest
+  board.enter("m:talk", 4); // the newest
   board.enter("m:answer", 4);
   board.leave();
   expect([board.rule, board.spike]).toEqual([null, null]);
@@ -487,7 +487,7 @@ test("who looked at a rule comes back to the cause that he chose, or else to the
   expect([board.rule, board.spike]).toEqual([null, 3]);
 });
 
-test("what begins like JSON and is none is not sent as a text", async () => {
+test("invalid JSON is not sent as text", async () => {
   const [server, board] = Server.open();
   render(Slots, { board });
   await fireEvent.click(screen.getByRole("button", { name: "Edit m:secret" }));
@@ -505,7 +505,7 @@ test("what begins like JSON and is none is not sent as a text", async () => {
   }
 });
 
-test("what came of it lists a rule that ran many times once", () => {
+test("the result lists a rule with many runs once", () => {
   const [server, board] = Server.open();
   const records: TraceRecord[] = [input(3, 1, '"hi"')];
   for (let run = 1; run <= 14; run++) {
@@ -520,7 +520,7 @@ test("what came of it lists a rule that ran many times once", () => {
   expect(rows[0]).toContain("ran × 14");
 });
 
-test("in a conversation that has ended nothing can be said, written or raised, and it says so", () => {
+test("an ended conversation takes no input, and says so", () => {
   const [server, board] = Server.open();
   const slots = { "m:input": { text: "1" } };
   server.tell({ type: "state", slots, activations: [], now: 1, paused: false });
@@ -537,7 +537,7 @@ test("in a conversation that has ended nothing can be said, written or raised, a
   expect(screen.queryByRole("button", { name: "Edit m:input" })).toBeNull();
 });
 
-test("what is refused can be mended: the field is there again, and has what was typed", async () => {
+test("a refused value comes back to its field, with the reason beside it", async () => {
   const [server, board] = Server.open();
   render(Slots, { board });
   await fireEvent.click(screen.getByRole("button", { name: "Edit m:secret" }));
@@ -554,7 +554,7 @@ test("what is refused can be mended: the field is there again, and has what was 
   expect(screen.queryByLabelText(label)).toBeNull();
 });
 
-test("what is refused is there again after a change of panels, with what was typed, and only once", () => {
+test("a refused value comes back after a change of panels, once", () => {
   const [server, board] = Server.open();
   board.send({ type: "put", slot: "m:secret", value: "7" }, ' "7"');
   server.tell({ type: "error", code: "refused", text: "no", of: "put" });
@@ -568,7 +568,7 @@ test("what is refused is there again after a change of panels, with what was typ
   expect(screen.queryByLabelText(label)).toBeNull();
 });
 
-test("what was taken does not come back because something else is refused, or somebody else is looked at", () => {
+test("an accepted value does not come back after another refusal or conversation", () => {
   const [server, board] = Server.open();
   board.send({ type: "say", text: "Hello" });
   server.tell({ type: "error", code: "refused", text: "the spike is forgotten", of: "why" });
@@ -592,7 +592,7 @@ test("a field gives the focus back to the button that opened it", async () => {
   expect(document.activeElement).toBe(button);
 });
 
-test("the clock of a conversation that has ended cannot be turned", () => {
+test("an ended conversation has no clock controls", () => {
   const [server, board] = Server.open();
   server.tell({ type: "records", records: [], missed: 0, behind: 0, now: 2, paused: true });
   server.tell({ type: "ended", text: "the visitor left" });
@@ -603,7 +603,7 @@ test("the clock of a conversation that has ended cannot be turned", () => {
   }
 });
 
-test("what was typed stays when there is no connection", async () => {
+test("a typed text stays without a connection", async () => {
   const [server, board] = Server.open();
   render(Say, { board });
   const field = screen.getByLabelText("Say something to the agent");
@@ -615,7 +615,7 @@ test("what was typed stays when there is no connection", async () => {
   board.stop();
 });
 
-test("Enter writes a slot, Shift and Enter begins a line", async () => {
+test("Enter writes a slot, Shift and Enter starts a line", async () => {
   const [server, board] = Server.open();
   render(Slots, { board });
   await fireEvent.click(screen.getByRole("button", { name: "Edit m:secret" }));
@@ -627,12 +627,12 @@ test("Enter writes a slot, Shift and Enter begins a line", async () => {
   expect(server.sent.at(-1)).toEqual({ type: "put", slot: "m:secret", value: 7 });
 });
 
-test("Enter in the search chooses the first rule that is left, Escape ends the search", async () => {
+test("Enter chooses the first match of the search, Escape clears it", async () => {
   const [, board] = Server.open();
   render(Tools, { board, main: "timeline", idle: true, modules: false, onzoom() {}, onfit() {} });
   const field = screen.getByLabelText("Filter rules");
   await fireEvent.keyDown(field, { key: "Enter" });
-  expect(board.rule).toBeNull(); // nothing is searched for
+  expect(board.rule).toBeNull(); // an empty search
   await fireEvent.input(field, { target: { value: "ans" } });
   await fireEvent.keyDown(field, { key: "Enter" });
   expect([board.rule, board.search]).toEqual(["m:answer", ""]);
@@ -641,7 +641,7 @@ test("Enter in the search chooses the first rule that is left, Escape ends the s
   expect([board.rule, board.search]).toEqual(["m:answer", ""]);
 });
 
-test("a recording has the name of its file, and leads back to what was there before", async () => {
+test("a recording shows its file name, and closing it returns to the conversation", async () => {
   const [server, board] = Server.open();
   const handlers = { ondownload() {}, onopen() {}, onturn() {} };
   render(Bar, { board, main: "timeline", ...handlers });
@@ -658,7 +658,7 @@ test("a recording has the name of its file, and leads back to what was there bef
   expect([board.recording, board.follows]).toEqual([null, true]);
 });
 
-test("whoever named no conversation stays with the one that was found: after a recording, and a lost connection", () => {
+test("the board keeps its conversation after a recording and a lost connection", () => {
   const [server, board] = Server.open({ token: "key" });
   const asked = () => server.sent.filter(({ type }) => type === "hello").at(-1);
   expect(asked()).toEqual({ type: "hello", v: 1, token: "key" });
@@ -671,7 +671,7 @@ test("whoever named no conversation stays with the one that was found: after a r
   expect(asked()).toEqual({ type: "hello", v: 1, visitor: "v", token: "key" });
 });
 
-test("conversations are known by when they began, with whom, and their last words", () => {
+test("the list shows each conversation's start, visitor and last words", () => {
   const [server, board] = Server.open();
   const began = new Date(2026, 4, 1, 11, 32).getTime();
   server.tell({

@@ -20,20 +20,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-__all__ = [
-    "DeclarationError",
-    "DeclarationErrors",
-    "EngineError",
-    "PlatformError",
-    "RavestateError",
-    "RuleError",
-    "RuleTimeout",
-    "RunEnded",
-    "UndeclaredError",
-    "UsageError",
-    "nearest",
-]
-
 
 class RavestateError(Exception):
     """The root of the tree: ``except rs.RavestateError`` catches all exceptions of Ravestate's own."""

@@ -18,9 +18,6 @@ from ravestate.declare.settings import SettingRef
 from ravestate.declare.wording import short
 from ravestate.errors import DeclarationError, DeclarationErrors, nearest
 
-__all__ = ["Settings", "load_settings", "value_of", "variable_of"]
-
-
 TEXT = (str, pydantic.SecretStr)
 
 
@@ -37,9 +34,7 @@ class _SettingsMeta(ModelMetaclass):
             if item.startswith("_"):
                 raise
             fields: Iterable[str] = cls.__dict__.get("__pydantic_fields__", ())
-            raise AttributeError(
-                f"{cls.__name__} has no setting {item!r}{nearest(item, fields)}", name=item
-            ) from None
+            raise AttributeError(f"{cls.__name__} has no setting {item!r}{nearest(item, fields)}", name=item) from None
 
 
 class Settings(pydantic.BaseModel, metaclass=_SettingsMeta):
@@ -104,9 +99,7 @@ def load_settings(
                 )
             continue
         if not isinstance(values, Mapping):  # pyright: ignore[reportUnnecessaryIsInstance]  # it comes from a file
-            faults.append(
-                DeclarationError(f"settings for {name!r} must be fields and values, not {short(values)}")
-            )
+            faults.append(DeclarationError(f"settings for {name!r} must be fields and values, not {short(values)}"))
             continue
         try:
             found[name] = model(**{**_from_environment(name, model, variables), **values})
@@ -122,9 +115,7 @@ def variable_of(module: str, field: str) -> str:
     return f"RAVESTATE_{module}_{field}".upper().replace("-", "_")
 
 
-def _from_environment(
-    name: str, model: type[pydantic.BaseModel], variables: Mapping[str, str]
-) -> dict[str, Any]:
+def _from_environment(name: str, model: type[pydantic.BaseModel], variables: Mapping[str, str]) -> dict[str, Any]:
     found: dict[str, Any] = {}
     for field in model.model_fields:
         text = variables.get(variable_of(name, field))
@@ -155,17 +146,13 @@ def value_of(text: str, model: type[pydantic.BaseModel], field: str, parse: Call
     return text if is_word and not kinds.isdisjoint(TEXT) else value
 
 
-def _faults(
-    name: str, model: type[pydantic.BaseModel], error: pydantic.ValidationError
-) -> Iterable[DeclarationError]:
+def _faults(name: str, model: type[pydantic.BaseModel], error: pydantic.ValidationError) -> Iterable[DeclarationError]:
     for detail in error.errors():
         field = ".".join(str(part) for part in detail["loc"])
         top = str(detail["loc"][0]) if detail["loc"] else ""
         where = f"setting {name}.{field}" if field else f"settings of {name}"
         if detail["type"] == "extra_forbidden":
-            yield DeclarationError(
-                f"{where}: module {name!r} has no such setting{nearest(field, model.model_fields)}"
-            )
+            yield DeclarationError(f"{where}: module {name!r} has no such setting{nearest(field, model.model_fields)}")
         elif detail["type"] == "missing":
             yield DeclarationError(
                 f"{where} is missing: write --set {name}.{field}=... or settings={{{name!r}: {{{field!r}: ...}}}}, or set "

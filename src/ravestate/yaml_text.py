@@ -13,8 +13,6 @@ from yaml.composer import Composer
 
 from ravestate.errors import DeclarationError
 
-__all__ = ["compose_yaml", "load_yaml"]
-
 DEEPEST = 50
 """Levels of nesting that a text may have."""
 

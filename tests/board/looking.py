@@ -1,4 +1,4 @@
-"""Inspectors for tests: clients that speak the board's protocol with the application in memory, in virtual time."""
+"""Test clients of the board's protocol, in memory and virtual time."""
 
 import asyncio
 import contextlib
@@ -46,21 +46,21 @@ async def talk(ctx: rs.RuleContext) -> None:
 
 @gossip.rule(when=cheered)
 async def bow(ctx: rs.RuleContext) -> None:
-    """Take what was cheered."""
+    """Accept a payload."""
 
 
 async def passing(seconds: float) -> None:
-    """Let virtual time pass."""
+    """Wait for virtual time."""
     loop = asyncio.get_running_loop()
     assert isinstance(loop, VirtualLoop)
     await Clock(loop).sleep(seconds)
 
 
 class Loop(VirtualLoop):
-    """Time jumps to what is due next; what is meant for a thread is done at once."""
+    """A virtual loop that runs work for threads at once."""
 
     def run_in_executor(self, executor: Any, func: Any, *args: Any) -> Any:
-        """Do it here and now."""
+        """Run the function at once."""
         future = self.create_future()
         try:
             future.set_result(func(*args))
@@ -70,7 +70,7 @@ class Loop(VirtualLoop):
 
 
 def in_virtual_time(test: Callable[..., Coroutine[Any, Any, None]]) -> Callable[..., None]:
-    """Run an async test function on such a loop."""
+    """Run an async test function on a virtual loop."""
 
     @functools.wraps(test)
     def run(*arguments: Any, **named: Any) -> None:
@@ -88,7 +88,7 @@ async def board(
     title: str | None = "Elske",
     **settings: Any,
 ) -> AsyncGenerator[Starlette]:
-    """The page of an agent, and the board beside it."""
+    """Serve the page of an agent with its board."""
     agent = RecordedAgent(*(modules or (gossip, parrot)), webio, settings={"webio": settings})
     beside = routes(agent.recorders if recorded else None, recording, title)
     app = webio.app(agent, beside, INSIDE)
@@ -107,7 +107,7 @@ class Look(Visit):
         self.records: list[dict[str, Any]] = []
 
     async def begin(self, **fields: Any) -> dict[str, Any]:
-        """Say hello; the welcome. What is alive has been told after it."""
+        """Say hello and return the welcome; the state that follows is read, too."""
         self.tell("hello", v=1, **fields)
         welcome = await self.next()
         if welcome["type"] == "welcome":
@@ -115,7 +115,7 @@ class Look(Visit):
         return welcome
 
     async def answer(self, type: str) -> dict[str, Any]:
-        """The next frame of a type; records are collected on the way."""
+        """Return the next frame of a type, and collect records on the way."""
         while True:
             frame = await self.next()
             if frame["type"] == "records":
@@ -124,13 +124,13 @@ class Look(Visit):
                 return frame
 
     async def until(self, kind: str, **fields: Any) -> dict[str, Any]:
-        """The next record of a kind with such fields, or the one that has come already."""
+        """Return a record of a kind with these fields, and wait for it if necessary."""
         while (found := self.found(kind, **fields)) is None:
             await self.answer("records")
         return found
 
     def found(self, kind: str, **fields: Any) -> dict[str, Any] | None:
-        """The first of the records that have come that is of a kind and has such fields."""
+        """Return the first record so far of a kind with these fields."""
         return next(
             (r for r in self.records if r["kind"] == kind and all(r.get(k) == v for k, v in fields.items())),
             None,

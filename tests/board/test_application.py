@@ -1,4 +1,4 @@
-"""The board's routes: recordings that are sent to be looked at."""
+"""The board's routes: uploads of recordings."""
 
 import asyncio
 import json
@@ -46,9 +46,7 @@ def test_a_recording_that_was_sent_is_looked_at(trace: bytes) -> None:
     test()
 
 
-def test_of_recordings_that_come_together_one_is_read_at_a_time(
-    trace: bytes, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_of_recordings_that_come_together_one_is_read_at_a_time(trace: bytes, monkeypatch: pytest.MonkeyPatch) -> None:
     taken: list[str] = []
 
     async def slowly(work: Callable[..., Any], *arguments: Any) -> Any:
@@ -62,9 +60,7 @@ def test_of_recordings_that_come_together_one_is_read_at_a_time(
         async with board() as app, client(app) as browser:
             with monkeypatch.context() as patch:
                 patch.setattr(asyncio, "to_thread", slowly)
-                answers = await asyncio.gather(
-                    *(browser.post("/board/recordings", content=trace) for _ in range(2))
-                )
+                answers = await asyncio.gather(*(browser.post("/board/recordings", content=trace) for _ in range(2)))
             assert [answer.status_code for answer in answers] == [201, 201]
 
     test()
@@ -72,13 +68,13 @@ def test_of_recordings_that_come_together_one_is_read_at_a_time(
 
 
 async def drops(data: bytes, every: float, each: int) -> AsyncGenerator[bytes]:
-    """Data in pieces, with seconds between them."""
+    """Yield data in parts, with seconds between them."""
     for start in range(0, len(data), each):
         yield data[start : start + each]
         await passing(every)
 
 
-def test_who_sends_slowly_holds_nobody_up(trace: bytes) -> None:
+def test_a_slow_upload_delays_no_other(trace: bytes) -> None:
     @in_virtual_time
     async def test() -> None:
         clock = asyncio.get_running_loop().time
@@ -95,14 +91,12 @@ def test_who_sends_slowly_holds_nobody_up(trace: bytes) -> None:
     test()
 
 
-def test_more_than_a_few_at_once_are_told_to_try_again(trace: bytes) -> None:
+def test_more_than_a_few_uploads_at_once_are_refused(trace: bytes) -> None:
     @in_virtual_time
     async def test() -> None:
         async with board() as app, client(app) as browser:
             slow = [
-                asyncio.create_task(
-                    browser.post("/board/recordings", content=drops(trace, 5.0, 1 + len(trace) // 3))
-                )
+                asyncio.create_task(browser.post("/board/recordings", content=drops(trace, 5.0, 1 + len(trace) // 3)))
                 for _ in range(application.AT_ONCE)
             ]
             await passing(1)
@@ -116,7 +110,7 @@ def test_more_than_a_few_at_once_are_told_to_try_again(trace: bytes) -> None:
 
 
 @in_virtual_time
-async def test_what_comes_for_too_long_is_refused_and_leaves_the_way_free() -> None:
+async def test_an_upload_that_takes_too_long_is_refused() -> None:
     clock = asyncio.get_running_loop().time
     async with board() as app, client(app) as browser:
         for _ in range(2):
@@ -133,9 +127,7 @@ async def test_what_comes_for_too_long_is_refused_and_leaves_the_way_free() -> N
             assert clock() - before == pytest.approx(application.LONGEST)  # pyright: ignore[reportUnknownMemberType]
 
 
-def test_what_is_too_large_is_refused_and_the_next_one_is_taken(
-    trace: bytes, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_recording_that_is_too_large_is_refused(trace: bytes, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(application, "LARGEST", len(trace))
 
     @in_virtual_time
@@ -152,14 +144,14 @@ def test_what_is_too_large_is_refused_and_the_next_one_is_taken(
     test()
 
 
-def test_what_the_page_exports_at_most_can_be_sent_back(trace: bytes) -> None:
+def test_the_largest_export_can_be_uploaded(trace: bytes) -> None:
     records = json.loads(trace)["records"]
     a_record = len(json.dumps(records)) / len(records)
     assert 1.5 * a_record * 125_000 < application.LARGEST  # names and payloads are longer elsewhere
 
 
 @in_virtual_time
-async def test_who_goes_away_in_the_middle_leaves_the_way_free() -> None:
+async def test_an_aborted_upload_delays_no_other() -> None:
     async with board() as app, client(app) as browser:
         scope = {
             "type": "http", "asgi": {"version": "3.0"}, "http_version": "1.1", "method": "POST", "scheme": "http",
@@ -189,15 +181,13 @@ async def test_a_site_that_may_embed_the_chat_may_not_connect_to_the_board_nor_s
             assert (look.accepted, refused["status"]) == (False, 403)
         async with Look(app, origin=HERE) as look:
             assert (await look.begin())["type"] == "welcome"
-        assert (
-            await browser.post("/board/recordings", content=b"{}", headers={"origin": site})
-        ).status_code == 403
+        assert (await browser.post("/board/recordings", content=b"{}", headers={"origin": site})).status_code == 403
         framing = {}
         for path in ("/", "/board", "/board/", "/board/index.html", "/board/nothing", "/board/recordings"):
             policy = (await browser.get(path)).headers["content-security-policy"]
             framing[path] = policy.rpartition("; ")[2]
         assert framing.pop("/") == f"frame-ancestors 'self' {site}"
-        assert framing.pop("/board") == f"frame-ancestors 'self' {site}"  # it leads there
+        assert framing.pop("/board") == f"frame-ancestors 'self' {site}"  # it redirects there
         assert set(framing.values()) == {"frame-ancestors 'self'"}
 
 

@@ -1,4 +1,4 @@
-"""The description of a policy: utilities add up, and everybody is named on both sides."""
+"""The description of a policy: utilities add up, and both ends of each relation agree."""
 
 import math
 
@@ -23,7 +23,7 @@ def test_the_terms_and_predicates_of_each_clause_make_up_its_utility() -> None:
             assert term.nats == pytest.approx(-math.log(term.rules / len(found.rules)))
 
 
-def test_hearers_and_raisers_readers_and_writers_are_told() -> None:
+def test_signals_and_slots_name_the_rules_that_use_them() -> None:
     found = describe(rs.compile(gossip, parrot))
     (question,) = [signal for signal in found.signals if signal.name == "gossip:question"]
     (output,) = [slot for slot in found.slots if slot.name == "rawio:output"]

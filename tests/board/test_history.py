@@ -1,4 +1,4 @@
-"""What is read out of a trace, of one causal group."""
+"""The index of a trace for one causal group."""
 
 import pytest
 
@@ -11,7 +11,7 @@ def born(spike: int, signal: str, group: int = 1, source: int = 0, time: float =
 
 
 def run(number: int, rule: str, spikes: tuple[int, ...], begin: float, end: float | None) -> list[Record]:
-    """A run, from a time to another one (seconds); None: it runs still."""
+    """Return the records of a run between two times (seconds); an end of None means that it still runs."""
     ended = [] if end is None else [Settled(end, number, rule, "done", "", True)]
     return [Started(begin, number, rule, 0, spikes), *ended]
 
@@ -37,7 +37,7 @@ def test_whether_a_rule_ran_at_a_time(time: float, runs: bool) -> None:
         born(1, "m:s"),
         born(2, "m:s", group=2),
         *run(1, "m:r", (1,), 1.0, 5.0),
-        *run(2, "m:r", (1,), 2.0, 2.2),  # beside it
+        *run(2, "m:r", (1,), 2.0, 2.2),  # in parallel
         *run(3, "m:r", (2,), 5.2, 6.0),  # for another cause
         *run(4, "m:r", (1,), 7.0, None),
     ]
@@ -58,7 +58,7 @@ def test_the_rule_behind_a_run_raised_a_spike_of_this_group() -> None:
     ]
     history = History(records, 3)
     assert [history.before(number) for number in (3, 4, 2)] == ["m:classify", "", ""]
-    assert [history.before(number) for number in (0, 99)] == ["", ""]  # not known
+    assert [history.before(number) for number in (0, 99)] == ["", ""]  # unknown
 
 
 def test_the_first_that_answered_is_the_one_that_ended_first_and_not_one_of_another_cause() -> None:
@@ -75,7 +75,7 @@ def test_the_first_that_answered_is_the_one_that_ended_first_and_not_one_of_anot
     first = history.answered(hears)
     assert first is not None
     assert (first.id, first.end) == (3, 2.0)
-    last = history.answered({**hears, "m:quick": [{"m:t"}]})  # at m:s it only looks
+    last = history.answered({**hears, "m:quick": [{"m:t"}]})  # it only reads m:s
     assert last is not None
     assert last.id == 1
     assert history.answered({"m:other": [{"m:s"}]}) is None
@@ -88,7 +88,7 @@ def test_the_value_of_a_slot_is_the_last_that_was_written_by_then() -> None:
     assert history.value("m:y", 9.0) is None
 
 
-def test_what_is_given_up_in_one_instant_was_not_lacking_before() -> None:
+def test_spikes_lost_in_one_instant_were_not_lacking_before() -> None:
     held = [Held(0.0, 7, "m:r", 0, 1, "m:s", ("m:t", "m:u")), Held(1.0, 7, "m:r", 0, 2, "m:t", ("m:u",))]
     lost = [GaveUp(2.0, 7, "m:r", spike, signal, "age") for spike, signal in ((1, "m:s"), (2, "m:t"))]
     history = History([born(1, "m:s"), born(2, "m:t"), *held, *lost], 1)

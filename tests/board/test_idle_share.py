@@ -1,4 +1,4 @@
-"""How much time a process has to spare: a starved one has none."""
+"""The idle share of a process: a starved one has none."""
 
 from pathlib import Path
 
@@ -9,7 +9,7 @@ from ravestate.board.idle_share import IdleShare
 
 
 class Clocks:
-    """Three clocks (seconds), which the test sets forward."""
+    """Three clocks (seconds) under the test's control."""
 
     passed = computed = kept = 0.0
 
@@ -28,12 +28,12 @@ def clocks(monkeypatch: pytest.MonkeyPatch) -> Clocks:
     return clocks
 
 
-def test_what_was_not_computed_is_to_spare(clocks: Clocks) -> None:
+def test_time_without_work_is_idle(clocks: Clocks) -> None:
     spare = IdleShare()
     clocks.on(2.0, computed=0.5)
     assert spare.share() == 0.75
     clocks.on(1.0, computed=1.0)
-    assert spare.share() == 0.0  # since it was last asked
+    assert spare.share() == 0.0  # since the last call
 
 
 def test_a_process_that_other_programs_keep_waiting_has_nothing_to_spare(clocks: Clocks) -> None:
@@ -54,7 +54,7 @@ def test_several_threads_at_work_leave_nothing_to_spare(clocks: Clocks) -> None:
 @pytest.mark.parametrize(
     ("told", "seconds"), [("5000000000 1500000000 7\n", 1.5), ("", 0.0), ("5 x 7", 0.0), (None, 0.0)]
 )
-def test_a_system_that_does_not_tell_is_taken_to_have_kept_nobody_waiting(
+def test_without_a_measure_no_time_counts_as_waiting(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, told: str | None, seconds: float
 ) -> None:
     file = tmp_path / "schedstat"

@@ -1,4 +1,4 @@
-"""Inspectors: what they see, ask and do; and what they may not."""
+"""Inspectors: their view, questions and commands, and the limits."""
 
 import json
 from typing import Any
@@ -39,7 +39,7 @@ async def test_it_sees_the_policy_and_what_happens_from_the_beginning() -> None:
 
 
 @in_virtual_time
-async def test_the_chat_page_is_told_where_to_look_inside() -> None:
+async def test_the_chat_page_gets_the_address_of_the_board() -> None:
     async with board() as app, Visit(app) as visit:
         assert (await visit.hello())["inside"] == "board/"
 
@@ -97,7 +97,7 @@ def test_of_many_conversations_the_newest_are_listed_and_the_one_that_is_looked_
 
 
 @in_virtual_time
-async def test_who_names_no_conversation_is_not_shown_one_that_is_ending() -> None:
+async def test_the_default_conversation_is_not_one_that_is_ending() -> None:
     slow = rs.Module("slow", requires=(rawio, interloc))
 
     @slow.rule(when=interloc.users.removed, writes=rawio.output)
@@ -149,9 +149,7 @@ async def test_why_not_is_answered_with_the_right_reason() -> None:
         look.tell("why", rule="gossip:answer", spike=spike)
         found = await look.answer("why")
     assert found["verdict"] == "untouched"
-    assert found["missing"][0]["raisers"][0]["words"].startswith(
-        "gossip:classify finished without raising it"
-    )
+    assert found["missing"][0]["raisers"][0]["words"].startswith("gossip:classify finished without raising it")
     assert found["whole"] is True
 
 
@@ -170,7 +168,7 @@ async def test_a_rule_is_explained_while_it_waits() -> None:
 
 
 async def step_until(look: Look, kind: str, **fields: Any) -> dict[str, Any]:
-    """Do one thing after another until there is such a record."""
+    """Step until there is such a record."""
     for _ in range(20):
         found = look.found(kind, **fields)
         if found is not None:
@@ -195,9 +193,7 @@ async def test_the_clock_is_paused_stepped_and_continued() -> None:
         started = await step_until(look, "started", rule="gossip:classify")
         assert started["time"] < 1
         settled = await step_until(look, "settled", rule="gossip:classify")
-        assert settled["time"] == pytest.approx(
-            started["time"] + 0.2
-        )  # nothing was due: the clock was set forward
+        assert settled["time"] == pytest.approx(started["time"] + 0.2)  # nothing was due, so the clock moved
         await passing(30)
         assert not look.found("settled", rule="gossip:talk")
         look.tell("resume")
@@ -256,7 +252,7 @@ async def test_slots_are_written_and_signals_raised_by_hand() -> None:
         ([], "a frame is an object"),
     ],
 )  # fmt: skip
-def test_what_it_says_wrongly_is_told_and_harms_nobody(frame: Any, words: str) -> None:
+def test_a_wrong_command_gets_an_error(frame: Any, words: str) -> None:
     @in_virtual_time
     async def test() -> None:
         async with board() as app, Look(app) as look:
@@ -272,7 +268,7 @@ def test_what_it_says_wrongly_is_told_and_harms_nobody(frame: Any, words: str) -
 
 
 @in_virtual_time
-async def test_what_is_no_frame_is_told() -> None:
+async def test_a_malformed_frame_gets_an_error() -> None:
     async with board() as app, Look(app) as look:
         await look.begin()
         for text in ("{", b"\x00", "[" * 5000, '{"type": []}'):
@@ -290,7 +286,7 @@ async def test_what_is_no_frame_is_told() -> None:
         ({"type": "hello", "v": 1, "recording": "lost"}, 4404),
     ],
 )
-def test_what_cannot_be_looked_at_closes_the_connection(first: dict[str, Any], code: int) -> None:
+def test_a_wrong_hello_closes_the_connection(first: dict[str, Any], code: int) -> None:
     @in_virtual_time
     async def test() -> None:
         async with board() as app, Look(app) as look:
@@ -303,7 +299,7 @@ def test_what_cannot_be_looked_at_closes_the_connection(first: dict[str, Any], c
 
 
 @in_virtual_time
-async def test_what_is_too_large_closes_the_connection_first_or_later() -> None:
+async def test_a_frame_that_is_too_large_closes_the_connection() -> None:
     async with board() as app:
         async with Look(app) as look:
             look.tell("hello", v=1, token="x" * channel.LONGEST)
@@ -319,7 +315,7 @@ async def test_what_is_too_large_closes_the_connection_first_or_later() -> None:
 
 
 @in_virtual_time
-async def test_who_says_nothing_is_not_waited_for() -> None:
+async def test_a_silent_client_is_dropped() -> None:
     async with board() as app, Look(app) as look:
         assert (await look.next())["code"] == "silent"
         await look.next()
@@ -341,7 +337,7 @@ async def test_the_board_asks_for_the_same_token_and_origin() -> None:
 
 
 @in_virtual_time
-async def test_a_browser_that_stops_reading_holds_nobody_up_and_misses_what_is_forgotten() -> None:
+async def test_a_browser_that_stops_reading_delays_nothing_and_misses_records() -> None:
     ticks = rs.Module("ticks", requires=(rawio,))
     tick = ticks.signal("tick")
 
@@ -368,7 +364,7 @@ async def test_a_browser_that_stops_reading_holds_nobody_up_and_misses_what_is_f
 
 
 @in_virtual_time
-async def test_who_asks_on_and_on_and_does_not_read_is_dropped() -> None:
+async def test_a_client_that_asks_without_reading_is_dropped() -> None:
     async with board() as app, Look(app) as look:
         await look.begin()
         look.reading.clear()
@@ -403,7 +399,7 @@ async def test_huge_and_strange_values_are_cut() -> None:
 
 
 @in_virtual_time
-async def test_a_rule_that_is_added_is_told() -> None:
+async def test_a_new_rule_is_announced() -> None:
     async with board() as app, Look(app) as look:
         await look.begin()
         (session,) = app.state.sessions
@@ -430,13 +426,13 @@ async def test_the_diagram_comes_laid_out_folded_or_not() -> None:
 
 
 def names_told(frames: list[dict[str, Any]]) -> list[dict[str, Any]]:
-    """The records of what the agent calls itself that are in some frames."""
+    """Return the records with the agent's name in some frames."""
     records = [record for frame in frames for record in frame.get("records", ())]
     return [record for record in records if record.get("slot") == "interloc:agent"]
 
 
 @in_virtual_time
-async def test_it_is_told_how_the_agent_calls_itself_and_that_a_title_that_was_set_stays() -> None:
+async def test_the_agents_name_is_announced_and_a_fixed_title_stays() -> None:
     async with board(title=None) as app, Look(app) as look:
         assert (await look.begin())["title"] == "Ravestate"
         look.tell("put", slot="interloc:agent", value="Robin")
@@ -449,13 +445,13 @@ async def test_it_is_told_how_the_agent_calls_itself_and_that_a_title_that_was_s
         told: list[dict[str, Any]] = []
         while not names_told(told):
             told += await look.frames("records")
-        look.tell("say", text="Hello")  # and whatever is told of after that
+        look.tell("say", text="Hello")  # later frames, too
         told += await look.frames("records")
         assert "renamed" not in [frame["type"] for frame in told]
 
 
 @in_virtual_time
-async def test_the_end_of_a_conversation_is_told() -> None:
+async def test_the_end_of_a_conversation_is_announced() -> None:
     async with board() as app, Visit(app) as visit, Look(app) as look:
         await visit.hello()
         await look.begin(session=visit.session)

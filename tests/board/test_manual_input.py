@@ -1,4 +1,4 @@
-"""What is said, written and raised by hand is as sound as what comes from the platform and from rules."""
+"""Input on the board passes the same checks as input from platforms and rules."""
 
 import dataclasses
 import enum
@@ -47,7 +47,7 @@ SLOTS = {slot.name: slot for slot in (text, perhaps, place, free, lamp, people)}
 
 
 def emit(signal: rs.Signal[Any], holds: object = None, **payload: Any) -> None:
-    """Raise a signal by hand."""
+    """Raise a signal on the board."""
     slot = SLOTS.get(signal.name.rpartition(":")[0])
     check_payload(signal, Emit(type="emit", signal=signal.name, **payload), slot, holds)
 
@@ -70,7 +70,7 @@ def emit(signal: rs.Signal[Any], holds: object = None, **payload: Any) -> None:
         (lamp.true, {"payload": True}),
     ],
 )
-def test_what_a_signal_carries_is_raised(signal: rs.Signal[Any], payload: dict[str, Any]) -> None:
+def test_a_fitting_payload_is_raised(signal: rs.Signal[Any], payload: dict[str, Any]) -> None:
     emit(signal, **payload)
 
 
@@ -96,20 +96,16 @@ def test_what_a_signal_carries_is_raised(signal: rs.Signal[Any], payload: dict[s
         (people.changed, {}, r"write the slot"),
     ],
 )  # fmt: skip
-def test_what_a_signal_does_not_carry_is_refused(
-    signal: rs.Signal[Any], payload: dict[str, Any], words: str
-) -> None:
+def test_a_wrong_payload_is_refused(signal: rs.Signal[Any], payload: dict[str, Any], words: str) -> None:
     with pytest.raises(rs.RavestateError, match=words):
         emit(signal, **payload)
 
 
 @pytest.mark.parametrize("holds", [None, 7, float("inf"), "x", [1], {"a": {"b": [1, 2]}}, "x" * 10**6])
-def test_what_has_no_type_takes_anything_unless_it_holds_what_json_cannot_say(holds: object) -> None:
+def test_an_untyped_slot_takes_any_json_unless_its_value_is_beyond_json(holds: object) -> None:
     check_value(free, "new", holds)
     for foreign in (Point(1), [Point(1)], {"a": Point(1)}, {1: 2}, (1, 2), [(1, 2)]):
-        with pytest.raises(
-            rs.RavestateError, match=rf"lab:free holds a {type(foreign).__name__}, which JSON"
-        ):
+        with pytest.raises(rs.RavestateError, match=rf"lab:free holds a {type(foreign).__name__}, which JSON"):
             check_value(free, "new", foreign)
         with pytest.raises(rs.RavestateError, match="lab:free holds a"):
             emit(free.changed, foreign, payload="new")
@@ -119,7 +115,7 @@ def test_a_collection_is_written_whatever_its_items_are() -> None:
     check_value(people, {"ada": 1}, {"ada": Point(1)})
 
 
-def test_what_json_cannot_write_to_a_slot_is_told_to_be_so() -> None:
+def test_a_type_beyond_json_is_refused() -> None:
     with pytest.raises(rs.RavestateError, match="lab:place takes Point, which JSON cannot express"):
         check_value(place, {"x": 1}, None)
     check_value(place, None, Point(1))  # its default
@@ -153,9 +149,7 @@ def test_of_a_type_of_containers_the_container_is_asked_for(
             check_payload(slot.changed, Emit(type="emit", signal="boxes:box:changed", payload=value), slot)
 
 
-@pytest.mark.parametrize(
-    "kind", [tuple[str, ...], frozenset[str], set[int], Callable[[], None], tuple[int] | set[str]]
-)
+@pytest.mark.parametrize("kind", [tuple[str, ...], frozenset[str], set[int], Callable[[], None], tuple[int] | set[str]])
 def test_containers_that_json_does_not_know_are_not_written(kind: Any) -> None:
     slot = rs.Module("boxes").slot("box", 0, type=kind)
     for value in ("banana", ["a"], None):
@@ -179,7 +173,7 @@ def test_a_flag_takes_truth_values(value: Any) -> None:
 
 
 async def refusals(look: Look) -> list[str]:
-    """What was refused of what was asked for until now."""
+    """Return the refusals of all commands so far."""
     look.tell("ping")
     found: list[str] = []
     while (frame := await look.next())["type"] != "pong":
@@ -219,13 +213,13 @@ async def test_the_page_of_a_visitor_cannot_be_taken_away() -> None:
 
 
 @in_virtual_time
-async def test_what_is_said_by_hand_is_what_a_visitor_could_have_said() -> None:
+async def test_say_takes_the_texts_of_visitors() -> None:
     async with board() as app, Visit(app) as visit:
         await visit.hello()
         async with Look(app) as look:
             await look.begin(session=visit.session)
             look.tell("pause")
-            for _ in range(3):  # nothing is recorded in between that could tell them apart
+            for _ in range(3):  # no record in between tells them apart
                 look.tell("say", text="\x1b[2JHello\x00")
             look.tell("say", text="x" * (LONGEST_TEXT + 1))
             look.tell("say", text=" \x00 ")

@@ -1,4 +1,4 @@
-"""The diagram as laid-out data: folded modules, and nothing that is lost or overlaps."""
+"""The laid-out diagram: folded modules, and no lost or overlapping node."""
 
 import itertools
 
@@ -26,7 +26,7 @@ def test_a_folded_module_says_how_many_rules_it_has() -> None:
     assert notes["module parrot"] == "3 rules"
     assert notes["module rawio"] == "no rules"
     junctions = [node for node in folded.nodes if node.kind in ("and", "or")]
-    assert not junctions  # none of those of other modules stays behind
+    assert not junctions  # folded modules keep no junction
 
 
 def test_the_layout_of_a_hundred_rules_has_every_node_in_a_place_of_its_own() -> None:

@@ -1,4 +1,4 @@
-"""The recorder: bounded in memory and in what it costs, and it says what it has missed."""
+"""The recorder: bounded memory and cost, and a count of missed spikes."""
 
 import contextlib
 import gc
@@ -26,7 +26,7 @@ def ticking() -> tuple[rs.Context, rs.Signal[None]]:
 
 
 @in_virtual_time
-async def test_records_are_numbered_and_read_by_whoever_has_not_seen_them() -> None:
+async def test_records_are_numbered_and_read_once_by_each_inspector() -> None:
     context, tick = ticking()
     recorder = Recorder(context, whole=True)
     async with context:
@@ -64,7 +64,7 @@ async def test_beyond_its_rate_it_stops_listening_and_counts_the_spikes_that_it_
             await passing(0.01)
         taken = recorder.last
         await passing(10)
-        context.emit(tick)  # whose number tells how many went unseen
+        context.emit(tick)  # its number shows how many were missed
         await passing(1)
         gaps = [record for record in recorder.records if isinstance(record, Gap)]
         born = [record.spike for record in recorder.records if isinstance(record, Born)]
@@ -72,7 +72,7 @@ async def test_beyond_its_rate_it_stops_listening_and_counts_the_spikes_that_it_
     assert gaps
     assert all(gap.spikes >= 0 for gap in gaps)
     assert recorder.missed == sum(gap.spikes for gap in gaps) > 1000
-    assert len(born) + recorder.missed == born[-1]  # every spike was either seen or counted
+    assert len(born) + recorder.missed == born[-1]  # each spike was recorded or counted
 
 
 @in_virtual_time
@@ -100,7 +100,7 @@ async def test_a_context_has_one_recorder() -> None:
 async def test_a_recorder_goes_with_its_context() -> None:
     recorders = Recorders()
     gone: list[weakref.ref[Any]] = []
-    for length in (5, 300):  # the second is at rest when its context ends
+    for length in (5, 300):  # the second one is idle when its context ends
         context, tick = ticking()
         recorder = recorders.of(context)
         recorder._burst = 100  # pyright: ignore[reportPrivateUsage]
@@ -125,7 +125,7 @@ async def test_all_of_them_together_keep_no_more_than_is_shared_out() -> None:
             await stack.enter_async_context(context)
         for number in range(60):
             for place, (context, tick) in enumerate(made):
-                if place < 15 or number < 2:  # the last five say little
+                if place < 15 or number < 2:  # the last five are short
                     context.emit(tick)
             await passing(1)
             assert sum(len(recorder.records) for recorder in kept) <= 3000 * 1.02 + 20 * BATCH
@@ -152,13 +152,13 @@ async def test_spikes_that_went_unseen_are_counted_although_no_other_is_kept() -
         recorder._rest()  # pyright: ignore[reportPrivateUsage]
         assert isinstance(recorder.records[-1], Gap)
         await passing(1)
-        context.emit(tick)  # nothing went unseen
+        context.emit(tick)  # no spike was missed
         await passing(1)
     assert (recorder.missed, recorder.records[1]) == (0, Gap(1.0, 0))
 
 
 @in_virtual_time
-async def test_what_is_taken_up_to_the_first_spike_after_a_gap_is_taken_once() -> None:
+async def test_records_up_to_the_first_spike_after_a_gap_are_taken_once() -> None:
     context, tick = ticking()
     recorder = Recorder(context, burst=3, rate=0, spare=0)  # a record at a time
     async with context:
@@ -172,7 +172,7 @@ async def test_what_is_taken_up_to_the_first_spike_after_a_gap_is_taken_once() -
 
 
 @in_virtual_time
-async def test_what_is_shortened_while_it_does_not_listen_misses_no_more_for_that() -> None:
+async def test_shortening_during_a_gap_misses_no_more() -> None:
     context, tick = ticking()
     recorder = Recorder(context, burst=60, rate=0, spare=0)
     async with context:
@@ -185,9 +185,7 @@ async def test_what_is_shortened_while_it_does_not_listen_misses_no_more_for_tha
         await passing(1)
         context.emit(tick)
         await passing(1)
-    after = [
-        record.spike for record in recorder.records if isinstance(record, Born) and record.spike > before
-    ]
+    after = [record.spike for record in recorder.records if isinstance(record, Born) and record.spike > before]
     assert recorder.missed == after[0] - before - 1 > 30
 
 
@@ -209,7 +207,7 @@ async def test_a_spike_that_there_was_no_room_to_keep_was_seen() -> None:
 
 
 @in_virtual_time
-async def test_a_gap_counts_as_a_record_for_who_watches_how_much_there_is() -> None:
+async def test_a_gap_counts_as_a_record() -> None:
     context, _ = ticking()
     grown: list[int] = []
     recorder = Recorder(context, rate=0, spare=0, grown=lambda: grown.append(recorder.last))
@@ -231,9 +229,7 @@ def test_the_longest_are_shortened_to_one_length(lengths: list[int], in_all: int
 
 
 @given(st.lists(st.integers(0, 1000), min_size=1), st.integers(0, 5000))
-def test_what_is_kept_is_within_what_is_shared_out_and_nearly_fills_it(
-    lengths: list[int], spare: int
-) -> None:
+def test_the_kept_records_nearly_fill_the_limit(lengths: list[int], spare: int) -> None:
     in_all = len(lengths) + spare
     kept = sum(min(length, _fair(lengths, in_all)) for length in lengths)
     assert min(sum(lengths), in_all - len(lengths)) <= kept <= in_all

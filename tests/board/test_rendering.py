@@ -1,4 +1,4 @@
-"""Values as they are shown: whole where that is possible, cut where it is not, and never a failure."""
+"""Values as text: whole if possible, else cut, and never an error."""
 
 import json
 
@@ -54,7 +54,7 @@ def endless() -> list[object]:
         ("hello", Rendered('"hello"')),
         (True, Rendered("true")),
         (None, Rendered("null")),
-        ((1, 2), Rendered("(1, 2)", json=False)),  # as a list it would be written back as one
+        ((1, 2), Rendered("(1, 2)", json=False)),  # JSON would make it a list
         ({1: 2}, Rendered("{1: 2}", json=False)),
         (float("inf"), Rendered("inf", json=False)),
         ({1, 2}, Rendered("{1, 2}", json=False)),
@@ -63,11 +63,11 @@ def endless() -> list[object]:
         ("<b>", Rendered('"<b>"')),
     ],
 )
-def test_what_is_shown(value: object, shown: Rendered) -> None:
+def test_values_as_text(value: object, shown: Rendered) -> None:
     assert render(value) == shown
 
 
-def test_what_has_no_end_is_shown() -> None:
+def test_an_endless_value_has_a_text() -> None:
     assert render(endless()).text == "[[...]]"
 
 
@@ -79,7 +79,7 @@ class Counted:
         return "counted"
 
 
-def test_of_what_is_huge_and_foreign_no_more_is_made_than_is_shown() -> None:
+def test_a_huge_value_is_rendered_only_as_far_as_its_text_goes() -> None:
     for value in (
         {Counted() for _ in range(1000)},
         {n: Counted() for n in range(1000)},
@@ -97,7 +97,7 @@ def test_lone_surrogates_are_replaced() -> None:
     assert well_formed("café 👋🏽") == "café 👋🏽"
 
 
-def test_what_json_has_no_word_for_is_known() -> None:
+def test_values_beyond_json_are_known() -> None:
     assert (
         not_json(Loud())
         and not_json({"a": [Loud()]})
@@ -114,7 +114,7 @@ def test_what_json_has_no_word_for_is_known() -> None:
     ["x" * 10**7, list(range(10**6)), 10**5000, {"k" * 10**6: 1}, set(range(10**5)), {1: "x" * 10**7}],
     ids=["text", "list", "number", "key", "set", "odd keys"],
 )
-def test_what_is_huge_is_cut(value: object) -> None:
+def test_a_huge_value_is_cut(value: object) -> None:
     shown = render(value, 100)
     assert len(shown.text) <= 100
     assert not shown.json

@@ -1,4 +1,4 @@
-"""A repr in pieces: the same text as Python's own, and no more of it than is asked for."""
+"""A repr in chunks: the same text as Python's own, made only as far as it is read."""
 
 import dataclasses
 from collections import Counter, OrderedDict, defaultdict, deque
@@ -79,7 +79,7 @@ VALUES = st.recursive(
 
 
 @given(VALUES)
-def test_it_is_what_python_says(value: object) -> None:
+def test_it_is_pythons_repr(value: object) -> None:
     assert "".join(repr_chunks(value)) == repr(value)
 
 
@@ -103,7 +103,7 @@ def test_it_is_what_python_says(value: object) -> None:
         (Pair(1, [object]), "Pair(left=1, right=[<class 'object'>])"),
     ],
 )
-def test_what_is_said_of_containers(value: object, text: str) -> None:
+def test_the_text_of_containers(value: object, text: str) -> None:
     assert "".join(repr_chunks(value)) == repr(value) == text
 
 
@@ -115,7 +115,7 @@ ORDERED: list[OrderedDict[Any, Any]] = [
 
 
 @pytest.mark.parametrize("value", ORDERED)
-def test_what_python_says_otherwise_from_3_12_on(value: object) -> None:
+def test_the_text_of_ordered_dicts_follows_the_version(value: object) -> None:
     assert "".join(repr_chunks(value)) == repr(value)
 
 
@@ -148,10 +148,8 @@ class Further(Point):
     y: Any = 0
 
 
-@pytest.mark.parametrize(
-    "value", [Sly([1, 2]), SlyText("x"), SlyDict({1: 2}), Bytes(b"x"), Further(1, 2, 3)], ids=repr
-)
-def test_what_is_made_from_pythons_own_is_shown_by_what_it_holds(value: object) -> None:
+@pytest.mark.parametrize("value", [Sly([1, 2]), SlyText("x"), SlyDict({1: 2}), Bytes(b"x"), Further(1, 2, 3)], ids=repr)
+def test_a_subclass_of_a_container_shows_its_items(value: object) -> None:
     assert "".join(repr_chunks([value])) == repr([value])
 
 
@@ -159,7 +157,7 @@ def test_of_things_that_are_counted_the_first_comes_first() -> None:
     assert "".join(repr_chunks(Counter("abb"))) == "Counter({'a': 1, 'b': 2})"
 
 
-def test_what_is_within_itself_is_left_out_as_python_does() -> None:
+def test_a_value_within_itself_is_left_out_as_python_does() -> None:
     inner: list[Any] = []
     row: deque[Any] = deque([inner], maxlen=3)
     ordered: OrderedDict[int, Any] = OrderedDict({1: inner})
@@ -169,13 +167,13 @@ def test_what_is_within_itself_is_left_out_as_python_does() -> None:
         assert "".join(repr_chunks(value)) == repr(value)
 
 
-def test_what_is_within_itself_is_said_once() -> None:
+def test_a_value_within_itself_appears_once() -> None:
     loop: list[Any] = [1]
     loop += [loop, {2: loop}]
     assert "".join(repr_chunks(loop)) == repr(loop) == "[1, [...], {2: [...]}]"
 
 
-def test_what_is_too_deep_is_left_out() -> None:
+def test_deep_values_are_left_out() -> None:
     deep: list[Any] = []
     for _ in range(100_000):
         deep = [deep]
@@ -187,12 +185,12 @@ class Loud:
         raise RuntimeError("no")
 
 
-def test_what_fails_is_told_in_its_place() -> None:
+def test_a_failing_repr_is_named_in_its_place() -> None:
     assert "".join(repr_chunks([1, Loud()])) == "[1, <Loud whose repr fails: RuntimeError>]"
 
 
 class Watched:
-    """Counts how often it is asked for its repr."""
+    """A value that counts calls of its repr."""
 
     asked = 0
 

@@ -1,4 +1,4 @@
-"""What an inspector does to a conversation, and who asked for it being gone."""
+"""Commands to a conversation, and callers that have gone."""
 
 import asyncio
 import contextlib
@@ -16,7 +16,7 @@ def fail() -> None:
 
 
 @in_virtual_time
-async def test_what_is_called_outside_of_any_task_answers_who_asked() -> None:
+async def test_a_call_outside_of_any_task_returns_its_result() -> None:
     assert await _outside_of_any_task(asyncio.current_task) is None
     with pytest.raises(ValueError, match="no"):
         await _outside_of_any_task(fail)
@@ -24,7 +24,7 @@ async def test_what_is_called_outside_of_any_task_answers_who_asked() -> None:
 
 @pytest.mark.parametrize("work", [int, fail], ids=["done", "failed"])
 @pytest.mark.parametrize("by_itself", [False, True], ids=["before", "by it"])
-def test_who_asked_may_be_gone_when_it_is_done(work: Callable[[], object], by_itself: bool) -> None:
+def test_the_caller_may_be_gone_when_a_call_is_done(work: Callable[[], object], by_itself: bool) -> None:
     @in_virtual_time
     async def test() -> None:
         said: list[Any] = []
@@ -38,7 +38,7 @@ def test_who_asked_may_be_gone_when_it_is_done(work: Callable[[], object], by_it
             return work()
 
         asking = asyncio.create_task(_outside_of_any_task(call))
-        if not by_itself:  # after it has asked, and before it is answered
+        if not by_itself:  # between the question and the answer
             asyncio.get_running_loop().call_soon(asking.cancel)
         await passing(1)
         with contextlib.suppress(asyncio.CancelledError):

@@ -1,4 +1,4 @@
-"""Recorded traces: what is written is read again, and what is no trace is refused with the place where it is wrong."""
+"""Recorded traces: files survive a round trip, and errors name the place of the fault."""
 
 import dataclasses
 import json
@@ -94,7 +94,7 @@ GOOD: dict[str, Any] = {"format": "ravestate-trace", "v": 1, "records": []}
         ("[" + "[]," * MOST_VALUES + "[]]", "it has more than 6,000,000 values"),
     ],
 )
-def test_what_is_no_trace_is_refused(text: Any, words: str) -> None:
+def test_a_file_without_a_trace_is_refused(text: Any, words: str) -> None:
     with pytest.raises(ValueError) as caught:
         read_trace(text if isinstance(text, str) else json.dumps(text))
     assert words in str(caught.value)
@@ -141,7 +141,7 @@ def test_a_trace_may_begin_with_a_byte_order_mark(tmp_path: Path) -> None:
         read_trace(b'{"format": "\xff"}')
 
 
-def test_a_file_that_is_not_there_is_told(tmp_path: Path) -> None:
+def test_a_missing_file_is_named(tmp_path: Path) -> None:
     with pytest.raises(PlatformError, match=r"cannot read .*gone\.json: No such file"):
         open_trace(tmp_path / "gone.json")
     (tmp_path / "bad.json").write_text("no", "utf-8")

@@ -1,4 +1,4 @@
-"""Why a rule did not fire: the right reason for each way in which that happens."""
+"""Why a rule did not fire: the right reason in each case."""
 
 import asyncio
 import math
@@ -23,7 +23,7 @@ from ravestate.testing import Simulation, simulate
 
 
 class Stage:
-    """Two inputs, an output, and the usual rules to ask about."""
+    """Two inputs, an output, and the usual rules."""
 
     def __init__(self) -> None:
         self.module = rs.Module("demo")
@@ -46,10 +46,8 @@ def spike_of(sim: Simulation, signal: str, number: int = 0) -> int:
 
 def ask(sim: Simulation, rule: str, signal: str = "demo:input:changed", number: int = 0) -> WhyNot:
     policy = sim.context.policy
-    found = why_not(
-        sim.trace, describe(policy), f"demo:{rule}", spike_of(sim, signal, number), gates_of(policy)
-    )
-    assert str(found)  # it can always be said
+    found = why_not(sim.trace, describe(policy), f"demo:{rule}", spike_of(sim, signal, number), gates_of(policy))
+    assert str(found)  # there is always a text
     return found
 
 
@@ -142,9 +140,7 @@ def test_it_failed_before_and_after_a_write(stage: Stage) -> None:
         sim.emit(stage.touch)
         first, second = ask(sim, "early"), ask(sim, "late", "demo:touch")
     assert first.verdict == "failed"
-    assert first.words.startswith(
-        "it ran at 0.000 s and failed: ValueError('no such word') (test_why_not.py:"
-    )
+    assert first.words.startswith("it ran at 0.000 s and failed: ValueError('no such word') (test_why_not.py:")
     assert second.verdict == "fired"
     assert "failed after its write" in second.words
 
@@ -182,7 +178,7 @@ def test_it_never_took_the_spike_as_its_cause_was_answered(stage: Stage) -> None
 
 
 @pytest.mark.parametrize("told", [True, False], ids=["as it is told", "as far as an older trace tells"])
-def test_who_only_looks_at_a_cause_is_not_who_had_answered_it(stage: Stage, told: bool) -> None:
+def test_a_detached_rule_has_not_answered_the_cause(stage: Stage, told: bool) -> None:
     later = stage.module.signal("later")
 
     @stage.module.rule(when=stage.input.changed.detached(), writes=stage.output)
@@ -211,7 +207,7 @@ def test_who_only_looks_at_a_cause_is_not_who_had_answered_it(stage: Stage, told
         kept = [data_of(record) for record in sim.trace]
         for record in kept:
             if record["kind"] == "passed" and not told:
-                del record["by"], record["run"]  # as it was before these were told
+                del record["by"], record["run"]  # as in older files
         records = [record for record in map(record_of, kept) if not isinstance(record, Gap)]
         spike = spike_of(sim, "demo:input:changed")
         found = why_not(records, describe(sim.context.policy), "demo:too_late", spike)
@@ -219,7 +215,7 @@ def test_who_only_looks_at_a_cause_is_not_who_had_answered_it(stage: Stage, told
     assert found.words == "it did not take demo:later: demo:answer had already answered this cause"
 
 
-def test_of_causes_that_merge_later_the_one_that_was_answered_is_told(stage: Stage) -> None:
+def test_for_causes_that_merge_later_the_answering_rule_is_named(stage: Stage) -> None:
     other, late = stage.module.slot("other", ""), stage.module.signal("late")
 
     @stage.module.rule(when=stage.touch, writes=stage.output)
@@ -283,7 +279,7 @@ def test_it_lacked_an_input_until_its_spike_was_too_old(stage: Stage) -> None:
     assert found.missing[0].words == "demo:touch is an input and did not arrive"
 
 
-def test_what_may_come_from_outside_as_well_as_from_a_rule_is_told_so(stage: Stage) -> None:
+def test_a_missing_input_that_rules_may_raise_is_named_as_both(stage: Stage) -> None:
     rung = stage.module.signal("rung", input=True)
 
     @stage.module.rule(when=stage.touch, emits=rung)
@@ -337,7 +333,7 @@ def test_a_predicate_on_a_slot_was_false(stage: Stage) -> None:
     assert found.words.startswith("it had all its spikes, but demo:awake.holds(bool) was false")
 
 
-def test_a_gate_that_was_shut_is_told_from_a_better_rule(stage: Stage) -> None:
+def test_a_false_predicate_is_distinguished_from_a_better_rule(stage: Stage) -> None:
     awake = stage.module.flag("awake")
 
     @stage.module.rule(when=stage.input.changed & awake.holds(bool), writes=stage.output)
@@ -371,7 +367,7 @@ def test_its_spike_was_too_young(stage: Stage) -> None:
     assert "demo:input:changed must be 3 s old, so not before 3.000 s" in found.words
 
 
-def test_who_answered_is_told_with_the_rule_that_raised_what_it_heard(stage: Stage) -> None:
+def test_the_answering_rule_is_named_with_the_source_of_its_input(stage: Stage) -> None:
     conversation(stage, is_question=True, slow=2.0)
     with stage.run() as sim:
         sim.put(stage.input, "?")
@@ -381,7 +377,7 @@ def test_who_answered_is_told_with_the_rule_that_raised_what_it_heard(stage: Sta
     assert found.moments[-1].rules == ("demo:qa",)
 
 
-def test_what_it_waits_for_is_told_once_however_often_it_was_asked(stage: Stage) -> None:
+def test_repeated_waits_appear_once(stage: Stage) -> None:
     @stage.module.rule(when=stage.input.changed, emits=stage.touch)
     async def notice(ctx: rs.RuleContext) -> None:
         await ctx.sleep(1)
@@ -471,7 +467,7 @@ def test_another_input_has_another_answer(stage: Stage) -> None:
     assert all(moment.time == 1.0 for moment in found.moments)
 
 
-def test_the_signal_of_another_cause_is_told_apart(stage: Stage) -> None:
+def test_a_signal_of_another_cause_is_distinguished(stage: Stage) -> None:
     question = stage.module.signal("question")
 
     @stage.module.rule(when=stage.input.changed.where(lambda text: "?" in text), emits=question)
@@ -488,10 +484,7 @@ def test_the_signal_of_another_cause_is_told_apart(stage: Stage) -> None:
         sim.put(stage.input, "hello")
         found = ask(sim, "qa", number=1)
     assert found.verdict == "untouched"
-    assert (
-        found.missing[0].words
-        == "demo:question did not occur for this cause (it did for another, at 0.000 s)"
-    )
+    assert found.missing[0].words == "demo:question did not occur for this cause (it did for another, at 0.000 s)"
     assert found.missing[0].raisers[0].words == (
         "demo:classify did not run: it did not take demo:input:changed: its payload did not match the predicate"
     )
@@ -515,9 +508,7 @@ def test_causes_are_followed_back_and_circles_end(stage: Stage) -> None:
         found = ask(sim, "both", "demo:touch")
     assert found.verdict == "lacked"
     assert [missing.signal for missing in found.missing] == ["demo:one", "demo:two"]
-    assert (
-        "demo:to_one did not run: it took demo:touch but lacked demo:two" in found.missing[0].raisers[0].words
-    )
+    assert "demo:to_one did not run: it took demo:touch but lacked demo:two" in found.missing[0].raisers[0].words
 
 
 def test_a_running_rule_runs(stage: Stage) -> None:
@@ -532,7 +523,7 @@ def test_a_running_rule_runs(stage: Stage) -> None:
     assert (found.verdict, found.words) == ("running", "it has been running since 0.000 s")
 
 
-def test_what_is_not_there_cannot_be_asked_about(stage: Stage) -> None:
+def test_an_unknown_rule_or_spike_is_refused(stage: Stage) -> None:
     conversation(stage, is_question=False)
     with stage.run() as sim:
         sim.put(stage.input, "x")
@@ -554,7 +545,7 @@ def test_a_trace_that_begins_later_says_so(stage: Stage) -> None:
 
 
 def shut_while_waiting(stage: Stage) -> rs.Slot[bool]:
-    """One with a gate waits for a better one, which lacks a signal; both write the same slot."""
+    """Declare a rule with a slot predicate that waits for a better rule, which lacks a signal."""
     lit = stage.module.slot("lit", True)
 
     @stage.module.rule(when=stage.input.changed & lit.holds(bool), writes=stage.output)
@@ -586,10 +577,9 @@ def test_a_gate_that_shut_while_it_waited_is_not_another_that_answered(stage: St
     assert "another rule" not in str(found)
     assert found.words.startswith("it was ready and waited for demo:fused (")
     assert found.words.endswith(
-        "nats ahead); then demo:lit.holds(bool) was false; "
-        "demo:input:changed reached its maximum age of 5 s at 5.000 s"
+        "nats ahead); then demo:lit.holds(bool) was false; demo:input:changed reached its maximum age of 5 s at 5.000 s"
     )
-    assert unseen.verdict == "gated"  # from a recording, which has no predicates to try
+    assert unseen.verdict == "gated"  # a recording has no predicates to evaluate
 
 
 def test_one_that_waited_and_lost_to_another_while_its_gate_was_shut_was_gated(stage: Stage) -> None:
@@ -610,7 +600,7 @@ def test_one_that_waited_and_lost_to_another_while_its_gate_was_shut_was_gated(s
     assert "then demo:lit.holds(bool) was false; demo:plain answered this cause at 1.000 s" in found.words
 
 
-def test_what_it_waits_for_while_its_gate_is_open_is_told_though_there_is_a_gate(stage: Stage) -> None:
+def test_a_wait_with_a_true_predicate_names_the_rivals(stage: Stage) -> None:
     shut_while_waiting(stage)
     with stage.run() as sim:
         sim.put(stage.input, "x")
@@ -620,7 +610,7 @@ def test_what_it_waits_for_while_its_gate_is_open_is_told_though_there_is_a_gate
         assert ask(sim, "gated").verdict == "outrun"
 
 
-def test_what_raised_a_spike_of_another_cause_has_no_part_in_the_answer(stage: Stage) -> None:
+def test_a_rule_of_another_cause_has_no_part_in_the_answer(stage: Stage) -> None:
     boot, ready = stage.module.signal("boot"), stage.module.signal("ready")
 
     @stage.module.rule(when=boot, emits=ready)
@@ -645,7 +635,7 @@ def test_what_raised_a_spike_of_another_cause_has_no_part_in_the_answer(stage: S
 
 
 def two_runs(stage: Stage) -> None:
-    """A rule that hears what two others raise: its run for what the second raised begins first, and resigns."""
+    """Declare a rule that hears two others. Its run for the second one's signal starts first, and resigns."""
     soon, late = stage.module.signal("soon"), stage.module.signal("late")
     asked: list[float] = []
 
@@ -669,7 +659,7 @@ def two_runs(stage: Stage) -> None:
     async def talk(ctx: rs.RuleContext) -> None: ...
 
 
-def test_of_two_runs_the_one_that_answered_is_told_not_the_one_that_resigned(stage: Stage) -> None:
+def test_the_run_that_answered_is_named_not_the_one_that_resigned(stage: Stage) -> None:
     two_runs(stage)
     with stage.run() as sim:
         sim.put(stage.input, "x")
@@ -682,14 +672,14 @@ def test_of_two_runs_the_one_that_answered_is_told_not_the_one_that_resigned(sta
     assert "demo:second" not in str(found)
 
 
-def test_a_trace_that_does_not_tell_the_run_names_the_rule_alone(stage: Stage) -> None:
+def test_a_trace_without_runs_names_the_rule_alone(stage: Stage) -> None:
     two_runs(stage)
     with stage.run() as sim:
         sim.put(stage.input, "x")
         kept = [data_of(record) for record in sim.trace]
         for record in kept:
             if record["kind"] == "gaveup":
-                del record["run"]  # as it was before runs were told
+                del record["run"]  # as in older files
         records = [record for record in map(record_of, kept) if not isinstance(record, Gap)]
         spike = spike_of(sim, "demo:input:changed")
         found = why_not(records, describe(sim.context.policy), "demo:talk", spike)
@@ -698,7 +688,7 @@ def test_a_trace_that_does_not_tell_the_run_names_the_rule_alone(stage: Stage) -
 
 
 def many(stage: Stage, ticks: int, slow: float) -> Simulation:
-    """One cause, for which a rule answers many times, and another one loses as often."""
+    """Declare a cause that one rule answers many times, while another rule loses as often."""
     tick = stage.module.signal("tick")
 
     @stage.module.rule(when=stage.touch, emits=tick)
@@ -719,7 +709,7 @@ def many(stage: Stage, ticks: int, slow: float) -> Simulation:
 
 
 def steps(work: Callable[[], object]) -> int:
-    """How many lines of Python are run by a piece of work, its loops counted by their turns."""
+    """Count the lines of Python that some work runs."""
     count = 0
 
     def watch(frame: FrameType, event: str, arg: object) -> Any:
@@ -751,7 +741,7 @@ def test_the_cost_grows_as_the_history_does(slow: float) -> None:
     assert cost(200) < 2.3 * cost(100)
 
 
-def test_of_many_moments_the_first_and_the_last_are_told_and_how_many_are_not(stage: Stage) -> None:
+def test_the_middle_of_many_moments_is_left_out(stage: Stage) -> None:
     with many(stage, 300, 1.0) as sim:
         sim.emit(stage.touch)
         sim.advance(3)
@@ -764,7 +754,7 @@ def test_of_many_moments_the_first_and_the_last_are_told_and_how_many_are_not(st
     assert [moment.time for moment in found.moments] == sorted(moment.time for moment in found.moments)
 
 
-def test_a_run_of_which_the_beginning_went_unseen_is_told_all_the_same(stage: Stage) -> None:
+def test_a_run_with_a_missing_start_is_reported(stage: Stage) -> None:
     conversation(stage, is_question=False)
     with stage.run() as sim:
         sim.put(stage.input, "x")

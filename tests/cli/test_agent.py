@@ -203,9 +203,7 @@ def test_files_and_modules_may_be_combined(folder: Path, capsys: Capture) -> Non
     assert "name a module, or an agent file that names some" in refused(capsys)
 
 
-def test_secrets_come_from_the_environment(
-    folder: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_secrets_come_from_the_environment(folder: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch) -> None:
     write(folder / "hello.py", HELLO)
     write(
         folder / "agent.yaml",
@@ -269,9 +267,7 @@ def test_a_setting_that_explodes_counts_as_text(capsys: Capture) -> None:
     assert "= '[[[" in refused(capsys, "idle", "--set", f"idle.bored_after={'[' * 5_000}", code=1)
 
 
-def test_check_and_graph_first_name_the_python_code_that_an_agent_file_runs(
-    folder: Path, capsys: Capture
-) -> None:
+def test_check_and_graph_first_name_the_python_code_that_an_agent_file_runs(folder: Path, capsys: Capture) -> None:
     write(folder / "deep" / "hello.py", HELLO)
     write(folder / "other.py", "print('ran'); import ravestate as rs; module = rs.Module('other')")
     write(folder / "deep" / "agent.yaml", "modules: [rawio, ./hello.py, other]")
@@ -363,9 +359,7 @@ def test_a_set_value_is_text_for_a_text_field_and_yaml_for_others(
 
 def test_the_last_of_two_values_wins(folder: Path, capsys: Capture) -> None:
     write(folder / "hello.py", HELLO)
-    assert run(capsys, "./hello.py", "--set", "hello.pause=2", "--set", "hello.pause=3").startswith(
-        "Hello 3.0"
-    )
+    assert run(capsys, "./hello.py", "--set", "hello.pause=2", "--set", "hello.pause=3").startswith("Hello 3.0")
 
 
 def test_required_modules_have_settings_too(folder: Path) -> None:
@@ -376,9 +370,7 @@ def test_required_modules_have_settings_too(folder: Path) -> None:
     assert spec._with_required([top]) == [top, base]
 
 
-@pytest.mark.parametrize(
-    "text", ["hello", "hello.greeting", "greeting=x", "=x", ".=x", "hello.=x", ".greeting=x"]
-)
+@pytest.mark.parametrize("text", ["hello", "hello.greeting", "greeting=x", "=x", ".=x", "hello.=x", ".greeting=x"])
 def test_a_malformed_set_has_a_message(text: str, folder: Path, capsys: Capture) -> None:
     assert refused(capsys, "rawio", "--set", text) == (
         f"--set {text}: write --set module.key=value, e.g. --set idle.bored_after=10"

@@ -66,10 +66,7 @@ def test_the_printed_addresses_lead_to_the_agent_and_the_board(tmp_path: Path) -
         assert httpx.post(sent, content=b"{}").status_code == 401
         authorised = {"authorization": "Bearer open-sesame-please"}
         assert httpx.post(sent, content=b"{}", headers=authorised).status_code == 422
-        assert (
-            httpx.post(sent, content=b"{}", headers={**authorised, "origin": "https://x.example"}).status_code
-            == 403
-        )
+        assert httpx.post(sent, content=b"{}", headers={**authorised, "origin": "https://x.example"}).status_code == 403
     finally:
         assert command.end() == 0
 

@@ -61,10 +61,7 @@ def test_modules_can_be_added_and_left_out(folder: Path, started: Any, capsys: C
 def test_leaving_out_an_unknown_module_is_wrong_use(started: Any, capsys: Capture) -> None:
     code, out, errors = call(capsys, "chat", "--without", "wildtlk")
     assert (code, out, started) == (2, "", [])
-    assert (
-        errors
-        == "ravestate chat: --without wildtlk: the agent has no such module; did you mean 'wildtalk'?\n"
-    )
+    assert errors == "ravestate chat: --without wildtlk: the agent has no such module; did you mean 'wildtalk'?\n"
 
 
 @pytest.mark.parametrize("command", ["chat", "board"])
@@ -107,15 +104,11 @@ def test_output_that_cannot_be_written_is_a_failure() -> None:
             command, input="hello\n", stdout=full, stderr=subprocess.PIPE, text=True, timeout=60, check=False
         )
     assert run.returncode == 1
-    assert (
-        "ravestate chat: conio: the agent's words cannot be written: No space left on device\n" in run.stderr
-    )
+    assert "ravestate chat: conio: the agent's words cannot be written: No space left on device\n" in run.stderr
 
 
 def test_it_answers_a_pipe_and_ends_with_it() -> None:
     command = [str(Path(sys.executable).parent / "ravestate"), "chat", "--without", "wildtalk"]
-    run = subprocess.run(
-        command, input="hello\nbye\n", capture_output=True, text=True, timeout=60, check=False
-    )
+    run = subprocess.run(command, input="hello\nbye\n", capture_output=True, text=True, timeout=60, check=False)
     assert (run.returncode, complaints(run.stderr)) == (0, "")
     assert len(run.stdout.splitlines()) >= 2

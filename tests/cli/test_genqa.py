@@ -41,9 +41,7 @@ def test_index_list_and_forget(docs: Path, capsys: pytest.CaptureFixture[str]) -
     assert "nothing was read from docs/tram.md" in errors
 
 
-def test_ask_shows_answer_source_confidence_and_candidates(
-    docs: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_ask_shows_answer_source_confidence_and_candidates(docs: Path, capsys: pytest.CaptureFixture[str]) -> None:
     call(capsys, "genqa", "index", "docs")
     code, out, _ = call(capsys, "genqa", "ask", "Who invented the Zorbex engine?")
     assert code == 0
@@ -54,9 +52,7 @@ def test_ask_shows_answer_source_confidence_and_candidates(
     assert lines[4].split()[1] == "100%"
 
 
-def test_ask_needs_no_quotation_marks_and_no_documents(
-    docs: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_ask_needs_no_quotation_marks_and_no_documents(docs: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert call(capsys, "genqa", "ask", "what", "is", "the", "capital", "of", "Peru")[1].startswith(
         "The capital of Peru is Lima."
     )
@@ -69,9 +65,7 @@ def test_ask_says_why_there_is_no_answer(docs: Path, capsys: pytest.CaptureFixtu
     )
 
 
-def test_an_unreadable_file_is_named_and_sets_the_exit_code(
-    docs: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_an_unreadable_file_is_named_and_sets_the_exit_code(docs: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (docs / "latin.txt").write_bytes(b"caf\xe9")
     (docs / "broken.pdf").write_bytes(b"%PDF-1.4")
     code, out, errors = call(capsys, "genqa", "index", "docs", "nowhere")
@@ -135,9 +129,7 @@ def test_an_index_that_is_none_is_an_error_in_words(
     assert "--index /path/to/index.sqlite" in errors
 
 
-def test_an_index_of_a_newer_version_is_an_error_in_words(
-    docs: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_an_index_of_a_newer_version_is_an_error_in_words(docs: Path, capsys: pytest.CaptureFixture[str]) -> None:
     call(capsys, "genqa", "--index", "my.sqlite", "index", "docs")
     base = sqlite3.connect("my.sqlite")
     base.execute("PRAGMA user_version = 99")
@@ -153,12 +145,8 @@ def test_nothing_read_yet_is_no_error(docs: Path, capsys: pytest.CaptureFixture[
     assert out.startswith("nothing has been read yet: ravestate genqa index PATH")
 
 
-@pytest.mark.parametrize(
-    "arguments", [[], ["index"], ["forget"], ["ask"], ["ask", " "], ["eat"], ["--index"]]
-)
-def test_wrong_use_has_exit_code_2(
-    docs: Path, capsys: pytest.CaptureFixture[str], arguments: list[str]
-) -> None:
+@pytest.mark.parametrize("arguments", [[], ["index"], ["forget"], ["ask"], ["ask", " "], ["eat"], ["--index"]])
+def test_wrong_use_has_exit_code_2(docs: Path, capsys: pytest.CaptureFixture[str], arguments: list[str]) -> None:
     assert call(capsys, "genqa", *arguments)[0] == 2
 
 

@@ -88,9 +88,7 @@ def complete_agent() -> str:
     return svg(fold(build(policy.rules.values())))
 
 
-def test_without_modules_it_draws_the_agent_of_chat_folded_to_its_modules(
-    complete_agent: str, capsys: Capture
-) -> None:
+def test_without_modules_it_draws_the_agent_of_chat_folded_to_its_modules(complete_agent: str, capsys: Capture) -> None:
     code, out, errors = call(capsys, "graph")
     assert (code, out) == (0, f"{complete_agent}\n")
     assert re.fullmatch(

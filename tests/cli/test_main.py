@@ -46,9 +46,7 @@ def test_it_prints_the_version(capsys: Capture) -> None:
     assert call(capsys, "--version") == (0, f"ravestate {rs.__version__}\n", "")
 
 
-@pytest.mark.parametrize(
-    "arguments", [(), ("rnu",), ("run", "--nonsense", "idle"), ("run", "idle", "--seed", "x")]
-)
+@pytest.mark.parametrize("arguments", [(), ("rnu",), ("run", "--nonsense", "idle"), ("run", "idle", "--seed", "x")])
 def test_wrong_use_is_2(arguments: tuple[str, ...], capsys: Capture) -> None:
     code, out, errors = call(capsys, *arguments)
     assert (code, out) == (2, "") and errors.startswith("usage: ravestate")
@@ -124,9 +122,7 @@ def test_a_platform_error_is_1(monkeypatch: pytest.MonkeyPatch, capsys: Capture)
 def test_it_is_installed_as_a_command(folder: Path) -> None:
     write(folder / "hello.py", HELLO)
     command = Path(sys.executable).parent / "ravestate"
-    run = subprocess.run(
-        [command, "run", "./hello.py"], capture_output=True, text=True, timeout=60, check=False
-    )
+    run = subprocess.run([command, "run", "./hello.py"], capture_output=True, text=True, timeout=60, check=False)
     assert (run.returncode, complaints(run.stderr)) == (0, "") and run.stdout.startswith("Hello 1.0")
 
 
@@ -144,9 +140,7 @@ def test_warnings_reach_the_user(folder: Path) -> None:
         """,
     )
     command = Path(sys.executable).parent / "ravestate"
-    run = subprocess.run(
-        [command, "run", "./failing.py"], capture_output=True, text=True, timeout=60, check=False
-    )
+    run = subprocess.run([command, "run", "./failing.py"], capture_output=True, text=True, timeout=60, check=False)
     assert run.returncode == 0
     assert "ERROR ravestate: rule failing:fail failed: broken" in run.stderr
     assert run.stderr.count("Traceback") == 1  # that of the rule

@@ -124,9 +124,7 @@ def test_a_person_is_forgotten(file: Path, capsys: Capture, monkeypatch: pytest.
     code, out, _ = call(capsys, "memory", "--path", str(file), "forget", "Ada")
     assert code == 0 and out.endswith("forgot 2\n")
     assert call(capsys, "memory", "--path", str(file), "forget", "Eve red", "-y")[0] == 2
-    [eve] = [
-        line for line in call(capsys, "memory", "--path", str(file), "list")[1].splitlines() if "Eve" in line
-    ]
+    [eve] = [line for line in call(capsys, "memory", "--path", str(file), "list")[1].splitlines() if "Eve" in line]
     assert call(capsys, "memory", "--path", str(file), "forget", eve.split()[-1], "-y")[:2] == (
         0,
         "forgot 1\n",
@@ -142,9 +140,7 @@ def test_no_file_is_removed_without_a_yes(
     monkeypatch.setattr(sys, "stdin", io.StringIO(answer))
     code, out, _ = call(capsys, "memory", "--path", str(file), "reset")
     assert code == 1 and "nothing was removed" in out
-    assert out.startswith(
-        f"{file.resolve()}\n{file.resolve()}.sum\nRemove these files, with all that is known?"
-    )
+    assert out.startswith(f"{file.resolve()}\n{file.resolve()}.sum\nRemove these files, with all that is known?")
     assert sorted(folder.iterdir()) == [file, Path(f"{file}.sum")]
 
 
@@ -158,10 +154,7 @@ def test_reset_removes_all_files_and_names_them(
     before = sorted(str(path.resolve()) for path in folder.glob("*") if path.suffix != ".mine")
     monkeypatch.setattr(sys, "stdin", io.StringIO("y\n"))
     code, out, _ = call(capsys, "memory", "--path", str(file), "reset")
-    assert (
-        code == 0
-        and [line for line in out.splitlines() if "removed /" in line][-1] == f"removed {before[-1]}"
-    )
+    assert code == 0 and [line for line in out.splitlines() if "removed /" in line][-1] == f"removed {before[-1]}"
     assert all(f"removed {name}\n" in out for name in before)
     assert [path.name for path in folder.iterdir()] == ["memory.lbug.mine"]
     code, _, errors = call(capsys, "memory", "--path", str(file), "reset", "--yes")
@@ -208,10 +201,7 @@ def test_the_place_may_be_named_behind_the_action_too(file: Path, folder: Path, 
     assert call(capsys, "memory", "--path", "none.lbug", "list", "--path", str(file)) == before
     write(folder / "agent.yaml", f"modules: [ontology]\nsettings: {{ontology: {{path: {file}}}}}")
     assert call(capsys, "memory", "list", "-f", "agent.yaml") == before
-    assert (
-        call(capsys, "memory", "--set", "ontology.agent=a", "list", "--set", f"ontology.path={file}")
-        == before
-    )
+    assert call(capsys, "memory", "--set", "ontology.agent=a", "list", "--set", f"ontology.path={file}") == before
     for action in (["show", "Ada"], ["export"], ["load", "gone.json"], ["forget", "Zed", "-y"]):
         assert "there is no memory yet" not in call(capsys, "memory", *action, "--path", str(file))[2]
 
@@ -223,9 +213,7 @@ def test_settings_of_other_modules_are_refused(file: Path, capsys: Capture) -> N
     assert code == 2 and "no such setting; did you mean 'path'? (it has: types, path, " in errors
 
 
-def test_the_default_place_is_the_users(
-    folder: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_default_place_is_the_users(folder: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("XDG_DATA_HOME", str(folder))
     monkeypatch.setattr(sys, "platform", "linux")
     code, _, errors = call(capsys, "memory", "list")
@@ -251,9 +239,7 @@ def test_a_file_that_an_agent_has_open(file: Path, folder: Path, capsys: Capture
         process.stdin.close()
 
 
-def test_wrong_use_and_a_missing_package(
-    file: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_wrong_use_and_a_missing_package(file: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch) -> None:
     assert call(capsys, "memory")[0] == 2
     assert call(capsys, "memory", "lst")[0] == 2
     code, _, errors = call(capsys, "memory", "--set", "ontology.pth=x", "list")

@@ -60,9 +60,7 @@ def test_a_project_whose_tests_pass(folder: Path, capsys: Capture) -> None:
     assert call(capsys, "check", "my-agent/agent.yaml")[0] == 0
 
 
-def test_the_printed_next_steps_can_be_typed(
-    folder: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_printed_next_steps_can_be_typed(folder: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch) -> None:
     assert "\n  cd '1 bad/my-agent'\n" in call(capsys, "new", "1 bad/my-agent")[1]
     monkeypatch.setenv("PATH", str(folder))
     for name in ("nobodys", "others"):
@@ -80,9 +78,7 @@ def test_a_nested_folder_and_an_empty_one_are_accepted(folder: Path, capsys: Cap
     assert (folder / "some" / "where" / "Robot7" / "robot7.py").is_file()
 
 
-@pytest.mark.parametrize(
-    "name", ["", ".", "..", "two words", "1st", "-x-y", "ä", "a/b c", "class", "import", "a.b"]
-)
+@pytest.mark.parametrize("name", ["", ".", "..", "two words", "1st", "-x-y", "ä", "a/b c", "class", "import", "a.b"])
 def test_an_invalid_name_is_refused(name: str, folder: Path, capsys: Capture) -> None:
     code, out, errors = call(capsys, "new", "--", name)
     assert (code, out) == (2, "")

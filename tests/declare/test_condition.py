@@ -77,13 +77,9 @@ def test_and_or_not_and_comparison_are_refused() -> None:
 
 @pytest.mark.parametrize("other", [True, None, "demo:b", 3, cheerful])
 def test_only_conditions_can_be_combined(other: object) -> None:
-    with pytest.raises(
-        rs.DeclarationError, match=rf"cannot combine condition demo:a with .* by & \({HERE}:\d+\)"
-    ):
+    with pytest.raises(rs.DeclarationError, match=rf"cannot combine condition demo:a with .* by & \({HERE}:\d+\)"):
         _ = a & other
-    with pytest.raises(
-        rs.DeclarationError, match=rf"cannot combine condition demo:a with .* by \| \({HERE}:\d+\)"
-    ):
+    with pytest.raises(rs.DeclarationError, match=rf"cannot combine condition demo:a with .* by \| \({HERE}:\d+\)"):
         _ = a | other
 
 
@@ -98,9 +94,7 @@ def test_a_slot_beside_a_condition_gets_a_hint_at_its_signal() -> None:
 
 @pytest.mark.parametrize("age", ["2", None, True, object()])
 def test_ages_are_numbers_or_settings(age: object) -> None:
-    with pytest.raises(
-        rs.DeclarationError, match=r"min_age\(.*\): expected seconds as a number, or a setting"
-    ):
+    with pytest.raises(rs.DeclarationError, match=r"min_age\(.*\): expected seconds as a number, or a setting"):
         a.min_age(age)
     if age is not None:
         with pytest.raises(rs.DeclarationError, match=r"write|max_age\(rs\.setting\('name'\)\)"):
@@ -108,13 +102,9 @@ def test_ages_are_numbers_or_settings(age: object) -> None:
 
 
 def test_predicates_are_functions() -> None:
-    with pytest.raises(
-        rs.DeclarationError, match=r"demo:a\.where\('yes'\): expected a function of the payload"
-    ):
+    with pytest.raises(rs.DeclarationError, match=r"demo:a\.where\('yes'\): expected a function of the payload"):
         a.where("yes")
-    with pytest.raises(
-        rs.DeclarationError, match=r"demo:mood\.holds\('calm'\): expected a function of the value"
-    ):
+    with pytest.raises(rs.DeclarationError, match=r"demo:mood\.holds\('calm'\): expected a function of the value"):
         mood.holds("calm")
 
 

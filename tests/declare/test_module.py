@@ -96,9 +96,7 @@ def test_a_python_module_without_a_module_or_with_two_is_refused(demo: rs.Module
     refused("pkg holds no rs.Module: write module = rs.Module('name')", lambda: as_module(python_module()))
     two = python_module(a=demo, b=rs.Module("b"))
     refused("pkg holds 2 rs.Modules: name the one you mean `module`", lambda: as_module(two))
-    refused(
-        "expected an rs.Module (or a Python module that holds one), not 'demo'", lambda: as_module("demo")
-    )
+    refused("expected an rs.Module (or a Python module that holds one), not 'demo'", lambda: as_module("demo"))
 
 
 def test_wrong_requirements_name_the_module_that_requires_them() -> None:

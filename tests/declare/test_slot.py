@@ -95,9 +95,7 @@ def test_a_misspelt_signal_of_a_slot_gets_a_hint(slot: rs.Slot[object], attribut
 def test_a_slot_is_no_condition() -> None:
     signal = demo.signal("go")
     for combine in (lambda: mood & signal, lambda: mood | signal, lambda: mood & lit, lambda: True & mood):
-        with pytest.raises(
-            rs.DeclarationError, match=r"write \.changed \(its signal\) or \.holds\(predicate\)"
-        ):
+        with pytest.raises(rs.DeclarationError, match=r"write \.changed \(its signal\) or \.holds\(predicate\)"):
             combine()
 
 

@@ -23,23 +23,16 @@ from ravestate.draw.simplex import Arc, network_simplex
 def graphs(draw: st.DrawFn) -> tuple[int, list[Arc]]:
     """A connected graph without cycles: each vertex except the first has a predecessor."""
     count = draw(st.integers(1, 30))
-    arcs = [
-        (draw(st.integers(0, v - 1)), v, draw(st.integers(1, 4)), draw(st.integers(1, 2)))
-        for v in range(1, count)
-    ]
+    arcs = [(draw(st.integers(0, v - 1)), v, draw(st.integers(1, 4)), draw(st.integers(1, 2))) for v in range(1, count)]
     if count > 1:
-        for u, v in draw(
-            st.lists(st.tuples(st.integers(0, count - 1), st.integers(0, count - 1)), max_size=20)
-        ):
+        for u, v in draw(st.lists(st.tuples(st.integers(0, count - 1), st.integers(0, count - 1)), max_size=20)):
             if u < v:
                 arcs.append((u, v, 1, 1))
     return count, arcs
 
 
 @given(graphs(), st.integers(1, 8))
-def test_no_layer_exceeds_the_bound_and_each_arc_has_its_length(
-    graph: tuple[int, list[Arc]], most: int
-) -> None:
+def test_no_layer_exceeds_the_bound_and_each_arc_has_its_length(graph: tuple[int, list[Arc]], most: int) -> None:
     count, arcs = graph
     found = bounded_layers(network_simplex(count, arcs), arcs, most)
     assert max(Counter(found).values()) <= most
@@ -59,9 +52,7 @@ def test_a_picture_that_is_wide_enough_keeps_its_layers() -> None:
     arcs = [(0, v, 1, 1) for v in range(1, 40)]
     ranks = network_simplex(40, arcs)
     assert fit_to_screen(ranks, arcs, lambda _: (1000.0, 800.0)) == ranks
-    assert (
-        fit_to_screen(ranks, arcs, lambda _: (100.0, 700.0)) == ranks
-    )  # not wide, but no higher than a screen
+    assert fit_to_screen(ranks, arcs, lambda _: (100.0, 700.0)) == ranks  # not wide, but no higher than a screen
     assert fit_to_screen(ranks, arcs, lambda _: (100.0, 2000.0)) == ranks  # a bound does not help
 
 
@@ -110,9 +101,7 @@ def test_with_bounded_layers_lines_run_from_left_to_right() -> None:
 
 def test_the_picture_does_not_depend_on_the_order_of_hashes() -> None:
     program = (
-        "from draw.examples import star\n"
-        "from draw.test_layout import laid_out\n"
-        "print(laid_out(star(40, pairs=True)))"
+        "from draw.examples import star\nfrom draw.test_layout import laid_out\nprint(laid_out(star(40, pairs=True)))"
     )
     tests = Path(__file__).parents[1]
     found = {

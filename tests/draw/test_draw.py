@@ -6,9 +6,7 @@ from ravestate.draw import FORMATS, draw
 from ravestate.policy.compile import compile_policy
 
 
-@pytest.mark.parametrize(
-    ("format", "start"), [("svg", "<?xml"), ("dot", "digraph"), ("mermaid", "flowchart LR")]
-)
+@pytest.mark.parametrize(("format", "start"), [("svg", "<?xml"), ("dot", "digraph"), ("mermaid", "flowchart LR")])
 def test_a_policy_draws_a_diagram(format: str, start: str) -> None:
     policy = compile_policy(games())
     text = policy.diagram(format)  # type: ignore[arg-type]
@@ -39,6 +37,4 @@ def test_the_diagram_has_the_required_modules() -> None:
     rule(base, "sound", ping)
     user = Module("user", requires=[base])
     rule(user, "hear", ping)
-    assert {"sound", "hear"} <= set(
-        draw(compile_policy(user), "mermaid").replace('"', "<br/>").split("<br/>")
-    )
+    assert {"sound", "hear"} <= set(draw(compile_policy(user), "mermaid").replace('"', "<br/>").split("<br/>"))

@@ -6,17 +6,13 @@ def link(low: int, high: int, label: tuple[float, float] | None = None, is_rever
 
 
 def test_a_long_line_has_a_dummy_in_each_layer_that_it_passes() -> None:
-    graph = proper_layering(
-        [0, 1, 2, 3], [(10.0, 10.0)] * 4, [link(0, 1), link(1, 2), link(2, 3), link(0, 3)]
-    )
+    graph = proper_layering([0, 1, 2, 3], [(10.0, 10.0)] * 4, [link(0, 1), link(1, 2), link(2, 3), link(0, 3)])
     assert [graph.kind[v] for v in range(4, len(graph.kind))] == ["dummy", "dummy"]
     assert len(graph.chains[3]) == 3
 
 
 def test_long_lines_from_one_port_share_their_dummies() -> None:
-    graph = proper_layering(
-        [0, 3, 3, 2, 1], [(10.0, 10.0)] * 5, [link(0, 4), link(0, 3), link(0, 1), link(0, 2)]
-    )
+    graph = proper_layering([0, 3, 3, 2, 1], [(10.0, 10.0)] * 5, [link(0, 4), link(0, 3), link(0, 1), link(0, 2)])
     assert graph.kind.count("dummy") == 2
     assert graph.chains[2][:2] == graph.chains[3][:2]
     assert graph.chains[1][0] == graph.chains[2][0]

@@ -86,11 +86,7 @@ def test_lines_without_a_common_node_never_overlap(diagram: Diagram) -> None:
             continue
         for (a, b), (c, d) in ((s, t) for s in pairwise(line) for t in pairwise(other)):
             for this, that in ((0, 1), (1, 0)):
-                if (
-                    abs(a[this] - b[this]) < NEAR
-                    and abs(c[this] - d[this]) < NEAR
-                    and abs(a[this] - c[this]) < 1.0
-                ):
+                if abs(a[this] - b[this]) < NEAR and abs(c[this] - d[this]) < NEAR and abs(a[this] - c[this]) < 1.0:
                     shared = min(max(a[that], b[that]), max(c[that], d[that])) - max(
                         min(a[that], b[that]), min(c[that], d[that])
                     )

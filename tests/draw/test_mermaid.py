@@ -8,9 +8,7 @@ from ravestate.draw.graph import Diagram, Edge, Node
 from ravestate.draw.mermaid import mermaid
 
 TEXT = r'"(?:[^"`<>&|\[\](){}%\\\n#;*.-]|#\d+;|<br/>)*"'
-NODE = re.compile(
-    rf"  n\d+(\[\[{TEXT}\]\]|\(\[{TEXT}\]\)|\[/?{TEXT}/?\]|\(\({TEXT}\)\)|\{{{TEXT}\}}):::srs-\w+"
-)
+NODE = re.compile(rf"  n\d+(\[\[{TEXT}\]\]|\(\[{TEXT}\]\)|\[/?{TEXT}/?\]|\(\({TEXT}\)\)|\{{{TEXT}\}}):::srs-\w+")
 EDGE = re.compile(rf"  n\d+ (-->|==>|-\.->)(\|{TEXT}\|)? n\d+")
 
 
@@ -26,9 +24,7 @@ def test_any_name_gives_lines_that_are_statements(diagram: Diagram) -> None:
 
 
 def test_special_characters_become_entities() -> None:
-    assert '["m<br/>#60;b#62; #34;x#34; a_b"]' in mermaid(
-        Diagram((Node("a", "rule", '<b> "x" a_b', "m"),), ())
-    )
+    assert '["m<br/>#60;b#62; #34;x#34; a_b"]' in mermaid(Diagram((Node("a", "rule", '<b> "x" a_b', "m"),), ()))
 
 
 def test_kinds_without_their_own_arrow_have_words() -> None:
@@ -50,8 +46,6 @@ def test_a_comment_mentions_too_many_edges_for_the_default() -> None:
 
 
 def test_the_comments_explain_the_kinds_in_the_picture_alone() -> None:
-    text = mermaid(
-        Diagram((Node("a", "signal", "a"), Node("b", "rule", "b")), (Edge("a", "b", "condition"),))
-    )
+    text = mermaid(Diagram((Node("a", "signal", "a"), Node("b", "rule", "b")), (Edge("a", "b", "condition"),)))
     comments = [line.split()[1] for line in text.splitlines() if line.startswith("  %%")]
     assert comments == ["signal", "rule", "condition"]

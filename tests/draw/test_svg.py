@@ -52,9 +52,7 @@ def test_a_screen_reader_finds_a_title_and_a_description() -> None:
     ids = {element.get("id"): element for element in root.iter()}
     title, description = (ids[name] for name in (root.get("aria-labelledby") or "").split())
     assert title.text == "Signal-Rule-Slot diagram"
-    assert (description.text or "").startswith(
-        "3 slots, 4 signals, 8 rules. demo:input emits demo:input:changed."
-    )
+    assert (description.text or "").startswith("3 slots, 4 signals, 8 rules. demo:input emits demo:input:changed.")
 
 
 def test_each_edge_has_a_title_in_words() -> None:

@@ -1,4 +1,4 @@
-"""What the tests in a browser share: the browser."""
+"""The browser of the browser tests."""
 
 from collections.abc import Iterator
 

@@ -16,7 +16,7 @@ from ravestate.modules.skill.wildtalk.backend import Message, Progress
 from ravestate.testing import simulate
 
 WORDS = "Hm, that is small talk."
-"""What the model says to everything."""
+"""The model's answer to everything."""
 
 
 class Model:

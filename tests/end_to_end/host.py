@@ -34,9 +34,7 @@ async def notice(ctx: rs.RuleContext) -> None:
 namesake = rs.Module("namesake", requires=(rawio, interloc))
 
 
-@namesake.rule(
-    when=rawio.input.changed.where(lambda text: text.startswith("I call you ")), writes=interloc.agent
-)
+@namesake.rule(when=rawio.input.changed.where(lambda text: text.startswith("I call you ")), writes=interloc.agent)
 async def be_called(ctx: rs.RuleContext) -> None:
     ctx[interloc.agent] = ctx.payload(rawio.input.changed).removeprefix("I call you ")
 

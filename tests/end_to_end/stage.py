@@ -27,7 +27,7 @@ LIMIT = 60
 
 PHONE = {"viewport": {"width": 360, "height": 640}, "has_touch": True, "is_mobile": True}
 FLAGS = [
-    "--no-sandbox",  # for whoever runs the tests as root, in a container
+    "--no-sandbox",  # for tests that run as root, in a container
     "--disable-gpu",
     "--disable-quic",
     "--no-first-run",
@@ -123,9 +123,9 @@ class Stage:
         """Open a page in a window of its own, which shares nothing with others.
 
         Args:
-            address: Of the page.
+            address: The address of the page.
             complaints: Whether the browser may complain (of a lost connection); otherwise that is a failure.
-            options: Of the window, e.g. `PHONE`.
+            options: Options of the window, e.g. `PHONE`.
         """
         window = await self.browser.new_context(reduced_motion="reduce", **options)
         heard: list[str] = []

@@ -18,7 +18,7 @@ SCRIPT = 60_000
 
 
 async def findings(page: Page) -> list[str]:
-    """What axe finds that is serious, or worse."""
+    """Return axe's serious and critical findings."""
     if not AXE.exists():
         raise AssertionError("the check of accessibility needs axe-core: npm ci --prefix frontend")
     # As the browser's own tools do, not as a script of the page, which the page forbids.
@@ -88,7 +88,5 @@ async def test_the_page_loads_little_and_nothing_from_elsewhere(stage: Stage) ->
         await expect(page.get_by_text("Good evening.")).to_be_visible()
         loaded = await page.evaluate("performance.getEntriesByType('resource').map((entry) => entry.name)")
         assert all(address.startswith(served.address) for address in loaded), loaded
-        scripts = [
-            PAGE / address.removeprefix(served.address) for address in loaded if address.endswith(".js")
-        ]
+        scripts = [PAGE / address.removeprefix(served.address) for address in loaded if address.endswith(".js")]
         assert 0 < sum(len(gzip.compress(script.read_bytes())) for script in scripts) < SCRIPT

@@ -1,4 +1,4 @@
-"""Raveboard in a real browser: who won and who waited, why not, pause and step, by hand, recordings, for everybody."""
+"""Raveboard in a real browser: the timeline, why-not, the clock, input on the board, recordings and accessibility."""
 
 import asyncio
 import contextlib
@@ -22,7 +22,7 @@ from ravestate.modules.platform.webio.server import Server
 from ravestate.modules.platform.webio.session import Ending
 
 SCRIPT = 300_000
-"""Bytes of script, compressed, that the page may load."""
+"""The most bytes of compressed script on the page."""
 
 keeper = rs.Module("keeper", requires=(rawio,))
 question = keeper.signal("question", payload=str)
@@ -31,7 +31,7 @@ rung = keeper.signal("rung")
 
 
 class Cue:
-    """When the classifier may end; the test says so, on the same loop."""
+    """The test sets the event when the classifier may end."""
 
     classified = asyncio.Event()
 
@@ -61,13 +61,13 @@ async def small_talk(ctx: rs.RuleContext) -> None:
 
 @keeper.rule(when=rung.min_age(60.0).max_age(None), writes=notebook)
 async def note(ctx: rs.RuleContext) -> None:
-    """A minute after the bell."""
+    """Write a note a minute after the bell."""
     ctx[notebook] = "it rang"
 
 
 @contextlib.asynccontextmanager
 async def served(*modules: rs.Module, **settings: Any) -> AsyncGenerator[Host]:
-    """An agent (the keeper, if none is given) with the board beside its page."""
+    """Serve an agent (by default the keeper) with its board."""
     Cue.classified = asyncio.Event()
     Cue.classified.set()
     options = {"webio": {"port": 0, "title": "Elske", **settings}}
@@ -77,24 +77,24 @@ async def served(*modules: rs.Module, **settings: Any) -> AsyncGenerator[Host]:
 
 
 async def say(page: Page, text: str) -> None:
-    """Say something by way of the board."""
+    """Say something on the board."""
     await page.get_by_role("tab", name="Slots").click()
     await page.get_by_label("Say something to the agent").fill(text)
     await page.get_by_label("Say something to the agent").press("Enter")
 
 
 def name(page: Page, rule: str) -> Locator:
-    """The name of a rule beside its lane."""
+    """Return the name of a rule beside its lane."""
     return page.locator(f'button.lane[title="{rule}"]')
 
 
 def node(page: Page, id: str) -> Locator:
-    """A node of the diagram."""
+    """Return a node of the diagram."""
     return page.locator(f'[data-id="{id}"]')
 
 
 async def lane(page: Page, rule: str) -> list[dict[str, Any]]:
-    """What is drawn in the lane of a rule."""
+    """Return the bars in the lane of a rule."""
     return await page.evaluate(
         """rule => (window.raveboard.trace.lanes.get(rule)?.bars ?? []).map(bar => ({
             outcome: bar.outcome, states: bar.phases.map(phase => phase.state),
@@ -105,7 +105,7 @@ async def lane(page: Page, rule: str) -> list[dict[str, Any]]:
 
 
 async def until_lane(page: Page, rule: str, outcome: str) -> list[dict[str, Any]]:
-    """The lane of a rule once its last bar has ended so."""
+    """Return the lane of a rule after its last bar has ended with an outcome."""
     await page.wait_for_function(
         "([rule, outcome]) => window.raveboard.trace.lanes.get(rule)?.bars.at(-1)?.outcome === outcome",
         arg=[rule, outcome],
@@ -114,7 +114,7 @@ async def until_lane(page: Page, rule: str, outcome: str) -> list[dict[str, Any]
 
 
 async def painted(page: Page, rule: str) -> set[str]:
-    """The colours in the lane of a rule on the canvas, as names of states."""
+    """Return the states whose colours are in the lane of a rule."""
     return set(
         await page.evaluate(
             """rule => {
@@ -136,7 +136,7 @@ async def painted(page: Page, rule: str) -> set[str]:
 
 
 async def passing(page: Page, seconds: float) -> None:
-    """Until the page says that the agent's clock is so much further."""
+    """Wait until the agent's clock, as the page shows it, has moved so far."""
     await page.evaluate(
         """seconds => new Promise(resolve => {
             const until = window.raveboard.now() + seconds;
@@ -148,12 +148,12 @@ async def passing(page: Page, seconds: float) -> None:
 
 
 async def drawn(page: Page) -> None:
-    """Until what the page knows has been drawn."""
+    """Wait until the page has painted."""
     await page.evaluate("() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")
 
 
 async def step_until(page: Page, condition: str) -> None:
-    """Step by step, until something holds in the page."""
+    """Step until a condition holds in the page."""
     for _ in range(100):
         await page.get_by_role("button", name="Step").click()
         await drawn(page)
@@ -171,7 +171,7 @@ async def test_the_timeline_shows_the_rule_that_won_and_the_rule_that_waited(sta
         await page.wait_for_function(
             "() => window.raveboard.trace.lanes.get('keeper:small_talk')?.bars[0]?.phases.at(-1)?.state === 'waiting'"
         )
-        await passing(page, 0.4)  # so that the wait is wide enough to be seen
+        await passing(page, 0.4)  # a wait that is wide enough to see
         assert "waiting" in await painted(page, "keeper:small_talk")
         assert "running" in await painted(page, "keeper:classify")
         Cue.classified.set()
@@ -208,15 +208,13 @@ async def test_why_not_is_answered_with_the_right_reason(stage: Stage) -> None:
         await say(page, "Nice.")
         await until_lane(page, "keeper:small_talk", "done")
         await page.get_by_role("tab", name="Rule").click()
-        await page.wait_for_function(
-            "old => document.querySelector('#cause option')?.value !== old", arg=option
-        )
+        await page.wait_for_function("old => document.querySelector('#cause option')?.value !== old", arg=option)
         await page.locator("#cause").select_option(index=0)
         await expect(answered).to_contain_text("keeper:classify finished without raising it")
 
 
 @on_stage
-async def test_utility_is_told_in_nats_and_how_it_is_made_up(stage: Stage) -> None:
+async def test_the_rule_panel_shows_the_parts_of_the_utility(stage: Stage) -> None:
     async with served() as host, stage.open(f"{host.address}board/") as page:
         await name(page, "keeper:answer").click()
         table = page.locator(".clause table")
@@ -237,9 +235,7 @@ async def test_the_clock_pauses_steps_and_goes_on_while_the_view_is_another_thin
         assert await lane(page, "keeper:classify") != []
         assert not any(bar["ended"] for bar in await lane(page, "keeper:classify"))
         assert await page.evaluate("window.raveboard.now()") == before
-        await step_until(
-            page, "window.raveboard.trace.lanes.get('keeper:small_talk')?.bars.at(-1)?.outcome === 'done'"
-        )
+        await step_until(page, "window.raveboard.trace.lanes.get('keeper:small_talk')?.bars.at(-1)?.outcome === 'done'")
         assert await page.evaluate("window.raveboard.paused")
         await page.get_by_role("button", name="Continue").click()
         await expect(page.locator(".status")).to_have_text("live")
@@ -251,7 +247,7 @@ async def test_the_clock_pauses_steps_and_goes_on_while_the_view_is_another_thin
 
 
 @on_stage
-async def test_time_is_stepped_forward_to_what_is_due(stage: Stage) -> None:
+async def test_a_step_moves_the_clock_to_the_next_deadline(stage: Stage) -> None:
     async with served() as host, stage.open(f"{host.address}board/") as page:
         await page.get_by_role("tab", name="Signals").click()
         await page.get_by_role("button", name="Emit keeper:rung").click()
@@ -350,7 +346,7 @@ async def test_a_lost_connection_comes_back_with_the_history(stage: Stage) -> No
 
 
 @on_stage
-async def test_the_diagram_folds_unfolds_and_shows_what_is_going_on(stage: Stage) -> None:
+async def test_the_diagram_folds_unfolds_and_lights_up(stage: Stage) -> None:
     async with served() as host, stage.open(f"{host.address}board/") as page:
         await page.get_by_role("button", name="Diagram").click()
         await expect(node(page, "rule keeper:answer")).to_be_visible()
@@ -366,7 +362,7 @@ async def test_the_diagram_folds_unfolds_and_shows_what_is_going_on(stage: Stage
 
 
 def skill(number: int) -> rs.Module:
-    """One of many modules: four rules, which answer if they are meant."""
+    """Return one of many modules, with four rules that answer to their number."""
     module = rs.Module(f"skill_{number}", requires=(rawio,))
     topic, asked, memory = module.signal("topic"), module.signal("asked"), module.slot("memory", 0)
     heard = rawio.input.changed.where(lambda text: str(number) in text)
@@ -400,7 +396,7 @@ async def test_a_policy_of_more_than_a_hundred_rules_can_be_read(stage: Stage) -
         lanes = page.locator('button.lane[title*=":"]')
         await say(page, "7")
         await until_lane(page, "skill_7:answer", "done")
-        assert 4 <= await lanes.count() < 50  # of those that did something, if only to wait for a topic
+        assert 4 <= await lanes.count() < 50  # the rules that did something
         await page.get_by_role("button", name="idle rules").click()
         await expect(lanes).to_have_count(125)
         await page.get_by_label("Filter rules").fill("skill_12 output")
@@ -431,14 +427,12 @@ async def test_a_policy_of_more_than_a_hundred_rules_can_be_read(stage: Stage) -
 
 
 @on_stage
-async def test_what_came_of_the_newest_input_leads_to_the_rules_and_back(stage: Stage) -> None:
+async def test_the_result_of_the_newest_input_links_to_its_rules(stage: Stage) -> None:
     async with served() as host, stage.open(f"{host.address}board/") as page:
         await say(page, "Since when?")
         await until_lane(page, "keeper:answer", "done")
         await page.get_by_role("tab", name="Rule").click()
-        lost = page.get_by_role(
-            "button", name="keeper:small_talk gave up: keeper:classify → keeper:answer answered"
-        )
+        lost = page.get_by_role("button", name="keeper:small_talk gave up: keeper:classify → keeper:answer answered")
         await lost.click()
         await expect(page.locator(".answer")).to_have_attribute("data-verdict", "outrun")
         await page.get_by_role("button", name="Close this rule").click()
@@ -552,7 +546,7 @@ async def test_the_keyboard_reaches_every_rule_of_the_diagram(stage: Stage) -> N
 
 
 @on_stage
-async def test_a_thousand_events_a_second_do_not_stutter_and_hold_nobody_up(stage: Stage) -> None:
+async def test_a_thousand_events_a_second_do_not_stutter_or_delay_the_agent(stage: Stage) -> None:
     async with served() as host, stage.open(f"{host.address}board/") as page:
         await expect(page.locator(".status")).to_have_text("live")
         (session,) = host.sessions
@@ -573,7 +567,7 @@ async def test_a_thousand_events_a_second_do_not_stutter_and_hold_nobody_up(stag
         )
         await raising
         await page.wait_for_function("() => window.raveboard.trace.spikes.length > 5000")
-        assert len(frames) == 120  # it was painted all the while
+        assert len(frames) == 120  # it was painted all the time
         assert await page.evaluate("window.raveboard.missed") == 0
 
 

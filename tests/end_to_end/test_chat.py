@@ -134,9 +134,7 @@ async def test_a_lost_connection_loses_nothing(stage: Stage) -> None:
             await say(page, "Are you there?")
             await expect(page.locator(".pending")).to_have_text("You: Are you there? (not sent yet)")
             served.sessions[0].utter("I was gone for a while.")
-        await said(
-            page, "Good evening.", "I was gone for a while.", "> Are you there?", "You said: Are you there?"
-        )
+        await said(page, "Good evening.", "I was gone for a while.", "> Are you there?", "You said: Are you there?")
         await expect(page.get_by_text("The connection is lost.")).to_be_hidden()
         await expect(page.locator(".pending")).to_have_count(0)
 
@@ -400,9 +398,7 @@ async def test_what_is_too_long_is_not_cut(stage: Stage) -> None:
         field, text = page.get_by_label("What you say to Elske"), "word " * 2_000 + "end"
         await field.fill(text)
         await field.press("Enter")
-        await expect(page.get_by_role("alert")).to_have_text(
-            "10,003 characters; at most 10,000 can be said at once."
-        )
+        await expect(page.get_by_role("alert")).to_have_text("10,003 characters; at most 10,000 can be said at once.")
         await expect(field).to_have_value(text)
         await field.fill(text[5:])
         await field.press("Enter")

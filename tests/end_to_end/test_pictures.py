@@ -1,4 +1,4 @@
-"""The pictures in the documentation are of the page as it is: `PICTURES=docs/pictures pytest ...` renews them."""
+"""The documentation's pictures of the page. `PICTURES=docs/pictures pytest ...` renews them."""
 
 import os
 import struct

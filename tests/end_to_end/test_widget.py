@@ -106,7 +106,7 @@ async def test_a_site_that_is_not_named_may_not_embed_it_and_is_told_why(
 ) -> None:
     async with Museum().serve() as museum, stage.serve(host, title="Elske") as served:
         museum.chat = served.address
-        why = f"page of {museum.origin} wanted to show the chat: add it to the setting webio.origins"
+        why = f"page of {museum.origin} may not embed the chat: add it to the setting webio.origins"
         async with stage.open(museum.origin, complaints=True) as page:
             async with page.expect_console_message(lambda said: why in said.text):
                 await page.get_by_role("button", name="Ask us").click()

@@ -115,11 +115,7 @@ class Abuse(RuleBasedStateMachine):
     @rule(data=st.data(), inside=st.booleans())
     def emit(self, data: st.DataObject, inside: bool) -> None:
         run = data.draw(st.sampled_from([*self.runs.values()])) if inside and self.runs else None
-        names = (
-            [s.name for s in run.rule.emits]
-            if run
-            else [f"m:s{n}" for n in range(len(self.play.world.signals))]
-        )
+        names = [s.name for s in run.rule.emits] if run else [f"m:s{n}" for n in range(len(self.play.world.signals))]
         if names:
             name = data.draw(st.sampled_from(names))
             self.receive(events.Emit(name, data.draw(st.sampled_from([0, 1, 2])), run and run.run))
@@ -188,7 +184,5 @@ class Abuse(RuleBasedStateMachine):
         empty(self.play)
 
 
-Abuse.TestCase.settings = settings(
-    max_examples=max(20, settings.default.max_examples // 5), stateful_step_count=30
-)
+Abuse.TestCase.settings = settings(max_examples=max(20, settings.default.max_examples // 5), stateful_step_count=30)
 TestAbuse = Abuse.TestCase

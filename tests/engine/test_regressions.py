@@ -206,9 +206,7 @@ def test_an_alternative_gives_a_withdrawn_spike_up(traced: bool, wiped: bool) ->
         (SignalOf(keep="latest"),),
         V1,
         (
-            RuleOf(
-                when=on("s0"), writes=("v0",), thread=True, acts=(Act(seconds=1.0, end="resigned"), Act())
-            ),
+            RuleOf(when=on("s0"), writes=("v0",), thread=True, acts=(Act(seconds=1.0, end="resigned"), Act())),
             RuleOf(when=on("s0"), writes=("v0",)),
         ),
         ((0.0, ("emit", "s0", 1)), (0.5, ("wipe", "s0") if wiped else ("emit", "s0", 2))),

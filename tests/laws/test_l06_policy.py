@@ -131,9 +131,7 @@ def test_all_faults_are_reported_at_once() -> None:
     with pytest.raises(rs.DeclarationErrors) as caught:
         rs.compile(*(module for modules, _ in cases for module in modules))
     messages = [str(one) for one in caught.value.exceptions]
-    missing = [
-        words for _, words in cases if not any(all(word in text for word in words) for text in messages)
-    ]
+    missing = [words for _, words in cases if not any(all(word in text for word in words) for text in messages)]
     assert missing == []
     assert all(text in str(caught.value) for text in messages)
 

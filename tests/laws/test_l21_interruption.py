@@ -182,9 +182,7 @@ def test_spikes_of_the_condition_grow_too_old(play: Any) -> None:
 
 
 def test_the_condition_may_be_gated_by_a_slot(play: Any) -> None:
-    m, i, stop, _, mood, _ = talker(
-        lambda stop, hush, mood: stop & mood.holds(lambda value: value == "impatient")
-    )
+    m, i, stop, _, mood, _ = talker(lambda stop, hush, mood: stop & mood.holds(lambda value: value == "impatient"))
     with play(m) as sim:
         sim.emit(i)
         sim.emit(stop)
@@ -195,9 +193,7 @@ def test_the_condition_may_be_gated_by_a_slot(play: Any) -> None:
 
 
 def test_the_gate_of_a_condition_may_open_after_its_spike(play: Any) -> None:
-    m, i, stop, _, mood, _ = talker(
-        lambda stop, hush, mood: stop & mood.holds(lambda value: value == "impatient")
-    )
+    m, i, stop, _, mood, _ = talker(lambda stop, hush, mood: stop & mood.holds(lambda value: value == "impatient"))
     with play(m) as sim:
         sim.emit(i)
         sim.emit(stop)

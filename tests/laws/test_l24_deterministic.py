@@ -126,9 +126,7 @@ class Fidgety(Driver):
     def _next(self) -> float:
         due = super()._next()
         if self.now < min(due, self.goal):
-            self.engine.advance(
-                (self.now + min(due, self.goal)) / 2
-            )  # between deadlines, where nothing is due
+            self.engine.advance((self.now + min(due, self.goal)) / 2)  # between deadlines, where nothing is due
             assert self.engine.effects() == []
         return due
 

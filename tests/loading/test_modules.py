@@ -10,9 +10,7 @@ from ravestate.loading.modules import load_module
 MODULE = "import ravestate as rs\nmodule = rs.Module('shop')\n"
 
 
-def test_a_file_that_a_test_has_imported_is_not_loaded_twice(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_file_that_a_test_has_imported_is_not_loaded_twice(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "shop_of_the_test.py").write_text(MODULE, encoding="utf-8")
     monkeypatch.syspath_prepend(tmp_path)
     imported = importlib.import_module("shop_of_the_test")

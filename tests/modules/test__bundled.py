@@ -32,7 +32,7 @@ from ravestate.cli.complete import COMPLETE
 from ravestate.testing import simulate
 
 modules = [getattr(ravestate.modules, name) for name in COMPLETE]
-settings = {"ontology": {"path": ":memory:"}, "genqa": {"index": sys.argv[1]}}
+settings = {"ontology": {"path": sys.argv[1] + ".lbug"}, "genqa": {"index": sys.argv[1]}}
 said = {}
 for talk in range(2):  # in two conversations of one process
     with simulate(*modules, settings=settings) as sim:

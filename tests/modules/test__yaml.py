@@ -39,9 +39,7 @@ def test_a_file_that_is_no_yaml(tmp_path: Path, content: bytes, message: str) ->
 
 def test_a_file_that_cannot_be_read(tmp_path: Path) -> None:
     (tmp_path / "a.yaml").touch()
-    with pytest.raises(
-        PlatformError, match=r"the file of tests .*/b\.yaml' does not exist; did you mean 'a\.yaml'"
-    ):
+    with pytest.raises(PlatformError, match=r"the file of tests .*/b\.yaml' does not exist; did you mean 'a\.yaml'"):
         read_nodes(tmp_path / "b.yaml", "file of tests")
     with pytest.raises(PlatformError, match="cannot be read"):
         read_nodes(tmp_path, "file of tests")

@@ -32,9 +32,7 @@ def forms(condition: rs.Condition) -> list[str]:
         (mood.holds(bool) & a & mood.holds(bool), ["demo:a demo:mood.holds(bool)"]),
     ],
 )
-def test_clauses_stand_in_declaration_order_without_doubles(
-    condition: rs.Condition, clauses: list[str]
-) -> None:
+def test_clauses_stand_in_declaration_order_without_doubles(condition: rs.Condition, clauses: list[str]) -> None:
     assert forms(condition) == clauses
 
 
@@ -51,9 +49,7 @@ def pairs(count: int) -> rs.Condition:
     return condition
 
 
-@pytest.mark.parametrize(
-    ("count", "alternatives"), [(9, "512"), (20, "1048576"), (20_000, "more than 10\\^6020")]
-)
+@pytest.mark.parametrize(("count", "alternatives"), [(9, "512"), (20, "1048576"), (20_000, "more than 10\\^6020")])
 def test_too_many_clauses_are_refused_before_they_are_made(count: int, alternatives: str) -> None:
     with pytest.raises(
         rs.DeclarationError,

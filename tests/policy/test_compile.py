@@ -101,10 +101,7 @@ def test_the_message_names_a_module_that_is_not_required() -> None:
     for text in found:
         assert re.match(rf"rule m:r \({HERE}:\d+\): (when|until|reads|writes|emits): unknown ", text)
         assert re.search(rf"\(declared at {HERE}:\d+\)", text)
-        assert (
-            "write requires=[elsewhere] in the module of the rule, or compile module elsewhere as well"
-            in text
-        )
+        assert "write requires=[elsewhere] in the module of the rule, or compile module elsewhere as well" in text
     assert rs.compile(m, elsewhere).rules["m:r"].when is word
 
 
@@ -136,9 +133,7 @@ def test_two_modules_of_one_name() -> None:
     for module in (one, other):
         rule(module, "r", module.signal("s"), writes=module.slot("t"))
     found = faults(one, other)
-    assert any(
-        re.match(rf"two modules are named 'twin': {HERE}:\d+ and {HERE}:\d+; rename one", f) for f in found
-    )
+    assert any(re.match(rf"two modules are named 'twin': {HERE}:\d+ and {HERE}:\d+; rename one", f) for f in found)
     assert not any("two signals" in text or "two slots" in text or "two rules" in text for text in found)
 
 

@@ -25,9 +25,7 @@ def test_a_ring_and_a_chain_of_any_length() -> None:
 
 
 @given(
-    st.integers(1, 8).flatmap(
-        lambda n: st.lists(st.lists(st.integers(0, n - 1), max_size=4), min_size=n, max_size=n)
-    )
+    st.integers(1, 8).flatmap(lambda n: st.lists(st.lists(st.integers(0, n - 1), max_size=4), min_size=n, max_size=n))
 )
 def test_components_are_those_that_lead_to_each_other(edges: list[list[int]]) -> None:
     nodes = range(len(edges))

@@ -113,9 +113,7 @@ def _counts(policy: rs.Policy) -> dict[str, int]:
     found: dict[str, int] = {}
     for name in policy.rules:
         seen: set[str] = set()
-        stack = [
-            (need.signal.name, need.detached) for c in policy.rule_plan(name).clauses for need in c.needs
-        ]
+        stack = [(need.signal.name, need.detached) for c in policy.rule_plan(name).clauses for need in c.needs]
         while stack:
             signal, detached = stack.pop()
             if signal in seen:
@@ -157,9 +155,7 @@ def test_a_torus_has_an_end() -> None:
     m.rule(when=entry, emits=nodes[0], name="enter")(nothing)
     for row, column in product(range(side), repeat=2):
         right, down = row * side + (column + 1) % side, (row + 1) % side * side + column
-        m.rule(when=nodes[row * side + column], emits=(nodes[right], nodes[down]), name=f"r{row}_{column}")(
-            nothing
-        )
+        m.rule(when=nodes[row * side + column], emits=(nodes[right], nodes[down]), name=f"r{row}_{column}")(nothing)
     policy = rs.compile(m)
     least = log((side * side + 1) / (side * side))
     for row, column in ((0, 0), (0, 3), (2, 2)):  # near the entry, it is exact
@@ -192,7 +188,6 @@ def test_the_least_union_of_causes_with_common_causes(seed: int) -> None:
     policy = rs.compile(m)
     information = {name: log(len(policy.rules) / count) for name, count in _counts(policy).items()}
     least = min(
-        sum(information[name] for name in sorted(frozenset[str]().union(*chosen)))
-        for chosen in product(*causes)
+        sum(information[name] for name in sorted(frozenset[str]().union(*chosen))) for chosen in product(*causes)
     )
     assert policy.utility("m:all") == pytest.approx(least + 7 * log(len(policy.rules)))

@@ -88,9 +88,7 @@ Constraint = tuple[str, bool, int]
 class Sketch:
     """A rule of a random policy, in plain data."""
 
-    def __init__(
-        self, clauses: list[list[Constraint]], gates: list[int], causes: set[str], detached: bool
-    ) -> None:
+    def __init__(self, clauses: list[list[Constraint]], gates: list[int], causes: set[str], detached: bool) -> None:
         self.clauses = clauses
         self.gates = gates  # for each clause: how many predicates on slots it has
         self.causes = causes  # signals that it may cause (L7)
@@ -107,16 +105,13 @@ def completions(signal: str, way: Pathway, rules: list[Sketch], inputs: set[str]
     """
     if signal in way:
         return {frozenset()}
-    causes = [
-        clause for rule in rules if signal in rule.causes and not rule.detached for clause in rule.clauses
-    ]
+    causes = [clause for rule in rules if signal in rule.causes and not rule.detached for clause in rule.clauses]
     found: set[Pathway] = set()
     if signal in inputs or not causes:
         found.add(frozenset({signal}))
     for clause in causes:
         found |= {
-            union | {signal}
-            for union in pathways([c for c in clause if not c[1]], way | {signal}, rules, inputs)
+            union | {signal} for union in pathways([c for c in clause if not c[1]], way | {signal}, rules, inputs)
         }
     return found
 
@@ -124,8 +119,7 @@ def completions(signal: str, way: Pathway, rules: list[Sketch], inputs: set[str]
 def pathways(clause: list[Constraint], way: Pathway, rules: list[Sketch], inputs: set[str]) -> set[Pathway]:
     """The clause and, for each of its non-detached constraints, one completion: every combination."""
     choices = [
-        {frozenset({signal})} if detached else completions(signal, way, rules, inputs)
-        for signal, detached, _ in clause
+        {frozenset({signal})} if detached else completions(signal, way, rules, inputs) for signal, detached, _ in clause
     ]
     return {frozenset[str]().union(*chosen) for chosen in product(*choices)}
 
@@ -160,19 +154,14 @@ class World:
         flags = draw(st.lists(st.booleans(), min_size=3, max_size=6), label="signals: input=")
         signals = [m.signal(f"s{n}", input=given) for n, given in enumerate(flags)]
         flags = draw(st.lists(st.booleans(), min_size=1, max_size=3), label="slots: input=")
-        slots = [
-            m.slot(f"v{n}", 0, input=given) if n else m.flag("v0", input=given)
-            for n, given in enumerate(flags)
-        ]
+        slots = [m.slot(f"v{n}", 0, input=given) if n else m.flag("v0", input=given) for n, given in enumerate(flags)]
         heard = [*signals, *(signal for slot in slots for signal in slot.signals)]
         self.rules: list[Sketch] = []
         raised: set[str] = set()
         for number in range(draw(st.integers(1, 6), label="rules")):
             atoms = st.tuples(st.integers(0, len(heard) - 1), st.integers(0, 3), st.integers(0, 2))
             clause = st.lists(atoms, min_size=1, max_size=3, unique_by=lambda atom: atom[0])
-            several = st.lists(
-                clause, min_size=1, max_size=2, unique_by=lambda one: frozenset(a[0] for a in one)
-            )
+            several = st.lists(clause, min_size=1, max_size=2, unique_by=lambda one: frozenset(a[0] for a in one))
             drawn = draw(several, label=f"clauses of r{number}")
             emits = draw(st.sets(st.integers(0, len(signals) - 1), max_size=2), label="emits")
             writes = draw(st.sets(st.integers(0, len(slots) - 1), max_size=1), label="writes")
@@ -198,9 +187,7 @@ class World:
             )
         self.inputs = {s.name for s in heard if s.input or s.name not in raised}
 
-    def declare(
-        self, number: int, when: rs.Condition, emits: list[Any], writes: list[Any], detached: bool
-    ) -> None:
+    def declare(self, number: int, when: rs.Condition, emits: list[Any], writes: list[Any], detached: bool) -> None:
         @self.module.rule(when=when, emits=emits, writes=writes, detached=detached, name=f"r{number}")
         async def nothing(ctx: rs.RuleContext) -> None: ...
 

@@ -119,9 +119,7 @@ def test_one_more_rule_makes_another_policy() -> None:
     assert list(more.rules) == ["demo:add", "demo:late", "added:extra"]
     assert list(policy.rules) == ["demo:add", "demo:late"]
     assert [p.index for p in more.rule_plans] == [0, 1, 2]
-    assert more.utility("demo:late") > policy.utility(
-        "demo:late"
-    )  # of three rules, only one stands on `stop`
+    assert more.utility("demo:late") > policy.utility("demo:late")  # of three rules, only one stands on `stop`
 
 
 def test_a_new_rule_may_refer_to_a_setting() -> None:

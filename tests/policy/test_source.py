@@ -20,9 +20,7 @@ class Names:
     light = lit
 
 
-def acts(
-    function: Callable[..., Any], source: Any = inspect.getsource, **options: Any
-) -> tuple[Acts, list[str]]:
+def acts(function: Callable[..., Any], source: Any = inspect.getsource, **options: Any) -> tuple[Acts, list[str]]:
     """Make a rule of a function, and return its acts and the undeclared ones in words."""
     module = rs.Module("rules", requires=[demo])
     module.rule(when=go, name="work", **options)(function)
@@ -102,9 +100,7 @@ async def wrapped(ctx: Any) -> None:
     await everything(ctx)
 
 
-@pytest.mark.parametrize(
-    "function", [shadowed, replaced, inner, unknown, wrapped, functools.partial(everything)]
-)
+@pytest.mark.parametrize("function", [shadowed, replaced, inner, unknown, wrapped, functools.partial(everything)])
 def test_names_that_cannot_be_resolved_raise_no_alarm(function: Any) -> None:
     found, faults = acts(function)
     assert (found, faults) == (Acts(), [])

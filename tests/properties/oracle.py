@@ -211,15 +211,11 @@ def consistent(engine: Any) -> None:
             spike = activation.spikes[need.index]
             assert (spike is None) == bool(activation.missing & need.bit), f"{activation} misses {need}?"
             lacks = activation in engine.lacking.get(need, ())
-            assert lacks == (spike is None), (
-                f"{activation} is{'' if lacks else ' not'} listed as lacking {need}"
-            )
+            assert lacks == (spike is None), f"{activation} is{'' if lacks else ' not'} listed as lacking {need}"
             if spike is not None:
                 assert activation in spike.holders, f"{spike} does not know of {activation}"
                 if state < State.RUNNING:
-                    assert spike in engine.live.get(spike.signal.index, ()), (
-                        f"{activation} holds dead {spike}"
-                    )
+                    assert spike in engine.live.get(spike.signal.index, ()), f"{activation} holds dead {spike}"
         assert activation.missing != clause.all_bits, f"{activation} holds nothing"
         assert (state is State.WAITING) == (activation in engine.waiting), f"{activation} waits?"
         assert (state >= State.RUNNING) == (engine.running.get(activation.id) is activation)
@@ -269,9 +265,7 @@ def bounded(play: Play) -> None:
     pressure = any(not a.clause.reflexive for a in engine.waiting)
     assert engine.read(policy.slot_of["core:pressure"].index) == pressure, "core:pressure lies"
     for waiter in engine.gated:
-        assert not all(
-            g.predicate in PREDICATES.values() and _holds(engine, s, g) for s, g in waiter.clause.guards
-        )
+        assert not all(g.predicate in PREDICATES.values() and _holds(engine, s, g) for s, g in waiter.clause.guards)
 
 
 def _holds(engine: Any, slot: Any, guard: Any) -> bool:

@@ -51,9 +51,7 @@ def writes(slots: tuple[SlotOf, ...], names: list[str]) -> list[st.SearchStrateg
             found += [
                 st.tuples(st.just("store"), st.just(name), keys, PAYLOADS),
                 st.tuples(st.just("discard"), st.just(name), keys),
-                st.tuples(
-                    st.just("write"), st.just(name), st.sampled_from([(), (("a", 1),), (("b", 1), ("a", 2))])
-                ),
+                st.tuples(st.just("write"), st.just(name), st.sampled_from([(), (("a", 1),), (("b", 1), ("a", 2))])),
             ]
         else:
             values = st.booleans() if kind == "flag" else PAYLOADS
@@ -80,14 +78,10 @@ def wants(draw: st.DrawFn, signals: list[str], ageless: bool) -> Want:
 
 
 @st.composite
-def clauses(
-    draw: st.DrawFn, signals: list[str], slots: tuple[SlotOf, ...], ageless: bool
-) -> tuple[Clause, ...]:
+def clauses(draw: st.DrawFn, signals: list[str], slots: tuple[SlotOf, ...], ageless: bool) -> tuple[Clause, ...]:
     found: list[Clause] = []
     for _ in range(draw(st.sampled_from([1, 1, 1, 2]))):
-        parts: list[Any] = [
-            draw(wants(signals, ageless)) for _ in range(draw(st.sampled_from([1, 1, 1, 1, 2, 2, 3])))
-        ]
+        parts: list[Any] = [draw(wants(signals, ageless)) for _ in range(draw(st.sampled_from([1, 1, 1, 1, 2, 2, 3])))]
         if slots and draw(st.sampled_from([False, False, False, True])):
             gate = draw(st.integers(0, len(slots) - 1))
             parts.append(Gate(f"v{gate}", draw(st.sampled_from(["odd", "odd", "fussy", "never"]))))
@@ -114,9 +108,7 @@ def acts(draw: st.DrawFn, ops: list[st.SearchStrategy[Op]]) -> Act:
 
 
 @st.composite
-def rules(
-    draw: st.DrawFn, signals: list[str], world: World, emitted: list[str], ageless: bool, core: bool
-) -> RuleOf:
+def rules(draw: st.DrawFn, signals: list[str], world: World, emitted: list[str], ageless: bool, core: bool) -> RuleOf:
     heard = signals
     background = draw(st.sampled_from([False, False, False, True]))
     if core and draw(st.sampled_from([False, False, False, True])):

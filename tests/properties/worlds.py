@@ -379,9 +379,7 @@ class Play:
             case ("emit", name, payload):
                 self.receive(events.Emit(self.signal(name), payload, by))
             case ("write", name, value):
-                self.receive(
-                    events.Write(f"m:{name}", dict(value) if isinstance(value, tuple) else value, by)
-                )
+                self.receive(events.Write(f"m:{name}", dict(value) if isinstance(value, tuple) else value, by))
             case ("store", name, key, item):
                 self.receive(events.Store(f"m:{name}", key, item, by))
             case ("discard", name, key):

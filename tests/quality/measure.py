@@ -104,9 +104,7 @@ def facts() -> list[Fact]:
 # ------------------------------------------------------------------------------------------- the measuring
 
 
-def measure_triples(
-    see: Callable[[str], Iterable[Iterable[str]]], cases: list[tuple[str, Triples]]
-) -> Result:
+def measure_triples(see: Callable[[str], Iterable[Iterable[str]]], cases: list[tuple[str, Triples]]) -> Result:
     """Exact: a sentence counts when its triples are those of the set, none missing and none more."""
     right = shared = given = wanted = 0
     misses: list[str] = []
@@ -139,9 +137,7 @@ def measure_labels(name: str, see: Callable[[str], str], cases: list[tuple[str, 
 
 def measure_facts(ask: Callable[[str], Reply | None], cases: list[Fact]) -> Result:
     """Answers and silences; all shares are of all questions but the last, which is of the sure answers."""
-    counts = dict.fromkeys(
-        ("answered right", "rightly silent", "wrongly silent", "wrong, unsure", "wrong, sure"), 0
-    )
+    counts = dict.fromkeys(("answered right", "rightly silent", "wrongly silent", "wrong, unsure", "wrong, sure"), 0)
     sure = 0
     misses: list[str] = []
     for fact in cases:
@@ -213,9 +209,7 @@ def _pattern(answer: str) -> str:
     return rf"\b{re.escape(answer[:-1])}" if answer.endswith("*") else rf"\b{re.escape(answer)}\b"
 
 
-_FIGURE = re.compile(
-    r"(?<![\w.,])(\d{1,3}(?:,\d{3})+(?:\.\d+)?|\d+(?:\.\d+)?)(?:\s*(thousand|million|billion))?(?!\d)"
-)
+_FIGURE = re.compile(r"(?<![\w.,])(\d{1,3}(?:,\d{3})+(?:\.\d+)?|\d+(?:\.\d+)?)(?:\s*(thousand|million|billion))?(?!\d)")
 _SCALE = {"": 1.0, "thousand": 1e3, "million": 1e6, "billion": 1e9}
 
 

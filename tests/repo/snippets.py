@@ -136,9 +136,7 @@ class Page:
         """The files that its blocks have made, apart from those that the page shows."""
         made = [path.relative_to(self.folder) for path in self.folder.rglob("*") if path.is_file()]
         shown = {(block.title or "").removesuffix(", continued") for block in self.blocks}
-        return sorted(
-            str(path) for path in made if str(path) not in shown and "__pycache__" not in path.parts
-        )
+        return sorted(str(path) for path in made if str(path) not in shown and "__pycache__" not in path.parts)
 
     def _namespace(self, file: str) -> types.ModuleType:
         module = types.ModuleType("snippets_of_" + re.sub(r"\W", "_", f"{self.file.stem}_{file}".rstrip("_")))
@@ -197,9 +195,7 @@ def run_python(block: Block, module: types.ModuleType) -> None:
 def run_pycon(block: Block, module: types.ModuleType) -> None:
     """Run a `pycon` block and compare what it prints. Raises AssertionError with the difference."""
     options = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
-    test = doctest.DocTestParser().get_doctest(
-        block.code, module.__dict__, str(block), str(block.file), block.line - 1
-    )
+    test = doctest.DocTestParser().get_doctest(block.code, module.__dict__, str(block), str(block.file), block.line - 1)
     test.globs = module.__dict__  # the parser made a copy, which would lose what the block defines
     report: list[str] = []
     doctest.DocTestRunner(optionflags=options, verbose=False).run(test, out=report.append, clear_globs=False)
@@ -209,9 +205,7 @@ def run_pycon(block: Block, module: types.ModuleType) -> None:
 def run_tests(block: Block, folder: Path) -> None:
     """Have pytest run a block's file, in a process of its own. Raises AssertionError with what it prints if one fails."""
     name = Path(block.title or "").name
-    assert name.startswith("test_") and name.endswith(".py"), (
-        f'{block}: give it title="test_....py", or drop its tests'
-    )
+    assert name.startswith("test_") and name.endswith(".py"), f'{block}: give it title="test_....py", or drop its tests'
     environment = {key: value for key, value in os.environ.items() if not key.startswith("PYTEST")}
     run = subprocess.run(
         [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", str(block.title)],

@@ -88,9 +88,7 @@ def test_versions_agree() -> None:
 
 
 def test_base_requirements_stay_small() -> None:
-    names = {
-        re.split(r"[^\w.-]", requirement, maxsplit=1)[0].lower() for requirement in PROJECT["dependencies"]
-    }
+    names = {re.split(r"[^\w.-]", requirement, maxsplit=1)[0].lower() for requirement in PROJECT["dependencies"]}
     assert names <= {"pydantic", "pydantic-settings", "pyyaml"}
 
 
@@ -114,9 +112,7 @@ def requirements_of(name: str, extra: str | None = None) -> set[str]:
                 continue  # for another platform or another Python
             if needed not in found or parts[2]:
                 found.add(needed)
-                open_ends += [(needed, e.strip()) for e in (parts[2] or "").split(",") if parts[2]] or [
-                    (needed, None)
-                ]
+                open_ends += [(needed, e.strip()) for e in (parts[2] or "").split(",") if parts[2]] or [(needed, None)]
     return found - {name}
 
 

@@ -57,9 +57,7 @@ def test_a_source_may_be_any_module_of_models(monkeypatch: pytest.MonkeyPatch, t
         protocol.Source("sketch", types={"Frame": "FRAMES"}, constants=("LIMIT",), checked="Frame")
     )
     assert "/** The most shapes. */\nexport const LIMIT = 5;" in made
-    assert (
-        '/**\n * A shape.\n *\n * It has corners.\n */\nexport interface Shape {\n  type: "shape";\n' in made
-    )
+    assert '/**\n * A shape.\n *\n * It has corners.\n */\nexport interface Shape {\n  type: "shape";\n' in made
     assert "  /** Places, each as (x, y) in pixels. */\n  corners: [number, number][];\n" in made
     assert "  label: string | null;\n" in made
     assert '  colours?: Record<string, "red" | "green">;\n' in made

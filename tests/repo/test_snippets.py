@@ -76,18 +76,14 @@ def test_titled_blocks_become_files(tmp_path: Path) -> None:
 
 
 def test_not_run_blocks_are_skipped_with_a_reason(tmp_path: Path) -> None:
-    page = page_of(
-        tmp_path, "<!-- not run: needs a robot -->\n\n```python\n1 / 0\n```\n```python\nd = 4\n```\n"
-    )
+    page = page_of(tmp_path, "<!-- not run: needs a robot -->\n\n```python\n1 / 0\n```\n```python\nd = 4\n```\n")
     assert [block.not_run for block in page.blocks] == ["needs a robot", None]
     page.run(page.blocks[-1])
     assert page.module.d == 4
 
 
 def test_other_languages_are_not_run(tmp_path: Path) -> None:
-    page = page_of(
-        tmp_path, "```bash\nrm nothing\n```\n````text\n```python\n1/0\n```\n````\n```\nplain\n```\n"
-    )
+    page = page_of(tmp_path, "```bash\nrm nothing\n```\n````text\n```python\n1/0\n```\n````\n```\nplain\n```\n")
     assert [block.runs for block in page.blocks] == [False, False, False]
 
 

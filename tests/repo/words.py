@@ -118,9 +118,7 @@ def of_markdown(text: str, first: int = 1) -> Iterator[tuple[int, str]]:
             if opens:
                 fence = opens[1]
             elif bare.startswith("|"):
-                yield from (
-                    (number, cell.strip()) for cell in bare.strip("|").split("|") if cell.strip(" -:")
-                )
+                yield from ((number, cell.strip()) for cell in bare.strip("|").split("|") if cell.strip(" -:"))
             elif bare.startswith("#"):
                 pass  # a heading is a title, not a sentence
             elif starts:
@@ -164,11 +162,7 @@ def of_python(text: str) -> Iterator[tuple[int, str]]:
     """Yield the docstrings, the comments and the messages of Python code."""
     tree = ast.parse(text)
     for node in ast.walk(tree):
-        if (
-            isinstance(node, ast.Expr)
-            and isinstance(node.value, ast.Constant)
-            and isinstance(node.value.value, str)
-        ):
+        if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant) and isinstance(node.value.value, str):
             yield from of_docstring(node.value.value, node.lineno)
         elif isinstance(node, ast.Raise) and node.exc is not None:
             yield from _strings(node.exc)

@@ -52,9 +52,7 @@ def machine(monkeypatch: pytest.MonkeyPatch) -> Machine:
 WHAT = pytest.mark.parametrize("first_step", [True, False])
 
 
-def warnings_of(
-    machine: Machine, caplog: pytest.LogCaptureFixture, first_step: bool, **did: float
-) -> list[str]:
+def warnings_of(machine: Machine, caplog: pytest.LogCaptureFixture, first_step: bool, **did: float) -> list[str]:
     """Run a rule that does these things in one step, and return what is logged."""
     m = rs.Module("m")
 
@@ -75,9 +73,7 @@ def test_a_rule_that_computes_too_long_is_named(
     machine: Machine, caplog: pytest.LogCaptureFixture, first_step: bool
 ) -> None:
     (text,) = warnings_of(machine, caplog, first_step, compute=0.25)
-    assert re.match(
-        rf"rule m:work \({HERE}:\d+\) blocked the loop for 250 ms by computing: make it a plain", text
-    )
+    assert re.match(rf"rule m:work \({HERE}:\d+\) blocked the loop for 250 ms by computing: make it a plain", text)
 
 
 @WHAT
@@ -85,9 +81,7 @@ def test_a_rule_that_sleeps_too_long_is_named(
     machine: Machine, caplog: pytest.LogCaptureFixture, first_step: bool
 ) -> None:
     (text,) = warnings_of(machine, caplog, first_step, compute=0.01, sleep=5.0)
-    assert re.match(
-        rf"rule m:work \({HERE}:\d+\) blocked the loop for 5000 ms by sleeping: make it a plain", text
-    )
+    assert re.match(rf"rule m:work \({HERE}:\d+\) blocked the loop for 5000 ms by sleeping: make it a plain", text)
 
 
 @WHAT

@@ -300,9 +300,7 @@ async def test_a_value_of_the_wrong_type_is_refused_at_once() -> None:
     ],
 )
 @on_loop
-async def test_names_that_the_context_lacks_are_refused(
-    act: Callable[[rs.Context], object], text: str
-) -> None:
+async def test_names_that_the_context_lacks_are_refused(act: Callable[[rs.Context], object], text: str) -> None:
     async with rs.Context(policy) as context:
         with pytest.raises(rs.UndeclaredError) as caught:
             act(context)
@@ -321,9 +319,7 @@ async def test_waiting_for_an_unknown_signal_is_refused() -> None:
 @on_loop
 async def test_a_collection_wants_a_mapping() -> None:
     async with rs.Context(policy) as context:
-        with pytest.raises(
-            rs.RuleError, match="demo:people is a collection: write a mapping of keys to items"
-        ):
+        with pytest.raises(rs.RuleError, match="demo:people is a collection: write a mapping of keys to items"):
             context.put(people, ["Ada"])
         context.put(people, {"a": "Ada"})
         assert dict(context.read(people)) == {"a": "Ada"}
@@ -382,9 +378,7 @@ async def test_settings_come_from_code_or_the_environment() -> None:
 def test_unknown_settings_are_refused() -> None:
     with pytest.raises(rs.DeclarationErrors) as caught:
         rs.Context(policy, settings={"demo": {"greting": "x"}, "dmo": {}})
-    assert "setting demo.greting: module 'demo' has no such setting; did you mean 'greeting'?" in str(
-        caught.value
-    )
+    assert "setting demo.greting: module 'demo' has no such setting; did you mean 'greeting'?" in str(caught.value)
     assert "module 'dmo' is not part of this agent; did you mean 'demo'?" in str(caught.value)
 
 

@@ -28,9 +28,7 @@ class Scene:
         self.people = self.module.collection("people")
         self.found: list[Any] = []
 
-    def run(
-        self, act: Callable[[rs.RuleContext], object], when: rs.Condition | None = None, **options: Any
-    ) -> None:
+    def run(self, act: Callable[[rs.RuleContext], object], when: rs.Condition | None = None, **options: Any) -> None:
         """Make a rule that does something once, and keep its result or its error."""
 
         async def doer(ctx: rs.RuleContext) -> None:
@@ -127,9 +125,7 @@ def test_a_value_of_the_wrong_type_is_an_error_of_its_writer(scene: Scene, value
     assert text.endswith(f"to m:said, which takes str, not {type(value).__name__}")
 
 
-@pytest.mark.parametrize(
-    "change", [lambda items: items.__setitem__("ada", 1), lambda items: items.__delitem__("ada")]
-)
+@pytest.mark.parametrize("change", [lambda items: items.__setitem__("ada", 1), lambda items: items.__delitem__("ada")])
 def test_items_are_not_assigned(scene: Scene, change: Callable[[Any], None]) -> None:
     scene.run(lambda ctx: change(ctx[scene.people]), writes=scene.people)
     failure = scene.outcome()

@@ -97,9 +97,7 @@ WHERE = pytest.mark.parametrize("where", ["at once", "later", "in a thread"])
     "error", [ValueError("broken"), Strange("odd"), asyncio.CancelledError(), TimeoutError(), GeneratorExit()]
 )
 @on_loop
-async def test_a_rule_that_raises_is_logged_once_and_the_next_best_answers(
-    error: BaseException, where: str
-) -> None:
+async def test_a_rule_that_raises_is_logged_once_and_the_next_best_answers(error: BaseException, where: str) -> None:
     talk = Talk()
     talk.rule(raising(error, where), name="fails")
     handler = Records()
@@ -219,9 +217,7 @@ async def test_the_message_about_a_returned_value_says_what_to_write(nonsense: o
         failure = only_failure(talk)
         assert isinstance(failure, rs.RuleError)
         assert re.match(rf"rule m:answers \({HERE}:\d+\) returned {re.escape(repr(nonsense))};", str(failure))
-        assert "a rule returns nothing, rs.Resign(reason) or rs.Retire(); write its result to a slot" in str(
-            failure
-        )
+        assert "a rule returns nothing, rs.Resign(reason) or rs.Retire(); write its result to a slot" in str(failure)
 
 
 @on_loop
@@ -348,9 +344,7 @@ async def test_the_message_about_an_undeclared_act_has_the_line_to_add(did: str,
         assert await talk.ask(context) == "fallback"
         failure = only_failure(talk)
         assert isinstance(failure, rs.UndeclaredError)
-        assert re.match(
-            rf"rule m:trespass \({HERE}:\d+\) {re.escape(text)} (to|in) @m.rule\(\.\.\.\)", str(failure)
-        )
+        assert re.match(rf"rule m:trespass \({HERE}:\d+\) {re.escape(text)} (to|in) @m.rule\(\.\.\.\)", str(failure))
 
 
 # ---------------------------------------------------------------------------------------- cancelled rules
@@ -512,9 +506,7 @@ async def test_a_partial_an_object_or_a_method_may_be_an_async_rule(function: An
         assert talk.failures == []
 
 
-@pytest.mark.parametrize(
-    "function", [functools.partial(plain_with_more, "word"), Caller(), Caller().__call__]
-)
+@pytest.mark.parametrize("function", [functools.partial(plain_with_more, "word"), Caller(), Caller().__call__])
 @on_loop
 async def test_a_partial_an_object_or_a_method_may_be_a_plain_rule(function: Any) -> None:
     talk = Talk()

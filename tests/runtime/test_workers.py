@@ -148,9 +148,7 @@ if child == 0:
     os._exit(7 * do(JobQueue()))
 print(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]))
 """
-    process = subprocess.run(
-        [sys.executable, "-c", program], capture_output=True, text=True, timeout=60, check=True
-    )
+    process = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=60, check=True)
     assert process.stdout == "7\n"
 
 

@@ -254,9 +254,7 @@ def burst(play: Play) -> None:
 def live_objects() -> int:
     """Count the live spikes, activations and groups."""
     gc.collect()
-    return sum(
-        type(one) in (Spike, Activation, Group) for one in gc.get_objects()
-    )  # isinstance would ask them
+    return sum(type(one) in (Spike, Activation, Group) for one in gc.get_objects())  # isinstance would ask them
 
 
 def independent_writers(play: Play) -> None:

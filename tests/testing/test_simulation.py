@@ -345,9 +345,7 @@ def test_time_does_not_run_backwards() -> None:
 
 def test_it_is_refused_inside_a_running_loop() -> None:
     async def main() -> None:
-        with pytest.raises(
-            rs.EngineError, match="simulate runs a loop of its own: use it in a plain function"
-        ):
+        with pytest.raises(rs.EngineError, match="simulate runs a loop of its own: use it in a plain function"):
             simulate().__enter__()
 
     asyncio.run(main())

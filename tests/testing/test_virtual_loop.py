@@ -92,14 +92,10 @@ def test_busy_threads_take_no_virtual_time(loop: VirtualLoop) -> None:
     assert seen == [0.0, 1.0]
 
 
-def test_waiting_for_threads_has_a_limit_and_happens_once(
-    loop: VirtualLoop, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_waiting_for_threads_has_a_limit_and_happens_once(loop: VirtualLoop, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(virtual_loop, "REAL_LIMIT", 0.001)
     loop.busy = lambda: ["m:one", "m:two"]
-    with pytest.raises(
-        TimeoutError, match=r"m:one and m:two kept virtual time waiting for 0\.001 real seconds"
-    ):
+    with pytest.raises(TimeoutError, match=r"m:one and m:two kept virtual time waiting for 0\.001 real seconds"):
         loop.run_to(1)
     loop.run_to(1)
     assert loop.time() == 1.0

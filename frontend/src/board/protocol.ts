@@ -222,7 +222,11 @@ export interface Node {
   note?: string;
 }
 
-/** A spike passed a rule by: its `payload` did not fit, its cause was `consumed`, or the rule had `caused` it. */
+/**
+ * A rule did not take a spike.
+ *
+ * Its `payload` did not fit, its cause was `consumed`, or the rule itself had `caused` it.
+ */
 export interface Passed {
   kind: "passed";
   time: number;
@@ -336,7 +340,7 @@ export interface Term {
   nats: number;
 }
 
-/** A run was told to end: `interrupted`, `timeout`, `wiped`. */
+/** The engine asked a run to end: `interrupted`, `timeout`, `wiped`. */
 export interface Told {
   kind: "told";
   time: number;
@@ -360,7 +364,7 @@ export type TraceRecord =
   | Settled
   | Gap;
 
-/** A ready activation is kept waiting, for rivals or for holders of a slot (L15). */
+/** A ready activation waits for rivals, or for runs that hold a slot (L15). */
 export interface Waits {
   kind: "waits";
   time: number;
@@ -415,19 +419,9 @@ export interface Hello {
   token?: string;
 }
 
-/** Stop the context's clock. */
-export interface Pause {
-  type: "pause";
-}
-
-/** Do the next thing that is due, on a stopped clock. */
-export interface Step {
-  type: "step";
-}
-
-/** Start the context's clock again. */
-export interface Resume {
-  type: "resume";
+/** Stop the context's clock, do the next thing that is due on a stopped clock, or start it again. */
+export interface Clock {
+  type: "pause" | "step" | "resume";
 }
 
 /** Write a slot. */
@@ -435,6 +429,13 @@ export interface Put {
   type: "put";
   slot: string;
   value?: unknown;
+}
+
+/** Raise a signal. */
+export interface Emit {
+  type: "emit";
+  signal: string;
+  payload?: unknown;
 }
 
 /** How far a rule came for an input, from the furthest to the least far. */
@@ -453,13 +454,6 @@ export type Verdict =
   | "passed"
   | "untouched"
   | "retired";
-
-/** Raise a signal. */
-export interface Emit {
-  type: "emit";
-  signal: string;
-  payload?: unknown;
-}
 
 /** Say something as the visitor. */
 export interface Say {
@@ -491,6 +485,11 @@ export interface Unfold {
   unfolded: string[];
 }
 
+/** A question for a `Pong`. */
+export interface Ping {
+  type: "ping";
+}
+
 /** A policy. |Λ| is the number of its rules. */
 export interface Description {
   modules: string[];
@@ -498,11 +497,6 @@ export interface Description {
   signals: SignalView[];
   slots: SlotView[];
   diagram: Diagram;
-}
-
-/** A question for a `Pong`. */
-export interface Ping {
-  type: "ping";
 }
 
 /** The answer to `Hello`. */
@@ -675,19 +669,7 @@ export interface Pong {
   type: "pong";
 }
 
-export type ClientFrame =
-  | Hello
-  | Pause
-  | Step
-  | Resume
-  | Put
-  | Emit
-  | Say
-  | Look
-  | Explain
-  | Why
-  | Unfold
-  | Ping;
+export type ClientFrame = Hello | Clock | Put | Emit | Say | Look | Explain | Why | Unfold | Ping;
 
 export type ServerFrame =
   | Welcome

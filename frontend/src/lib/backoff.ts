@@ -1,4 +1,4 @@
-/** How long to wait before the next attempt: longer each time, and never the same for all. */
+/** Waiting times between attempts: longer each time, with a random share. */
 export class Backoff {
   #attempts = 0;
 
@@ -8,14 +8,14 @@ export class Backoff {
     private readonly random: () => number = Math.random,
   ) {}
 
-  /** Milliseconds to wait. */
+  /** Return the milliseconds until the next attempt. */
   next(): number {
     const most = Math.min(this.longest, this.shortest * 2 ** this.#attempts);
     this.#attempts += 1;
     return most * (0.5 + this.random() / 2);
   }
 
-  /** It has worked: the next wait is short again. */
+  /** Begin with a short wait again, after a success. */
   reset(): void {
     this.#attempts = 0;
   }

@@ -2,16 +2,21 @@ import { Backoff } from "./backoff";
 import { parse } from "./frames";
 import { CLOSING_CODES, type ClientFrame, type ServerFrame } from "./protocol";
 
-/**
- * - `connecting`: the first attempt
- * - `open`: the server has welcomed us
- * - `silent`: the connection stands, but the server does not answer
- * - `lost`: no connection; the next attempt follows
- * - `ended`: the server has ended the conversation
- * - `token`: the server asks for a token, or for another one
- * - `refused`: the server does not understand this page
- */
-export type Status = "connecting" | "open" | "silent" | "lost" | "ended" | "token" | "refused";
+export type Status =
+  /** The first attempt. */
+  | "connecting"
+  /** The server has welcomed us. */
+  | "open"
+  /** The connection stands, but the server does not answer. */
+  | "silent"
+  /** There is no connection; the next attempt follows. */
+  | "lost"
+  /** The server has ended the conversation. */
+  | "ended"
+  /** The server asks for a token, or for another one. */
+  | "token"
+  /** The server does not understand this page. */
+  | "refused";
 
 /** The part of a WebSocket that a connection uses. */
 export interface Socket {
@@ -34,15 +39,17 @@ export interface Options {
 
 const OPEN = 1;
 
-/**
- * Milliseconds without a frame from the server, by what the page waits for:
- *
- * - `welcome`: the answer to hello; then the connection is lost
- * - `frame`: anything; then the page sends a ping
- * - `answer`: the answer to a ping or an utterance; then the server counts as silent
- * - `return`: a silent server; then the connection is lost
- */
-const TIMEOUTS = { welcome: 10_000, frame: 15_000, answer: 5_000, return: 20_000 } as const;
+/** Milliseconds without a frame from the server, by what the page waits for. */
+const TIMEOUTS = {
+  /** The answer to hello. Without it the connection is lost. */
+  welcome: 10_000,
+  /** Any frame. Without one the page sends a ping. */
+  frame: 15_000,
+  /** The answer to a ping or an utterance. Without it the server counts as silent. */
+  answer: 5_000,
+  /** A frame of a silent server. Without it the connection is lost. */
+  return: 20_000,
+} as const;
 
 /** A WebSocket that reconnects by itself. */
 export class Connection {

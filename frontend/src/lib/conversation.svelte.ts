@@ -6,18 +6,18 @@ export interface Line {
   key: string;
   from: "user" | "agent";
   text: string;
-  /** Milliseconds since 1970; undefined while nobody is known to have heard it. */
+  /** Milliseconds since 1970; undefined until the server confirms it. */
   time?: number;
-  /** The first of a conversation that follows on one that is lost. */
+  /** The first line of a conversation that replaces a lost one. */
   anew?: boolean;
-  /** The server did not take it, and would not if it were said again. */
+  /** The server refused it, and would refuse it again. */
   refused?: boolean;
 }
 
-/** Milliseconds in which the server is told at most once that something is being written. */
+/** Milliseconds between two `writing` frames. */
 const WRITING = 2000;
 
-/** A conversation as a window shows it: what was said, what is being said, and how the connection is. */
+/** A conversation as a window shows it: its lines, the growing utterance, and the state of the connection. */
 export class Conversation {
   /** Plain objects, replaced on each change: there may be thousands. */
   lines: readonly Line[] = $state.raw([]);
@@ -29,13 +29,13 @@ export class Conversation {
   suggestions: readonly string[] = $state.raw([]);
   agent = $state("Ravestate");
   status: Status = $state("connecting");
-  /** What was said before the page was loaded is still coming: nothing that has to be read out. */
+  /** Whether earlier lines are still arriving after a reload; screen readers need not read them. */
   recalling = $state(false);
-  /** Where one may look inside of the agent, with what it takes to be let in; empty: nowhere. */
+  /** A link to the board, with its secrets; empty if there is none. */
   inside = $state("");
-  /** Why it has ended, once it has. */
+  /** Why the conversation has ended. */
   ending = $state("");
-  /** What the server did not take, and why. */
+  /** The latest error of the server. */
   trouble = $state("");
 
   #kept: Kept = recall();
@@ -44,8 +44,8 @@ export class Conversation {
   #recalled = 0;
   #anew = false;
   #epoch = 0;
-  #listens = false; // the server wants to know when something is being written
-  #told = Number.NEGATIVE_INFINITY; // when it was told so
+  #listens = false; // whether the server takes `writing`
+  #told = Number.NEGATIVE_INFINITY; // the time of the last `writing`
   #connection: Connection;
 
   constructor(options: Pick<Options, "open" | "backoff"> = {}) {
@@ -83,18 +83,18 @@ export class Conversation {
     this.#connection.nudge();
   }
 
-  /** Something is being written: tell the server so, now and then. */
+  /** Tell the server now and then that the visitor is writing. */
   write(): void {
     const now = performance.now();
     if (!this.#listens || now - this.#told < WRITING) return;
     if (this.#connection.send({ type: "writing" })) this.#told = now;
   }
 
-  /** Say something; it arrives once, also if the connection is lost meanwhile. */
+  /** Say something. It arrives exactly once, even if the connection breaks. */
   say(text: string): void {
     const say: Say = { type: "say", id: crypto.getRandomValues(new Uint32Array(3)).join("-"), text };
     this.trouble = "";
-    this.#told = Number.NEGATIVE_INFINITY; // what is written next is news
+    this.#told = Number.NEGATIVE_INFINITY; // the next key counts at once
     this.lines = [...this.lines, { key: say.id, from: "user", text }];
     this.#outbox.push(say);
     this.#keep({ outbox: this.#outbox });
@@ -107,7 +107,7 @@ export class Conversation {
     this.start();
   }
 
-  /** Leave for good; the agent may still bid farewell. */
+  /** Leave for good; the agent may still say goodbye. */
   leave(): void {
     this.#connection.send({ type: "bye" });
   }
@@ -137,7 +137,7 @@ export class Conversation {
       if (frame.inside !== undefined && !frame.resumed) announce(frame.session);
       this.inside = frame.inside === undefined ? "" : this.#linkInside(frame.inside);
       this.partial = "";
-      for (const say of this.#outbox) this.#connection.send(say); // what was heard already is not heard again
+      for (const say of this.#outbox) this.#connection.send(say); // the server ignores those that it has
     } else if (frame.type === "renamed") this.agent = frame.agent;
     else if (frame.type === "message") this.#hear(frame);
     else if (frame.type === "piece") this.partial = this.partial.slice(0, frame.at) + frame.text;
@@ -166,7 +166,7 @@ export class Conversation {
       line.anew = true;
       this.#anew = false;
     }
-    // Lines that nobody has heard yet stay at the end.
+    // Lines that the server has not confirmed stay at the end.
     const others =
       message.id === undefined ? this.lines : this.lines.filter((other) => other.key !== line.key);
     let end = others.length;
@@ -177,7 +177,7 @@ export class Conversation {
     } else if (message.id !== undefined) this.#settle(message.id);
   }
 
-  /** What was said under an id need not be said again. */
+  /** Remove confirmed words from the outbox. */
   #settle(id: string): void {
     this.#outbox = this.#outbox.filter((say) => say.id !== id);
     this.#keep({ outbox: this.#outbox });
@@ -190,7 +190,7 @@ export class Conversation {
     );
   }
 
-  /** A link to what shows this conversation from inside; the secrets are in its fragment, which is sent nowhere. */
+  /** Return a link to the board. The secrets are in its fragment, which browsers send nowhere. */
   #linkInside(path: string): string {
     const { session, token } = this.#kept;
     const secrets = new URLSearchParams();

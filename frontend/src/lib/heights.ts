@@ -1,4 +1,4 @@
-/** A line as far as its height is concerned. */
+/** A line, by its key. */
 interface Keyed {
   readonly key: string;
 }

@@ -1,6 +1,6 @@
 /**
- * Whether a key is a part of writing a character, as in Japanese. Safari ends a composition before it tells of the Enter
- * that ended it; the old code gives it away.
+ * Return whether a key belongs to the composition of a character, as in Japanese. Safari reports the Enter that ends a
+ * composition after its end; only the deprecated key code shows it.
  */
 export function composing(event: KeyboardEvent): boolean {
   return event.isComposing || event.keyCode === 229;

@@ -1,14 +1,14 @@
-/** What a window remembers across reloads. */
+/** The values that a window keeps across reloads. */
 export interface Kept {
   session?: string;
   token?: string;
-  /** Said, but not known to have been heard. */
+  /** Words that the server has not confirmed. */
   outbox?: { id: string; text: string }[];
 }
 
 const KEY = "ravestate";
 
-/** What is kept; nothing where the browser keeps nothing, as in some frames. */
+/** Return the kept values; empty where the browser keeps none, as in some frames. */
 export function recall(): Kept {
   try {
     const value: unknown = JSON.parse(sessionStorage.getItem(KEY) ?? "{}");
@@ -18,12 +18,12 @@ export function recall(): Kept {
   }
 }
 
-/** Keep something from now on. */
+/** Keep values across reloads. */
 export function keep(kept: Kept): void {
   try {
     sessionStorage.setItem(KEY, JSON.stringify(kept));
   } catch {
-    // then it lasts until the reload
+    // they last until the reload only
   }
 }
 
@@ -36,7 +36,7 @@ export function announce(session: string): void {
   }
 }
 
-/** The token of a link, `#token=...`, which is taken out of the address so that it is not shown or passed on. */
+/** Return the token of the page's link (`#token=...`), and remove it from the address so that nobody shares it. */
 export function tokenOfLink(): string | undefined {
   const token = new URLSearchParams(location.hash.slice(1)).get("token");
   if (token === null) return undefined;

@@ -1,8 +1,8 @@
-// <script src="https://.../widget.js" defer></script> puts a button into the corner of a page, which opens the chat.
+// <script src="https://.../widget.js" defer></script> adds a button to the corner of a page; the button opens the chat.
 //
 // Attributes of the script, all optional:
-//   data-title   what the button says, "Talk with us" by default
-//   data-token   the token, where the agent asks for one: everybody who reads the page's source can read it
+//   data-title   the name of the button, by default "Talk with us"
+//   data-token   the token, if the agent needs one; everybody can read it in the page's source
 
 import { RAVEN } from "../lib/raven";
 
@@ -27,7 +27,7 @@ const STYLE = `
   }
 `;
 
-/** Milliseconds after the frame has loaded within which the chat in it tells that it is there. */
+/** Milliseconds that the chat has to report after its frame has loaded. */
 const PATIENCE = 1000;
 
 const script = document.currentScript;
@@ -37,11 +37,11 @@ if (script instanceof HTMLScriptElement) {
   else put();
 }
 
-/** Put the button, and behind it the chat, onto the page. */
+/** Add the button and the chat to the page. */
 function embed(page: URL, options: DOMStringMap): void {
   const host = document.createElement("ravestate-widget");
   const root = host.attachShadow({ mode: "open" });
-  const sheet = new CSSStyleSheet(); // no inline style, which the page may forbid
+  const sheet = new CSSStyleSheet(); // the page may forbid inline styles
   sheet.replaceSync(STYLE);
   root.adoptedStyleSheets = [sheet];
 
@@ -65,9 +65,9 @@ function embed(page: URL, options: DOMStringMap): void {
 
   function show(open: boolean): void {
     if (open && frame === null) {
-      frame = document.createElement("iframe"); // only now, so that nobody is there who did not ask
+      frame = document.createElement("iframe"); // only now: visitors who do not open it stay unconnected
       frame.title = options.title ?? "Talk with us";
-      frame.referrerPolicy = "origin"; // so that the server can name this site if it may not show the chat
+      frame.referrerPolicy = "origin"; // lets the server's log name a site without permission
       frame.addEventListener("load", () => setTimeout(complain, PATIENCE));
       frame.src =
         page.href + (options.token === undefined ? "" : `#token=${encodeURIComponent(options.token)}`);
@@ -82,7 +82,7 @@ function embed(page: URL, options: DOMStringMap): void {
   function complain(): void {
     if (!shown)
       console.error(
-        `A page of ${location.origin} wanted to show the chat: add it to the setting webio.origins. (Or there is no agent at ${page.href}.)`,
+        `A page of ${location.origin} may not embed the chat: add it to the setting webio.origins. (Or no agent runs at ${page.href}.)`,
       );
   }
 

@@ -7,8 +7,6 @@ from dataclasses import dataclass
 from ravestate.engine.explain import seconds
 from ravestate.engine.reasons import Verdict
 
-__all__ = ["Missing", "Moment", "Raiser", "WhyNot"]
-
 
 @dataclass(frozen=True, slots=True)
 class Raiser:

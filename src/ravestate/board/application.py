@@ -22,8 +22,6 @@ from ravestate.modules.platform.webio.pages import Pages
 from ravestate.runtime.agent import Agent
 from ravestate.runtime.context import Context
 
-__all__ = ["INSIDE", "PAGE", "LARGEST", "RecordedAgent", "routes"]
-
 PAGE = Path(__file__).parent / "page"
 """The page that ``npm run build`` in ``frontend/`` makes."""
 
@@ -82,9 +80,7 @@ def routes(
             await asyncio.sleep(PAUSE)
             return PlainTextResponse("the token is wrong, or missing", 401)
         if receiving.locked():
-            return PlainTextResponse(
-                f"{AT_ONCE} uploads are in progress: try again", 503, {"retry-after": "10"}
-            )
+            return PlainTextResponse(f"{AT_ONCE} uploads are in progress: try again", 503, {"retry-after": "10"})
         async with receiving:
             return await read(request)
 

@@ -16,19 +16,6 @@ from ravestate.policy.completion import UNIT
 from ravestate.policy.model import Clause, Need, RulePlan, SignalPlan, SlotPlan
 from ravestate.policy.policy import Policy
 
-__all__ = [
-    "ClauseView",
-    "ConstraintView",
-    "Description",
-    "GateView",
-    "RuleView",
-    "SignalView",
-    "SlotView",
-    "Term",
-    "describe",
-]
-
-
 _Users = dict[str, list[str]]
 
 

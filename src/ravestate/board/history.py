@@ -11,24 +11,8 @@ from dataclasses import dataclass, field
 from itertools import accumulate
 from operator import attrgetter
 
+from ravestate.engine import trace as t
 from ravestate.engine.reasons import Outcome
-from ravestate.engine.trace import (
-    Born,
-    Dropped,
-    GaveUp,
-    Held,
-    Merged,
-    Passed,
-    Pressed,
-    Record,
-    Set,
-    Settled,
-    Started,
-    Told,
-    Waits,
-)  # fmt: skip
-
-__all__ = ["Attempt", "History"]
 
 NEVER = float("inf")
 BY_TIME = attrgetter("time")
@@ -52,14 +36,14 @@ class Attempt:
     id: int
     rule: str
     clause: int
-    records: list[Record] = field(default_factory=list[Record])
-    held: list[Held] = field(default_factory=list[Held])
+    records: list[t.Record] = field(default_factory=list[t.Record])
+    held: list[t.Held] = field(default_factory=list[t.Held])
     lacks: tuple[str, ...] = ()
     complete: float | None = None
-    waits: list[Waits] = field(default_factory=list[Waits])
-    gave_up: list[GaveUp] = field(default_factory=list[GaveUp])
-    started: Started | None = None
-    settled: Settled | None = None
+    waits: list[t.Waits] = field(default_factory=list[t.Waits])
+    gave_up: list[t.GaveUp] = field(default_factory=list[t.GaveUp])
+    started: t.Started | None = None
+    settled: t.Settled | None = None
     _missing: tuple[str, ...] = ()
     _holds: set[int] = field(default_factory=set[int])
 
@@ -75,7 +59,12 @@ class Attempt:
             return self.settled.time
         return self.gave_up[-1].time if self.over and self.gave_up else None
 
-    def take(self, record: Held) -> None:
+    @property
+    def spikes(self) -> Iterable[int]:
+        """The spikes of its run; without a run, those that it took."""
+        return [held.spike for held in self.held] if self.started is None else self.started.spikes
+
+    def take(self, record: t.Held) -> None:
         """Note a spike that the activation took."""
         self.held.append(record)
         self._holds.add(record.spike)
@@ -83,7 +72,7 @@ class Attempt:
         self.complete = None if record.lacks else record.time
         self.gave_up.clear()
 
-    def lose(self, record: GaveUp) -> None:
+    def lose(self, record: t.GaveUp) -> None:
         """Note a spike that the activation gave up. `lacks` stays as it was before the first loss of this instant."""
         if not self.gave_up or self.gave_up[-1].time != record.time:
             self.lacks = self._missing
@@ -107,17 +96,17 @@ class History:
         LookupError: The trace does not hold the spike, or no longer does.
     """
 
-    def __init__(self, records: Iterable[Record], spike: int) -> None:
-        self.born: dict[int, Born] = {}
+    def __init__(self, records: Iterable[t.Record], spike: int) -> None:
+        self.born: dict[int, t.Born] = {}
         self.attempts: dict[str, list[Attempt]] = {}
-        self.passed: dict[str, list[Passed]] = {}
-        self.pressed: dict[str, list[Pressed]] = {}
-        self.writes: dict[int, list[Set]] = {}
-        self.values: dict[str, list[Set]] = {}
+        self.passed: dict[str, list[t.Passed]] = {}
+        self.pressed: dict[str, list[t.Pressed]] = {}
+        self.writes: dict[int, list[t.Set]] = {}
+        self.values: dict[str, list[t.Set]] = {}
         self.retired: dict[str, float] = {}
         self.fired: dict[str, list[float]] = {}
         self.raising: set[tuple[int, str]] = set()
-        self.dropped: dict[int, Dropped] = {}
+        self.dropped: dict[int, t.Dropped] = {}
         self.first = self.last = 0.0
         self._runs: dict[int, Attempt] = {}
         self._into: dict[int, int] = {}
@@ -151,7 +140,7 @@ class History:
             self._of[rule] = [a for a in self.attempts.get(rule, []) if self._is_ours(a)]
         return self._of[rule]
 
-    def raised(self, signal: str) -> list[Born]:
+    def raised(self, signal: str) -> list[t.Born]:
         """Return the spikes of a signal in the group."""
         return [self.born[id] for id in self.group if self.born[id].signal == signal]
 
@@ -178,15 +167,11 @@ class History:
             hears: For each rule that counts, the signals that each of its clauses takes. A detached constraint takes
                 none (L19).
         """
-        return next(
-            (a for a in self._answers if a.rule in hears and self._is_taken(a, hears[a.rule][a.clause])), None
-        )
+        return next((a for a in self._answers if a.rule in hears and self._is_taken(a, hears[a.rule][a.clause])), None)
 
     def _is_taken(self, attempt: Attempt, signals: Collection[str]) -> bool:
         """Return whether an attempt took a spike of one of these signals in the group."""
-        started = attempt.started
-        spikes = [held.spike for held in attempt.held] if started is None else started.spikes
-        return any(spike in self.group and self.born[spike].signal in signals for spike in spikes)
+        return any(spike in self.group and self.born[spike].signal in signals for spike in attempt.spikes)
 
     def before(self, run: int) -> str:
         """Return the rule that raised a spike that a run took of this group; empty if none did, or the trace lacks it."""
@@ -200,19 +185,17 @@ class History:
                     return source.rule
         return ""
 
-    def value(self, slot: str, time: float) -> Set | None:
+    def value(self, slot: str, time: float) -> t.Set | None:
         """Return the last write of a slot up to a time (seconds), if the trace has one."""
         written = self.values.get(slot, [])
         number = bisect_right(written, time, key=BY_TIME)
         return written[number - 1] if number else None
 
     def _is_ours(self, attempt: Attempt) -> bool:
-        started = attempt.started
-        return any(held.spike in self.group for held in attempt.held) or (
-            started is not None and any(spike in self.group for spike in started.spikes)
-        )
+        held = (one.spike for one in attempt.held)
+        return any(spike in self.group for spike in (*held, *attempt.spikes))
 
-    def _attempt(self, id: int, record: Held | Started) -> Attempt:
+    def _attempt(self, id: int, record: t.Held | t.Started) -> Attempt:
         attempt = self._runs.get(id)
         if attempt is None:
             attempt = self._runs[id] = Attempt(id, record.rule, record.clause)
@@ -220,43 +203,43 @@ class History:
         attempt.records.append(record)
         return attempt
 
-    def _read(self, record: Record) -> None:
+    def _read(self, record: t.Record) -> None:
         match record:
-            case Born():
+            case t.Born():
                 self.born[record.spike] = record
                 self.raising.add((record.source, record.signal))
-            case Held():
+            case t.Held():
                 self._attempt(record.activation, record).take(record)
-            case Started():
+            case t.Started():
                 self._attempt(record.run, record).started = record
-            case GaveUp() | Waits():
+            case t.GaveUp() | t.Waits():
                 attempt = self._runs.get(record.activation)
                 if attempt is not None:  # else it began before the trace
                     attempt.records.append(record)
-                    if isinstance(record, GaveUp):
+                    if isinstance(record, t.GaveUp):
                         attempt.lose(record)
                     else:
                         attempt.waits.append(record)
-            case Told() | Settled():
+            case t.Told() | t.Settled():
                 attempt = self._runs.get(record.run)
                 if attempt is not None:
                     attempt.records.append(record)
-                if isinstance(record, Settled):
+                if isinstance(record, t.Settled):
                     self._settle(record, attempt)
-            case Passed():
+            case t.Passed():
                 self.passed.setdefault(record.rule, []).append(record)
-            case Pressed():
+            case t.Pressed():
                 self.pressed.setdefault(record.rule, []).append(record)
-            case Set():
+            case t.Set():
                 self.writes.setdefault(record.run, []).append(record)
                 self.values.setdefault(record.slot, []).append(record)
-            case Merged():
+            case t.Merged():
                 if self.root(record.into) != record.group:  # a damaged file may merge groups in a circle
                     self._into[record.group] = record.into
-            case Dropped():
+            case t.Dropped():
                 self.dropped[record.spike] = record
 
-    def _settle(self, record: Settled, attempt: Attempt | None) -> None:
+    def _settle(self, record: t.Settled, attempt: Attempt | None) -> None:
         if attempt is not None:
             attempt.settled = record
             if record.fired:

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from time import perf_counter, process_time
 
-__all__ = ["IdleShare"]
-
 SCHEDULE = "/proc/thread-self/schedstat"
 """The file in which Linux counts a thread's nanoseconds on a processor and in the queue for one."""
 

@@ -8,32 +8,8 @@ from typing import TYPE_CHECKING
 
 from starlette.websockets import WebSocket
 
-from ravestate.board import picture
+from ravestate.board import picture, protocol
 from ravestate.board.idle_share import IdleShare
-from ravestate.board.protocol import (
-    VERSION,
-    Answer,
-    Changed,
-    ClientFrame,
-    Conversation,
-    Conversations,
-    Ended,
-    Error,
-    Explain,
-    Hello,
-    Look,
-    Ping,
-    Pong,
-    Records,
-    Renamed,
-    ServerFrame,
-    Unfold,
-    Welcome,
-    Why,
-    fields_of,
-    parse,
-    serialise,
-)  # fmt: skip
 from ravestate.board.recorder import Gap, Recorders
 from ravestate.board.recordings import Recordings
 from ravestate.board.source import LiveSource, RecordedSource, Source
@@ -48,8 +24,6 @@ if TYPE_CHECKING:
     from ravestate.modules.platform.webio.access import Access
     from ravestate.modules.platform.webio.session import Session
     from ravestate.modules.platform.webio.sessions import Sessions
-
-__all__ = ["Inspector"]
 
 FRAME = 0.05
 """Seconds between two frames of records."""
@@ -84,7 +58,7 @@ WORDS = 48
 REPLIES = 64
 """The most answers in the queue for a client."""
 
-HELLO = f'{{"type": "hello", "v": {VERSION}}}'
+HELLO = f'{{"type": "hello", "v": {protocol.VERSION}}}'
 
 
 class Inspector:
@@ -141,34 +115,34 @@ class Inspector:
             visitor = None if session is None else session.visitor
             whole = source.whole and seen == 0
             await self._send(
-                Welcome(VERSION, title, source.live, visitor, whole, source.description, *source.clock())
+                protocol.Welcome(
+                    protocol.VERSION, title, source.live, visitor, whole, source.description, *source.clock()
+                )
             )
             await self._send(source.look())
             await self._channel.both(self._read(source), self._write(source, session, seen, title))
         finally:
             if session is not None:
                 self._sessions.exit(session, self)
-                if isinstance(source, LiveSource) and not any(
-                    isinstance(o, Inspector) for o in session.onlookers
-                ):
+                if isinstance(source, LiveSource) and not any(isinstance(o, Inspector) for o in session.onlookers):
                     source.leave()
 
     # ------------------------------------------------------------------------------------ the first frame
 
-    async def _hello(self) -> Hello:
+    async def _hello(self) -> protocol.Hello:
         text = await self._channel.first(HELLO)
         try:
-            command = parse(text)
+            command = protocol.parse(text)
         except ValueError as error:
             raise ProtocolError("malformed", str(error)) from None
-        if not isinstance(command, Hello):
+        if not isinstance(command, protocol.Hello):
             raise ProtocolError("malformed", f"begin with {HELLO}")
-        if command.v != VERSION:
-            raise ProtocolError("version", f'"v": {command.v}: this side speaks version {VERSION} only')
+        if command.v != protocol.VERSION:
+            raise ProtocolError("version", f'"v": {command.v}: this side speaks version {protocol.VERSION} only')
         await self._access.check_token(command.token)
         return command
 
-    def _recording(self, hello: Hello) -> RecordedSource | None:
+    def _recording(self, hello: protocol.Hello) -> RecordedSource | None:
         if hello.session is not None or hello.visitor is not None:
             return None
         recording = self._recordings.get(hello.recording)
@@ -176,7 +150,7 @@ class Inspector:
             raise ProtocolError("gone", "the server no longer keeps this recording: open its file again")
         return None if recording is None else RecordedSource(recording)
 
-    async def _session(self, hello: Hello) -> Session:
+    async def _session(self, hello: protocol.Hello) -> Session:
         if hello.session is not None:
             session = self._sessions.get(hello.session)
         elif hello.visitor is not None:
@@ -199,19 +173,19 @@ class Inspector:
             if wait:
                 await asyncio.sleep(wait)
             try:
-                command = parse(text)
+                command = protocol.parse(text)
             except ValueError as error:
-                self._reply(Error("malformed", str(error)))
+                self._reply(protocol.Error("malformed", str(error)))
                 continue
             try:
                 await self._take(command, source)
             except (RavestateError, LookupError, ValueError) as error:
                 words = str(error.args[0]) if isinstance(error, LookupError) and error.args else str(error)
-                self._reply(Error("refused", words, command.type))
+                self._reply(protocol.Error("refused", words, command.type))
 
-    async def _take(self, command: ClientFrame, source: Source) -> None:
+    async def _take(self, command: protocol.ClientFrame, source: Source) -> None:
         match command:
-            case Why():
+            case protocol.Why():
                 records = [r for r in source.since(source.first - 1, source.last) if not isinstance(r, Gap)]
                 found = await asyncio.to_thread(
                     why_not,
@@ -222,23 +196,23 @@ class Inspector:
                     source.opens,
                     source.whole,
                 )
-                self._reply(Answer(**fields_of(found)))
-            case Unfold():
+                self._reply(protocol.Answer(**protocol.fields_of(found)))
+            case protocol.Unfold():
                 diagram = source.description.diagram
                 self._reply(await asyncio.to_thread(picture.draw, diagram, command.unfolded))
-            case Explain():
+            case protocol.Explain():
                 self._reply(source.explain(command.rule))
-            case Look():
+            case protocol.Look():
                 self._reply(source.look())
-            case Ping():
-                self._reply(Pong())
-            case Hello():
+            case protocol.Ping():
+                self._reply(protocol.Pong())
+            case protocol.Hello():
                 raise ValueError("hello comes once, first")
             case _:
                 await source.act(command)
 
-    def _reply(self, frame: ServerFrame) -> None:
-        self._channel.reply(serialise(frame))
+    def _reply(self, frame: protocol.ServerFrame) -> None:
+        self._channel.reply(protocol.serialise(frame))
 
     # ------------------------------------------------------------------------------------ to the page
 
@@ -246,17 +220,17 @@ class Inspector:
         """Send records, some twenty times a second at most, and answers."""
         idle = IdleShare()
         sent: bool | None = None  # whether the clock was stopped, as the page knows it
-        listed: Conversations | None = None
+        listed: protocol.Conversations | None = None
         now, looked = asyncio.get_running_loop().time, -LISTED
         while True:
             began = perf_counter()
             self._channel.woken.clear()
             await self._channel.send_replies()
             if isinstance(source, LiveSource) and source.renewed():
-                await self._send(Changed(source.description))
+                await self._send(protocol.Changed(source.description))
             if session is not None and self._title_of(session) != title:
                 title = self._title_of(session)
-                await self._send(Renamed(title))
+                await self._send(protocol.Renamed(title))
             if session is not None and now() - looked >= LISTED:
                 looked = now()
                 if (conversations := self._conversations(session)) != listed:
@@ -274,14 +248,14 @@ class Inspector:
                 seen += missed + len(records)
                 gap = missed > 0 or any(isinstance(record, Gap) for record in records)
                 data = [data_of(record) for record in records]
-                text = serialise(Records(data, missed, source.last - seen, *clock))
+                text = protocol.serialise(protocol.Records(data, missed, source.last - seen, *clock))
             took = perf_counter() - began
             if text:
                 await self._channel.send(text)
             if gap and source.live:
                 await self._send(source.look())
             if session is not None and session.ended is not None and seen >= source.last:
-                await self._send(Ended(session.ended))
+                await self._send(protocol.Ended(session.ended))
                 await self._channel.end()
                 return
             seconds = max(FRAME, took / (SHARE + OF_SPARE * idle.share())) if text else FRAME
@@ -301,19 +275,19 @@ class Inspector:
     def _title_of(self, session: Session) -> str:
         return session.agent if self._title is None else self._title
 
-    def _conversations(self, own: Session) -> Conversations:
+    def _conversations(self, own: Session) -> protocol.Conversations:
         """Return the newest conversations and the shown one."""
         running = list(self._sessions)
         listed = running[-LIST:]
         if own in running[:-LIST]:
             listed[0] = own
-        return Conversations([_conversation(session) for session in listed], len(running) - len(listed))
+        return protocol.Conversations([_conversation(session) for session in listed], len(running) - len(listed))
 
-    async def _send(self, frame: ServerFrame) -> None:
-        await self._channel.send(serialise(frame))
+    async def _send(self, frame: protocol.ServerFrame) -> None:
+        await self._channel.send(protocol.serialise(frame))
 
 
-def _conversation(session: Session) -> Conversation:
+def _conversation(session: Session) -> protocol.Conversation:
     newest = session.history.newest("user")
     said = None if newest is None else newest.text[:WORDS]
-    return Conversation(session.visitor, session.name, session.began, said)
+    return protocol.Conversation(session.visitor, session.name, session.began, said)

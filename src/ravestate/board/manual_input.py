@@ -11,8 +11,6 @@ from ravestate.declare.signal import Signal
 from ravestate.declare.slot import Collection, Flag, Slot, checkable
 from ravestate.errors import RavestateError
 
-__all__ = ["check_payload", "check_value"]
-
 SAMPLES: tuple[Any, ...] = (True, 0, 0.5, "", [], {})
 """One value of each JSON type but null."""
 
@@ -54,9 +52,7 @@ def check_payload(signal: Signal[Any], command: Emit, slot: Slot[Any] | None, ho
         RavestateError: The payload is refused; the message says what to do instead.
     """
     if isinstance(slot, Collection):
-        raise RavestateError(
-            f"{signal.name} announces a change of the collection {slot.name}: write the slot instead"
-        )
+        raise RavestateError(f"{signal.name} announces a change of the collection {slot.name}: write the slot instead")
     if slot is None:
         kind = signal.payload
         if kind is None or kind is NoneType:

@@ -10,8 +10,6 @@ from ravestate.draw.graph import Diagram
 from ravestate.draw.layout import lay_out
 from ravestate.draw.sizes import label_size, node_size
 
-__all__ = ["draw"]
-
 
 def draw(diagram: Diagram, unfolded: Sequence[str]) -> Drawing:
     """Lay out a diagram with some modules unfolded. Hundreds of nodes take a second or so."""
@@ -19,9 +17,7 @@ def draw(diagram: Diagram, unfolded: Sequence[str]) -> Drawing:
     sizes = {node.id: node_size(node) for node in folded.nodes}
     layout = lay_out(folded, sizes, [label_size(edge.label) for edge in folded.edges])
     nodes = [
-        DrawnNode(
-            node.id, node.kind, node.label, node.module, node.note, (box.x, box.y, box.width, box.height)
-        )
+        DrawnNode(node.id, node.kind, node.label, node.module, node.note, (box.x, box.y, box.width, box.height))
         for node in folded.nodes
         if (box := layout.boxes[node.id])
     ]

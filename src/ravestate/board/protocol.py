@@ -22,10 +22,10 @@ from ravestate.engine.reasons import LossReason, Verdict
 from ravestate.modules.platform.webio.protocol import CLOSING_CODES
 
 __all__ = [
-    "CLIENT", "CLOSING_CODES", "LOSSES", "SERVER", "VERDICTS", "VERSION", "Alive", "Answer", "Changed", "ClientFrame",
+    "CLIENT", "CLOSING_CODES", "LOSSES", "SERVER", "VERDICTS", "VERSION", "Alive", "Answer", "Changed", "ClientFrame", "Clock",
     "Conversation", "Conversations", "Drawing", "DrawnEdge", "DrawnNode", "Emit", "Ended", "Error", "Explain", "Explained",
-    "ExplainedClause", "Hello", "Look", "Pause", "Ping", "Pong", "Put", "Records", "Renamed", "Resume", "Say", "ServerFrame",
-    "State", "Step", "Unfold", "Welcome", "Why", "fields_of", "parse", "serialise",
+    "ExplainedClause", "Hello", "Look", "Ping", "Pong", "Put", "Records", "Renamed", "Say", "ServerFrame", "State", "Unfold",
+    "Welcome", "Why", "fields_of", "parse", "serialise",
 ]  # fmt: skip
 
 LOSSES: dict[str, str] = {reason.value: reason.words for reason in LossReason}
@@ -68,22 +68,10 @@ class Hello(_Frame):
     token: str | None = None
 
 
-class Pause(_Frame):
-    """Stop the context's clock."""
+class Clock(_Frame):
+    """Stop the context's clock, do the next thing that is due on a stopped clock, or start it again."""
 
-    type: Literal["pause"]
-
-
-class Step(_Frame):
-    """Do the next thing that is due, on a stopped clock."""
-
-    type: Literal["step"]
-
-
-class Resume(_Frame):
-    """Start the context's clock again."""
-
-    type: Literal["resume"]
+    type: Literal["pause", "step", "resume"]
 
 
 class Put(_Frame):
@@ -347,7 +335,7 @@ class Pong:
     type: Literal["pong"] = "pong"
 
 
-ClientFrame = Hello | Pause | Step | Resume | Put | Emit | Say | Look | Explain | Why | Unfold | Ping
+ClientFrame = Hello | Clock | Put | Emit | Say | Look | Explain | Why | Unfold | Ping
 ServerFrame = (
     Welcome | State | Records | Renamed | Changed | Conversations | Explained | Answer | Drawing | Ended | Error | Pong
 )  # fmt: skip
@@ -401,9 +389,7 @@ def fields_of(record: Any) -> dict[str, Any]:
 
 def _changed(record: Any) -> dict[str, Any]:
     defaults = {field.name: field.default for field in dataclasses.fields(record) if field.name != "type"}
-    return {
-        name: value for name, value in fields_of(record).items() if value is not defaults.get(name, _NONE)
-    }
+    return {name: value for name, value in fields_of(record).items() if value is not defaults.get(name, _NONE)}
 
 
 _NONE = object()

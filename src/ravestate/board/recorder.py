@@ -23,8 +23,6 @@ from ravestate.board.idle_share import IdleShare
 from ravestate.engine.trace import Born, Record
 from ravestate.runtime.context import Context
 
-__all__ = ["BURST", "IN_ALL", "KEPT", "RATE", "Gap", "Recorder", "Recorders"]
-
 KEPT = 100_000
 """The most records of one context."""
 
@@ -187,9 +185,7 @@ class Recorders:
     def __init__(self, in_all: int = IN_ALL) -> None:
         self._in_all = in_all
         self._grown = 0
-        self._of: WeakKeyDictionary[Context, ref[Recorder]] = (
-            WeakKeyDictionary()
-        )  # the context holds its recorder
+        self._of: WeakKeyDictionary[Context, ref[Recorder]] = WeakKeyDictionary()  # the context holds its recorder
 
     def of(self, context: Context, *, whole: bool = False) -> Recorder:
         """Return the recorder of a context, new at the first call; `whole` is as for `Recorder`."""

@@ -7,8 +7,6 @@ from collections import OrderedDict
 
 from ravestate.board.trace_file import Recording
 
-__all__ = ["Recordings"]
-
 KEPT = 4
 """The most uploaded recordings; the newest stay."""
 

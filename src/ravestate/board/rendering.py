@@ -14,8 +14,6 @@ from typing import cast
 from ravestate.board.repr_chunks import repr_chunks
 from ravestate.declare.slot import Entry
 
-__all__ = ["Rendered", "not_json", "render", "well_formed"]
-
 DEEPEST = 6
 """The most nested containers."""
 

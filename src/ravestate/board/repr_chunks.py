@@ -10,8 +10,6 @@ from itertools import chain
 from types import MappingProxyType
 from typing import Any, NamedTuple, cast
 
-__all__ = ["repr_chunks"]
-
 DEEPEST = 30
 """The most nested containers."""
 
@@ -132,9 +130,7 @@ def _plain(items: Iterable[object]) -> Iterator[tuple[Iterable[str], object]]:
     return (((), item) for item in items)
 
 
-def _pairs(
-    items: Iterable[tuple[object, object]], around: tuple[int, ...]
-) -> Iterator[tuple[Iterable[str], object]]:
+def _pairs(items: Iterable[tuple[object, object]], around: tuple[int, ...]) -> Iterator[tuple[Iterable[str], object]]:
     return ((chain(repr_chunks(key, around), (": ",)), item) for key, item in items)
 
 

@@ -9,8 +9,6 @@ from ravestate.board.history import Attempt, History
 from ravestate.engine.explain import join, seconds
 from ravestate.engine.trace import GaveUp, Passed, Waits
 
-__all__ = ["Rivals"]
-
 
 class Rivals:
     """Phrases about other rules.
@@ -23,9 +21,7 @@ class Rivals:
     def __init__(self, history: History, description: Description) -> None:
         self._history = history
         self._description = description
-        self._first: dict[
-            str, Attempt | None
-        ] = {}  # the run that answered first, by the rule that lost to it
+        self._first: dict[str, Attempt | None] = {}  # the run that answered first, by the rule that lost to it
 
     def waited(self, rule: RuleView, attempt: Attempt) -> str:
         """Say which rules an attempt waited for; empty if it did not wait."""
@@ -86,9 +82,7 @@ class Rivals:
             slots = set(rule.writes)
             self._first[rule.name] = self._history.answered(
                 {
-                    other.name: [
-                        {c.signal for c in clause.constraints if not c.detached} for clause in other.clauses
-                    ]
+                    other.name: [{c.signal for c in clause.constraints if not c.detached} for clause in other.clauses]
                     for other in self._description.rules
                     if other.name != rule.name and slots & set(other.writes)
                 }

@@ -5,24 +5,22 @@ from __future__ import annotations
 import asyncio
 import secrets
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
-from ravestate.board.description import Description, describe
+from ravestate.board.description import describe
 from ravestate.board.manual_input import check_payload, check_value
 from ravestate.board.protocol import (
     Alive,
     ClientFrame,
+    Clock,
     Emit,
     Explained,
     ExplainedClause,
-    Pause,
     Put,
-    Resume,
     Say,
     State,
-    Step,
     fields_of,
-)  # fmt: skip
+)
 from ravestate.board.recorder import Gap, Recorder
 from ravestate.board.rendering import Rendered, render
 from ravestate.board.trace_file import Recording
@@ -36,70 +34,19 @@ from ravestate.policy.policy import Policy
 if TYPE_CHECKING:
     from ravestate.modules.platform.webio.session import Session
 
-__all__ = ["LiveSource", "RecordedSource", "Source", "gates_of"]
-
 T = TypeVar("T")
 
 
-class Source(Protocol):
-    """A policy, and its records, numbered from 1.
-
-    Attributes:
-        description: The policy.
-        live: Whether it is a running conversation.
-        first: The number of the oldest record that is kept.
-        last: The number of the newest record.
-        whole: Whether the records reach back to the start without a gap.
-        opens: Evaluates slot predicates; None for a recording.
-    """
-
-    description: Description
-    live: bool
-
-    @property
-    def first(self) -> int: ...
-    @property
-    def last(self) -> int: ...
-    @property
-    def whole(self) -> bool: ...
-    @property
-    def opens(self) -> Opens | None: ...
-
-    def since(self, number: int, most: int) -> list[Record | Gap]:
-        """Return at most `most` records after a number."""
-        ...
-
-    def clock(self) -> tuple[float, bool]:
-        """Return the time (seconds), and whether the clock is stopped."""
-        ...
-
-    def look(self) -> State:
-        """Return the values of the slots and the live activations."""
-        ...
-
-    def explain(self, rule: str) -> Explained:
-        """Return what a rule holds, lacks and waits for.
-
-        Raises:
-            RavestateError: There is no such rule, or no agent.
-        """
-        ...
-
-    async def act(self, command: ClientFrame) -> None:
-        """Carry out a command.
-
-        Raises:
-            RavestateError: It is refused.
-        """
-        ...
-
-
 class LiveSource:
-    """A running conversation.
+    """A running conversation: its policy, and its records, numbered from 1.
 
     Args:
         session: The conversation.
         recorder: The recorder of its context.
+
+    Attributes:
+        description: The policy.
+        opens: Evaluates slot predicates.
     """
 
     live = True
@@ -175,23 +122,21 @@ class LiveSource:
             RavestateError: It is refused.
         """
         context = self._context
-        if isinstance(command, Say | Put | Emit) and (
-            self._session.leaving or self._session.ended is not None
-        ):
+        if isinstance(command, Say | Put | Emit) and (self._session.leaving or self._session.ended is not None):
             about = "is ending" if self._session.ended is None else "has ended"
             raise RavestateError(f"this conversation {about}: it takes no more input")
         match command:
-            case Pause():
+            case Clock(type="pause"):
                 context.pause()
                 self._session.notify()
-            case Step():
+            case Clock(type="step"):
                 if not await _outside_of_any_task(context.step):
                     raise RavestateError(
                         "nothing is due: the agent waits for input, or for work outside its clock"
                         if context.paused
                         else "the clock is running: pause it first"
                     )
-            case Resume():
+            case Clock(type="resume"):
                 context.resume()
                 self._session.notify()
             case Put():
@@ -249,9 +194,7 @@ async def _outside_of_any_task(function: Callable[[], T]) -> T:
 
 def gates_of(policy: Policy) -> Opens:
     """Return a function that evaluates the slot predicates of a policy."""
-    guards = {
-        (rule.name, clause.number): clause.guards for rule in policy.rule_plans for clause in rule.clauses
-    }
+    guards = {(rule.name, clause.number): clause.guards for rule in policy.rule_plans for clause in rule.clauses}
 
     def opens(rule: str, clause: int, number: int, value: Any) -> bool | None:
         found = guards.get((rule, clause), ())
@@ -290,10 +233,7 @@ class RecordedSource:
     def look(self) -> State:
         """Return the last written value of each slot."""
         values = {record.slot: record.value for record in self._records if isinstance(record, Set)}
-        slots = {
-            name: value if isinstance(value, Rendered) else render(value, VALUE)
-            for name, value in values.items()
-        }
+        slots = {name: value if isinstance(value, Rendered) else render(value, VALUE) for name, value in values.items()}
         return State(slots, [], *self.clock())
 
     def explain(self, rule: str) -> Explained:
@@ -303,3 +243,6 @@ class RecordedSource:
     async def act(self, command: ClientFrame) -> None:
         """Refuse."""
         raise RavestateError(f"this is a recording: there is no agent to take {command.type!r}")
+
+
+Source = LiveSource | RecordedSource

@@ -25,8 +25,6 @@ from ravestate.engine.trace import Record
 from ravestate.errors import PlatformError
 from ravestate.policy.policy import Policy
 
-__all__ = ["FORMAT", "Recording", "open_trace", "read_apart", "read_trace", "save_trace"]
-
 FORMAT = "ravestate-trace"
 
 MOST_VALUES = 6_000_000
@@ -135,9 +133,7 @@ def read_apart(data: bytes) -> Recording:
     command = [sys.executable, "-m", __name__]
     paths = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
     try:
-        done = subprocess.run(
-            command, input=data, capture_output=True, env=paths, timeout=LONGEST, check=False
-        )
+        done = subprocess.run(command, input=data, capture_output=True, env=paths, timeout=LONGEST, check=False)
     except subprocess.TimeoutExpired:
         raise ValueError(f"reading it takes more than {LONGEST} s") from None
     if done.returncode:

@@ -17,8 +17,6 @@ from ravestate.engine.explain import join, latest, seconds, why_given_up, withou
 from ravestate.engine.reasons import DropReason, LossReason, Outcome, PassReason, Verdict
 from ravestate.engine.trace import GaveUp, Passed, Record, Settled, Waits
 
-__all__ = ["Opens", "why_not"]
-
 DEEPEST = 3
 """The most causes of causes in an answer."""
 
@@ -50,21 +48,6 @@ def why_not(
 
     Raises:
         LookupError: The policy has no such rule, or the trace no such spike.
-
-    Example:
-        >>> import ravestate as rs
-        >>> from ravestate.board.description import describe
-        >>> from ravestate.testing import simulate
-        >>> door = rs.Module("door")
-        >>> bell, key = door.signal("bell"), door.signal("key")
-        >>> @door.rule(when=bell & key)
-        ... async def unlock(ctx): ...
-        >>> with simulate(door) as sim:
-        ...     sim.emit(bell)
-        ...     sim.advance(6)
-        ...     spike = next(record.spike for record in sim.trace if getattr(record, "signal", "") == "door:bell")
-        ...     print(why_not(sim.trace, describe(sim.context.policy), "door:unlock", spike).verdict)
-        lacked
     """
     view = description.rule(rule)
     if view is None:
@@ -246,17 +229,13 @@ class _Inquiry:
         shut = self._shut(rule, attempt, last.time)
         if shut is not None:
             return shut
-        return last.reason != LossReason.CONSUMED or (
-            ripe is not None and ripe < last.time and not attempt.waits
-        )
+        return last.reason != LossReason.CONSUMED or (ripe is not None and ripe < last.time and not attempt.waits)
 
     def _lost(self, rule: RuleView, last: GaveUp, clause: ClauseView) -> str:
         """Say how an attempt lost its spikes."""
         at = seconds(last.time)
         if last.reason == LossReason.AGE:
-            ages = [
-                c.max_age for c in clause.constraints if c.signal == last.signal and c.max_age is not None
-            ]
+            ages = [c.max_age for c in clause.constraints if c.signal == last.signal and c.max_age is not None]
             return f"{last.signal} reached its maximum age{f' of {ages[0]:g} s' if ages else ''} at {at}"
         if last.reason == LossReason.CONSUMED:
             return f"{self.rivals.answerer(rule, last)[1]} answered this cause at {at}"
@@ -286,26 +265,22 @@ class _Inquiry:
         outside = signal is not None and signal.input
         return Missing(name, f"{name} {self._absence(name, rule, attempt, outside, bool(raisers))}", raisers)
 
-    def _absence(
-        self, name: str, rule: RuleView, attempt: Attempt | None, outside: bool, raisers: bool
-    ) -> str:
+    def _absence(self, name: str, rule: RuleView, attempt: Attempt | None, outside: bool, raisers: bool) -> str:
         refused = self._passed(rule, name)
         if refused:
             return f"occurred at {seconds(refused[0].time)}, but {PassReason.say(refused[0].reason)}"
         here = min((born.time for born in self.history.raised(name)), default=None)
         if here is not None:
             late = attempt is not None and attempt.end is not None and here > attempt.end
-            return f"occurred at {seconds(here)}, {'after the rule gave up' if late else 'but the rule did not hold it'}"
+            return (
+                f"occurred at {seconds(here)}, {'after the rule gave up' if late else 'but the rule did not hold it'}"
+            )
         elsewhere = [born.time for born in self.history.born.values() if born.signal == name]
         if elsewhere:
             near = min(elsewhere, key=lambda time: abs(time - self.history.spike.time))
             return f"did not occur for this cause (it did for another, at {seconds(near)})"
         if outside:
-            return (
-                "did not arrive as an input, and no rule raised it"
-                if raisers
-                else "is an input and did not arrive"
-            )
+            return "did not arrive as an input, and no rule raised it" if raisers else "is an input and did not arrive"
         return "did not occur" if raisers else "did not occur: no rule raises it"
 
     def _raiser(self, name: str, signal: str) -> Raiser:
@@ -318,9 +293,7 @@ class _Inquiry:
             words = without(name, ended)
             if (runs[-1].id, signal) in self.history.raising:
                 words = f"{name} raised it, at {seconds(ended.time)}"
-            return Raiser(
-                name, ended.outcome, ended.time, words + (f": {ended.reason}" if ended.reason else "")
-            )
+            return Raiser(name, ended.outcome, ended.time, words + (f": {ended.reason}" if ended.reason else ""))
         if rule is None or name in self.asked or len(self.asked) > DEEPEST:
             return Raiser(name, "not run", None, f"{name} did not run")
         self.asked.append(name)

@@ -19,8 +19,6 @@ from ravestate.board.recorder import Gap
 from ravestate.board.rendering import Rendered, render, well_formed
 from ravestate.engine.trace import Record
 
-__all__ = ["VERSION", "TraceRecord", "checked_record", "data_of", "record_of", "rendered_data"]
-
 VERSION = 1
 """The version of the protocol and of trace files. A new frame, record or field keeps it; any other change raises it."""
 

@@ -49,9 +49,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     )
     parser.add_argument("--version", action="version", version=f"ravestate {__version__}")
     parser.add_argument("-v", "--verbose", action="count", default=0, help="say more; twice for everything")
-    commands = parser.add_subparsers(
-        dest="command", metavar="COMMAND", required=True, parser_class=CommandParser
-    )
+    commands = parser.add_subparsers(dest="command", metavar="COMMAND", required=True, parser_class=CommandParser)
     arguments = sys.argv[1:] if argv is None else list(argv)
     if not {"-h", "--help"}.isdisjoint(arguments):
         from ravestate.cli.built_in import listing

@@ -11,8 +11,6 @@ from ravestate.errors import UsageError
 from ravestate.loading.spec import AgentSpec
 from ravestate.modules import BUILT_IN
 
-__all__ = ["add_arguments", "load_agent"]
-
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments that name an agent."""
@@ -23,9 +21,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="a built-in name (hibye), an installed entry point, a dotted path (pkg.mod or pkg.mod:module), a file "
         "(./hello.py), or an agent file (agent.yaml); ravestate --help lists the built-in modules",
     )
-    parser.add_argument(
-        "-f", "--file", metavar="FILE", help="an agent file: modules, settings, seed, patience"
-    )
+    parser.add_argument("-f", "--file", metavar="FILE", help="an agent file: modules, settings, seed, patience")
     parser.add_argument(
         "--set",
         dest="sets",
@@ -37,9 +33,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--seed", type=int, help="the seed of all random choices, to repeat a run")
 
 
-def load_agent(
-    options: argparse.Namespace, first: Iterable[str] = (), *, announce: bool = False
-) -> AgentSpec:
+def load_agent(options: argparse.Namespace, first: Iterable[str] = (), *, announce: bool = False) -> AgentSpec:
     """Return the agent that parsed arguments name.
 
     Args:
@@ -55,9 +49,7 @@ def load_agent(
     files = [name for name in options.modules if name.endswith((".yaml", ".yml"))]
     for file in [*files, options.file] if options.file else files:
         found = agent.read(Path(file))
-        code = [
-            str(at / name) if name.endswith(".py") else name for name, at in found if name not in BUILT_IN
-        ]
+        code = [str(at / name) if name.endswith(".py") else name for name, at in found if name not in BUILT_IN]
         if announce and code:
             print(f"ravestate {options.command}: {file} runs Python code: {', '.join(code)}", file=sys.stderr)
         names += found

@@ -20,8 +20,6 @@ if TYPE_CHECKING:
 
     from ravestate.runtime.agent import Agent
 
-__all__ = ["add_arguments", "run"]
-
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options of the command."""
@@ -66,9 +64,7 @@ def run(options: argparse.Namespace) -> int:
     return 0
 
 
-async def _serve(
-    made: Agent, beside: list[BaseRoute], inside: str, talks: bool, browser: bool | None
-) -> None:
+async def _serve(made: Agent, beside: list[BaseRoute], inside: str, talks: bool, browser: bool | None) -> None:
     from ravestate.modules.platform.webio.server import Server
     from ravestate.runtime.run import asked_by_signals
 
@@ -95,6 +91,4 @@ def _has_browser() -> bool:
     """Return whether this session has a screen for a browser."""
     if not sys.stdout.isatty():
         return False
-    return sys.platform in ("darwin", "win32") or bool(
-        os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")
-    )
+    return sys.platform in ("darwin", "win32") or bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))

@@ -9,8 +9,6 @@ from importlib.resources import files
 
 from ravestate.modules import BUILT_IN
 
-__all__ = ["listing"]
-
 
 def listing() -> str:
     """Return the built-in modules, each with the first line of its docstring. Imports none of them."""
@@ -19,7 +17,5 @@ def listing() -> str:
     for name, folder in sorted(BUILT_IN.items()):
         source = (files("ravestate.modules") / folder / name / "__init__.py").read_text(encoding="utf-8")
         summary = (ast.get_docstring(ast.parse(source)) or "").partition("\n")[0]
-        lines.append(
-            textwrap.fill(summary, width, initial_indent=f"  {name:<13}", subsequent_indent=" " * 15)
-        )
+        lines.append(textwrap.fill(summary, width, initial_indent=f"  {name:<13}", subsequent_indent=" " * 15))
     return "\n".join(lines)

@@ -6,8 +6,6 @@ import argparse
 
 from ravestate.cli import agent, complete
 
-__all__ = ["add_arguments", "run"]
-
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options of the command."""

@@ -10,15 +10,11 @@ import textwrap
 
 from ravestate.cli import agent
 
-__all__ = ["add_arguments", "run"]
-
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options of the command."""
     agent.add_arguments(parser)
-    parser.add_argument(
-        "--utilities", action="store_true", help="also list every rule with its utility in nats"
-    )
+    parser.add_argument("--utilities", action="store_true", help="also list every rule with its utility in nats")
 
 
 def run(options: argparse.Namespace) -> int:

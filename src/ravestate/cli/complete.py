@@ -8,8 +8,6 @@ from typing import Literal
 
 from ravestate.errors import UsageError, nearest
 
-__all__ = ["COMPLETE", "add_arguments", "explain_memory", "names", "shown"]
-
 COMPLETE = (
     "idle",
     "verbaliser",

@@ -17,8 +17,6 @@ if TYPE_CHECKING:
     from ravestate.modules.skill.genqa.collecting import Found, Outcome
     from ravestate.modules.skill.genqa.index import Index
 
-__all__ = ["add_arguments", "run"]
-
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the command's options."""
@@ -34,9 +32,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     listing = actions.add_parser("list", help="list what has been read")
     forgetting = actions.add_parser("forget", help="forget files and folders")
     for action in (indexing, forgetting):
-        action.add_argument(
-            "paths", nargs="+", metavar="PATH", help="a file, or a folder with all that is in it"
-        )
+        action.add_argument("paths", nargs="+", metavar="PATH", help="a file, or a folder with all that is in it")
     asking = actions.add_parser("ask", help="ask a question, and see what is found")
     asking.add_argument("question", nargs="+", metavar="QUESTION")
     for action in (indexing, listing, forgetting, asking):
@@ -191,16 +187,10 @@ def _ask(settings: Settings, question: str) -> int:
         print(f"no answer: {answer.reason}")
         return 0
     how = (
-        "sure"
-        if answer.confidence >= settings.sure
-        else "unsure"
-        if answer.confidence >= settings.unsure
-        else "silent"
+        "sure" if answer.confidence >= settings.sure else "unsure" if answer.confidence >= settings.unsure else "silent"
     )
     print(f"{printable(answer.text)}\n  source      {printable(answer.source)}")
-    print(
-        f"  confidence  {answer.confidence:.2f} ({how}: sure from {settings.sure}, unsure from {settings.unsure})"
-    )
+    print(f"  confidence  {answer.confidence:.2f} ({how}: sure from {settings.sure}, unsure from {settings.unsure})")
     print("  read        score  covers")
     for candidate in answer.candidates:
         text = printable(candidate.text)

@@ -9,8 +9,6 @@ from pathlib import Path
 from ravestate.cli import agent, complete
 from ravestate.errors import UsageError, nearest
 
-__all__ = ["add_arguments", "run"]
-
 SUFFIXES = {".svg": "svg", ".dot": "dot", ".gv": "dot", ".mmd": "mermaid", ".mermaid": "mermaid"}
 """The format of an output file by the end of its name."""
 
@@ -27,9 +25,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "runs. The diagram has the slots and signals that some rule touches. Folded, each module is one box, and one "
         "arrow shows the strongest relation of two modules: writes, emits, condition, then reads."
     )
-    parser.add_argument(
-        "-o", "--output", metavar="FILE", help="the file to write; standard output by default"
-    )
+    parser.add_argument("-o", "--output", metavar="FILE", help="the file to write; standard output by default")
     parser.add_argument(
         "--format",
         choices=["svg", "dot", "mermaid"],

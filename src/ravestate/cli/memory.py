@@ -16,8 +16,6 @@ from ravestate.errors import RavestateError, nearest
 if TYPE_CHECKING:
     from ravestate.modules.meta.ontology import Memory, Node, Settings
 
-__all__ = ["add_arguments", "run"]
-
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the command's options."""
@@ -164,11 +162,7 @@ def _export(memory: Memory, options: argparse.Namespace) -> int:
 
 def _load(memory: Memory, options: argparse.Namespace) -> int:
     try:
-        text = (
-            sys.stdin.read()
-            if options.document == "-"
-            else Path(options.document).read_text(encoding="utf-8")
-        )
+        text = sys.stdin.read() if options.document == "-" else Path(options.document).read_text(encoding="utf-8")
         document: Any = json.loads(text)
     except OSError as error:
         raise UsageError(f"cannot read {options.document}: {error.strerror}") from None
@@ -204,9 +198,7 @@ def _reset(path: Path | None, options: argparse.Namespace) -> int:
         raise RavestateError(f"memory {path} is in use by another process: end that agent first")
     if not options.yes:
         print(*present, sep="\n")
-        if not _confirmed(
-            f"Remove {'this file' if len(present) == 1 else 'these files'}, with all that is known?"
-        ):
+        if not _confirmed(f"Remove {'this file' if len(present) == 1 else 'these files'}, with all that is known?"):
             print("nothing was removed")
             return 1
     try:

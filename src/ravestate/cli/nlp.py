@@ -14,14 +14,10 @@ from ravestate.errors import UsageError
 if TYPE_CHECKING:
     from ravestate.modules.meta.nlp.analysis import Analysis
 
-__all__ = ["add_arguments", "run"]
-
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options of the command."""
-    parser.add_argument(
-        "text", nargs="*", metavar="TEXT", help="the text; each line of standard input by default"
-    )
+    parser.add_argument("text", nargs="*", metavar="TEXT", help="the text; each line of standard input by default")
     parser.add_argument("--json", action="store_true", help="print one line of JSON for each text")
     parser.add_argument(
         "--pipeline",
@@ -68,14 +64,11 @@ def _lines() -> Iterator[str]:
 def _table(seen: Analysis) -> str:
     """Return the analysis for people: the words in columns, then the rest."""
     words = [
-        (word.text, word.lemma, word.pos, word.tag, word.dep, seen.tree.head(word).text)
-        for word in seen.tree.words
+        (word.text, word.lemma, word.pos, word.tag, word.dep, seen.tree.head(word).text) for word in seen.tree.words
     ]
     rows = [("TOKEN", "LEMMA", "POS", "TAG", "DEP", "HEAD"), *words]
     widths = [max(len(row[column]) for row in rows) for column in range(6)]
-    table = [
-        "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in rows
-    ]
+    table = ["  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in rows]
     facts = [
         ("entities", ", ".join(f"{entity.text} ({entity.label})" for entity in seen.entities)),
         ("triples", " ".join(str(triple) for triple in seen.triples)),

@@ -7,8 +7,6 @@ import argparse
 from ravestate.cli import agent
 from ravestate.cli.built_in import listing
 
-__all__ = ["add_arguments", "run"]
-
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options of the command."""

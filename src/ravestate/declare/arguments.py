@@ -15,8 +15,6 @@ from ravestate.declare.slot import Slot
 from ravestate.declare.wording import place_of_call, spelt
 from ravestate.errors import DeclarationError, nearest
 
-__all__ = ["check_function", "check_name", "check_options", "condition", "keywords", "number", "several"]
-
 T = TypeVar("T")
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -105,9 +103,7 @@ def condition(value: object, what: str, where: str, home: str) -> Condition:
     """
     if isinstance(value, Slot):
         slot = cast("Slot[Any]", value)
-        raise DeclarationError(
-            f"{where}: {what}={slot!r} is a slot: write {what}={spelt(slot.name, home)}.changed"
-        )
+        raise DeclarationError(f"{where}: {what}={slot!r} is a slot: write {what}={spelt(slot.name, home)}.changed")
     if not isinstance(value, Condition):
         raise DeclarationError(f"{where}: {what}={value!r} is no condition: combine signals with & and |")
     return value

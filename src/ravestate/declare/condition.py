@@ -19,8 +19,6 @@ if TYPE_CHECKING:
     from ravestate.declare.signal import Signal
     from ravestate.declare.slot import Slot
 
-__all__ = ["DEFAULT_MAX_AGE", "AllOf", "AnyOf", "Condition", "Constraint", "Holds", "checked_predicate"]
-
 DEFAULT_MAX_AGE = 5.0
 """The default of a constraint's `max_age`, in seconds (L4)."""
 
@@ -92,9 +90,7 @@ class Constraint(Condition):
             >>> rs.Module("demo").signal("word", payload=str).where(str.isupper)
             demo:word.where(isupper)
         """
-        return replace(
-            self, predicates=(*self.predicates, checked_predicate(predicate, f"{self}.where", "payload"))
-        )
+        return replace(self, predicates=(*self.predicates, checked_predicate(predicate, f"{self}.where", "payload")))
 
     def __repr__(self) -> str:
         text = self.signal.name

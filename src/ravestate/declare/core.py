@@ -6,8 +6,6 @@ from dataclasses import dataclass
 
 from ravestate.declare.module import Module
 
-__all__ = ["RuleFailure", "activity", "core", "error", "pressure", "shutdown", "startup"]
-
 
 @dataclass(frozen=True, slots=True)
 class RuleFailure:

@@ -23,8 +23,6 @@ from ravestate.declare.slot import Collection, Flag, Slot, SlotOptions
 from ravestate.declare.wording import place_of_call
 from ravestate.errors import DeclarationError
 
-__all__ = ["Module", "as_module"]
-
 T = TypeVar("T")
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -109,17 +107,13 @@ class Module:
         return signal
 
     @overload
-    def slot(
-        self, name: str, default: T, *, type: object = ..., **options: Unpack[SlotOptions]
-    ) -> Slot[T]: ...
+    def slot(self, name: str, default: T, *, type: object = ..., **options: Unpack[SlotOptions]) -> Slot[T]: ...
     @overload
     def slot(self, name: str, *, type: type[T], **options: Unpack[SlotOptions]) -> Slot[T | None]: ...
     @overload
     def slot(self, name: str, **options: Unpack[SlotOptions]) -> Slot[Any]: ...
     @keywords(*SlotOptions.__annotations__)
-    def slot(
-        self, name: str, default: Any = None, *, type: Any = None, **options: Unpack[SlotOptions]
-    ) -> Slot[Any]:
+    def slot(self, name: str, default: Any = None, *, type: Any = None, **options: Unpack[SlotOptions]) -> Slot[Any]:
         """Declare a value slot; its signal is ``.changed``.
 
         Args:
@@ -196,9 +190,7 @@ class Module:
         def decorate(function: Callable[P, R]) -> Rule[P, R]:
             title = name or getattr(function, "__name__", "")
             where = f"rule {self.name}:{title} ({origin})"
-            check_function(
-                function, title, named=bool(name), where=where, decorator=f"@{self.name}.rule(...)"
-            )
+            check_function(function, title, named=bool(name), where=where, decorator=f"@{self.name}.rule(...)")
             rule: Rule[P, R] = Rule(
                 f"{self.name}:{title}",
                 function,

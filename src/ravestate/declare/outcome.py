@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from ravestate.errors import RavestateError
 
-__all__ = ["Resign", "Retire"]
-
 
 class Resign(RavestateError):
     """The rule does not apply after all, and the next best rule gets its turn.

@@ -13,8 +13,6 @@ from ravestate.declare.settings import Number
 from ravestate.declare.signal import Signal
 from ravestate.declare.slot import Slot
 
-__all__ = ["Rule"]
-
 P = ParamSpec("P")
 R = TypeVar("R")
 

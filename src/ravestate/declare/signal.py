@@ -7,8 +7,6 @@ from typing import Generic, Literal, TypedDict, TypeVar
 from ravestate.declare.condition import Condition, Constraint, Predicate
 from ravestate.declare.settings import Number
 
-__all__ = ["DEFAULT_LIMIT", "Keep", "Signal", "SignalOptions"]
-
 T = TypeVar("T")
 
 Keep = Literal["all", "latest"]

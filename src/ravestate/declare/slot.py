@@ -11,8 +11,6 @@ from ravestate.declare.signal import Signal, SignalOptions
 from ravestate.declare.wording import place_of_call, short
 from ravestate.errors import DeclarationError, RuleError, nearest
 
-__all__ = ["Collection", "Entry", "Flag", "Slot", "SlotOptions", "checkable"]
-
 T = TypeVar("T")
 V = TypeVar("V")
 

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import sys
 
-__all__ = ["cut", "place_of_call", "short", "shown", "spelt"]
-
 LENGTH = 60
 """Characters of a value that a message shows."""
 

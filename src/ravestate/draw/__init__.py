@@ -46,7 +46,5 @@ def draw(policy: Policy, format: str = "svg") -> str:
     """
     writer = FORMATS.get(format)
     if writer is None:
-        raise ValueError(
-            f"diagram format {format!r} is unknown: write one of {', '.join(map(repr, FORMATS))}"
-        )
+        raise ValueError(f"diagram format {format!r} is unknown: write one of {', '.join(map(repr, FORMATS))}")
     return writer(build(policy.rules.values()))

@@ -12,8 +12,6 @@ from collections.abc import Sequence
 
 from ravestate.policy.components import components
 
-__all__ = ["STRONG", "feedback_arcs"]
-
 STRONG = 1 << 20
 """The weight of a strong edge. It is reversed only if the weak edges alone do not break the cycle."""
 

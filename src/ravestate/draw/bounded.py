@@ -11,8 +11,6 @@ from collections.abc import Callable, Sequence
 
 from ravestate.draw.simplex import Arc
 
-__all__ = ["Extent", "bounded_layers", "fit_to_screen"]
-
 Extent = tuple[float, float]
 """Width and height in pixels."""
 
@@ -22,9 +20,7 @@ _ASPECT = 1.6  # wished width : height
 _SPLITS = 16
 
 
-def fit_to_screen(
-    ranks: Sequence[int], arcs: Sequence[Arc], extent: Callable[[Sequence[int]], Extent]
-) -> list[int]:
+def fit_to_screen(ranks: Sequence[int], arcs: Sequence[Arc], extent: Callable[[Sequence[int]], Extent]) -> list[int]:
     """Return layers that suit a landscape screen: the given ones, or bounded ones if the picture would be too tall.
 
     Args:

@@ -12,8 +12,6 @@ from itertools import pairwise
 
 from ravestate.draw.layered import LayeredGraph
 
-__all__ = ["brandes_koepf", "separation"]
-
 _GAPS = {(True, True): 16.0, (True, False): 12.0, (False, True): 12.0, (False, False): 9.0}
 """Least pixels between two neighbours of a layer; `False` stands for a dummy vertex."""
 

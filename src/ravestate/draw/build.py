@@ -16,8 +16,6 @@ from ravestate.declare.settings import Number, SettingRef
 from ravestate.draw.graph import Diagram, Edge, EdgeKind, Node, NodeKind
 from ravestate.policy.clauses import normal_form
 
-__all__ = ["build"]
-
 
 def build(rules: Iterable[Rule[Any, Any]]) -> Diagram:
     """Return the diagram of some rules, in their order.
@@ -53,9 +51,7 @@ class _Builder:
                 self.edge(end, target, "condition")
             for term in clause:
                 detached = isinstance(term, Constraint) and term.is_detached
-                self.edge(
-                    self.term(term), end, "condition_detached" if detached else "condition", _label(term)
-                )
+                self.edge(self.term(term), end, "condition_detached" if detached else "condition", _label(term))
         for clause in normal_form(rule.until) if rule.until is not None else ():
             for term in (*clause.constraints, *clause.guards):
                 self.edge(self.term(term), name, "condition_detached", f"until {_label(term)}".rstrip())
@@ -67,11 +63,7 @@ class _Builder:
             self.edge(name, self.signal(signal.name), "emits_detached" if rule.detached else "emits")
 
     def term(self, term: Constraint | Holds) -> str:
-        return (
-            self.signal(term.signal.name)
-            if isinstance(term, Constraint)
-            else self.named("slot", term.slot.name)
-        )
+        return self.signal(term.signal.name) if isinstance(term, Constraint) else self.named("slot", term.slot.name)
 
     def signal(self, name: str) -> str:
         owner = name.rpartition(":")[0]

@@ -11,8 +11,6 @@ from ravestate.draw.layered import LayeredGraph
 from ravestate.draw.relax import relax
 from ravestate.draw.straighten import straighten
 
-__all__ = ["assign_coordinates"]
-
 _STEP = 70.0  # pixels of length that count as much as a step
 _SPREADS = (1.0, 1.15)
 _LEVEL = 0.01

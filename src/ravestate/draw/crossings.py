@@ -12,8 +12,6 @@ from itertools import pairwise
 
 from ravestate.draw.layered import LayeredGraph
 
-__all__ = ["count_crossings", "minimise_crossings"]
-
 _WORK = 400_000  # segments x sweeps
 _PATIENCE = 4  # sweeps without improvement
 
@@ -128,9 +126,7 @@ def _sweep(
     return best, least
 
 
-def _by_barycentre(
-    layer: list[int], neighbours: Sequence[Sequence[int]], place: list[int], flip: bool
-) -> None:
+def _by_barycentre(layer: list[int], neighbours: Sequence[Sequence[int]], place: list[int], flip: bool) -> None:
     """Sort a layer by the mean place of the neighbours. Vertices without neighbours stay; equals swap if `flip`."""
     moving = [(sum(place[w] for w in neighbours[v]) / len(neighbours[v]), v) for v in layer if neighbours[v]]
     if flip:

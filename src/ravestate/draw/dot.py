@@ -7,8 +7,6 @@ from ravestate.draw.notation import EDGES, JUNCTIONS, NODES, describe, used
 from ravestate.draw.style import EDGE_STYLES, NODE_COLOURS, TEXT
 from ravestate.draw.text import clean
 
-__all__ = ["dot"]
-
 _SHAPES: dict[NodeKind, str] = {
     "slot": "shape=box, peripheries=2, style=filled",
     "signal": 'shape=box, style="rounded,filled"',

@@ -7,8 +7,6 @@ from collections.abc import Collection
 
 from ravestate.draw.graph import Diagram, Edge, EdgeKind, Node
 
-__all__ = ["fold"]
-
 _STRONGEST_FIRST: tuple[EdgeKind, ...] = (
     "writes",
     "emits",
@@ -35,9 +33,7 @@ def fold(diagram: Diagram, unfolded: Collection[str] = ()) -> Diagram:
     """
     home = _modules(diagram)
     rules = Counter(home[node.id] for node in diagram.nodes if node.kind == "rule")
-    places = {
-        node.id: node.id if home[node.id] in unfolded else f"module {home[node.id]}" for node in diagram.nodes
-    }
+    places = {node.id: node.id if home[node.id] in unfolded else f"module {home[node.id]}" for node in diagram.nodes}
     nodes: dict[str, Node] = {}
     for node in diagram.nodes:
         place, module = places[node.id], home[node.id]

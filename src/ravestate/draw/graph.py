@@ -5,8 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-__all__ = ["Diagram", "Edge", "EdgeKind", "Node", "NodeKind"]
-
 NodeKind = Literal["slot", "signal", "rule", "module", "and", "or"]
 EdgeKind = Literal["reads", "writes", "emits", "emits_detached", "condition", "condition_detached"]
 

@@ -13,8 +13,6 @@ from typing import Literal
 
 from ravestate.draw.graph import EdgeKind
 
-__all__ = ["Chain", "LayeredGraph", "Link", "Port", "VertexKind", "proper_layering"]
-
 VertexKind = Literal["node", "label", "dummy"]
 
 _SOLID: tuple[EdgeKind, ...] = ("writes", "emits")  # solid lines may overlap; dashes would fall out of step
@@ -79,9 +77,7 @@ class LayeredGraph:
         return before, after
 
 
-def proper_layering(
-    ranks: Sequence[int], sizes: Sequence[tuple[float, float]], links: Sequence[Link]
-) -> LayeredGraph:
+def proper_layering(ranks: Sequence[int], sizes: Sequence[tuple[float, float]], links: Sequence[Link]) -> LayeredGraph:
     """Return the graph with a dummy wherever a link passes a layer. Within layers, vertices are in order of creation."""
     graph = LayeredGraph()
     builder = _Builder(graph)

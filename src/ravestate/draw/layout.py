@@ -26,8 +26,6 @@ from ravestate.draw.ports import place_ports
 from ravestate.draw.routing import Point, route
 from ravestate.draw.simplex import network_simplex
 
-__all__ = ["Box", "Layout", "Size", "lay_out"]
-
 Size = tuple[float, float]
 """Width and height in pixels."""
 
@@ -160,9 +158,7 @@ def _lay_out_component(
     edges = [diagram.edges[number] for number in numbers]
     ends = [(index[edge.source], index[edge.target]) for edge in edges]
     kinds: dict[str, NodeKind] = {node.id: node.kind for node in diagram.nodes}
-    reversals = feedback_arcs(
-        len(ids), [(u, v, _STRENGTH[e.kind]) for (u, v), e in zip(ends, edges, strict=True)]
-    )
+    reversals = feedback_arcs(len(ids), [(u, v, _STRENGTH[e.kind]) for (u, v), e in zip(ends, edges, strict=True)])
     links = [
         Link(v if back else u, u if back else v, edge.kind, back, labels[number])
         for (u, v), edge, back, number in zip(ends, edges, reversals, numbers, strict=True)

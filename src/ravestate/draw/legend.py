@@ -13,8 +13,6 @@ from ravestate.draw.shapes import line, number, outline
 from ravestate.draw.sizes import SMALL
 from ravestate.draw.text import width
 
-__all__ = ["NARROWEST", "Legend", "legend"]
-
 NARROWEST = 560.0
 """Pixels of width that a legend may always use."""
 

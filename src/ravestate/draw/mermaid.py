@@ -7,8 +7,6 @@ from ravestate.draw.notation import EDGES, JUNCTIONS, NODES, used
 from ravestate.draw.style import EDGE_STYLES, NODE_COLOURS, TEXT
 from ravestate.draw.text import clean
 
-__all__ = ["mermaid"]
-
 _SHAPES: dict[NodeKind, tuple[str, str]] = {
     "slot": ("[[", "]]"),
     "signal": ("([", "])"),
@@ -56,9 +54,7 @@ def mermaid(diagram: Diagram) -> str:
     for kind, style in EDGE_STYLES.items():
         numbers = [str(i) for i, edge in enumerate(diagram.edges) if edge.kind == kind]
         if numbers:
-            lines.append(
-                f"  linkStyle {','.join(numbers)} stroke:{style.paint.light},stroke-width:{style.width:g}px"
-            )
+            lines.append(f"  linkStyle {','.join(numbers)} stroke:{style.paint.light},stroke-width:{style.width:g}px")
     return "\n".join(lines) + "\n"
 
 
@@ -90,6 +86,5 @@ def _words(edge: Edge) -> str:
 def _escaped(text: str) -> str:
     """Replace every character that Mermaid, Markdown or HTML might interpret by a numeric entity."""
     return "".join(
-        character if character.isalnum() or character in _PLAIN else f"#{ord(character)};"
-        for character in clean(text)
+        character if character.isalnum() or character in _PLAIN else f"#{ord(character)};" for character in clean(text)
     )

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from ravestate.draw.graph import Diagram, EdgeKind, Node, NodeKind
 
-__all__ = ["EDGES", "JUNCTIONS", "NODES", "describe", "used"]
-
 NODES: dict[NodeKind, str] = {
     "slot": "slot",
     "signal": "signal",

@@ -14,8 +14,6 @@ from math import inf
 from ravestate.draw.brandes_koepf import separation
 from ravestate.draw.layered import LayeredGraph
 
-__all__ = ["relax"]
-
 _SWEEPS = 24
 _BEHIND = 0.15  # weight of neighbours ahead of a sweep, relative to those behind it
 
@@ -36,9 +34,7 @@ def relax(graph: LayeredGraph, spread: float, room: float | None = None) -> list
         for v, gap in zip(layer, [*gaps[-1], 0.0], strict=True):
             middle[v] = y
             y += gap
-    before: list[list[tuple[int, float, float]]] = [
-        [] for _ in middle
-    ]  # neighbour, its port against ours, weight
+    before: list[list[tuple[int, float, float]]] = [[] for _ in middle]  # neighbour, its port against ours, weight
     after: list[list[tuple[int, float, float]]] = [[] for _ in middle]
     for low, high in graph.segments:
         p, q = graph.ports[low], graph.ports[high]
@@ -58,9 +54,7 @@ def relax(graph: LayeredGraph, spread: float, room: float | None = None) -> list
                 pulls += [(w, offset, weight * (ahead if forward else 1.0)) for w, offset, weight in after[v]]
                 total = sum(weight for _, _, weight in pulls)
                 wishes.append(
-                    sum((middle[w] + offset) * weight for w, offset, weight in pulls) / total
-                    if pulls
-                    else middle[v]
+                    sum((middle[w] + offset) * weight for w, offset, weight in pulls) / total if pulls else middle[v]
                 )
                 weights.append(total if pulls else 0.01)
             for v, y in zip(layer, _isotonic(wishes, weights, gaps[at], half), strict=True):
@@ -68,9 +62,7 @@ def relax(graph: LayeredGraph, spread: float, room: float | None = None) -> list
     return middle
 
 
-def _isotonic(
-    wishes: Sequence[float], weights: Sequence[float], gaps: Sequence[float], half: float
-) -> list[float]:
+def _isotonic(wishes: Sequence[float], weights: Sequence[float], gaps: Sequence[float], half: float) -> list[float]:
     """Return the places from -half to half that keep the gaps and are nearest to the wishes (weighted squares)."""
     pools: list[tuple[float, float, int]] = []  # mean, weight, how many
     offsets: list[float] = []

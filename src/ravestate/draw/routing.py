@@ -8,8 +8,6 @@ from dataclasses import dataclass
 from ravestate.draw.layered import Chain, LayeredGraph
 from ravestate.draw.tracks import Segment, tracks
 
-__all__ = ["Point", "Routed", "route"]
-
 Point = tuple[float, float]
 
 _BEFORE = 12.0  # pixels from a layer to the first track
@@ -33,9 +31,7 @@ def route(graph: LayeredGraph, middle: Sequence[float]) -> Routed:
     for number in range(len(graph.segments)):
         gaps[graph.layer[graph.ends(number)[0]]].append(number)
     across = [0.0] * len(graph.layer)
-    turns = [(0.0, 0.0)] * len(
-        graph.segments
-    )  # x at which a segment leaves its first height, and reaches its second
+    turns = [(0.0, 0.0)] * len(graph.segments)  # x at which a segment leaves its first height, and reaches its second
     x = 0.0
     for layer, numbers in zip(graph.order, gaps, strict=True):
         column = max(graph.width[v] for v in layer)

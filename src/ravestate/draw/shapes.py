@@ -9,8 +9,6 @@ from ravestate.draw.layout import Box
 from ravestate.draw.routing import Point
 from ravestate.draw.style import EDGE_STYLES
 
-__all__ = ["heads", "line", "number", "outline"]
-
 _ROUND = 7.0  # pixels: radius of a turn
 _CORNER = 10.0  # pixels: radius of a signal's corners
 _HEAD = 9.0  # pixels: length of an arrow's head

@@ -10,8 +10,6 @@ from __future__ import annotations
 import heapq
 from collections.abc import Sequence
 
-__all__ = ["Arc", "network_simplex"]
-
 Arc = tuple[int, int, int, int]
 """Tail, head, weight, and least length in layers."""
 
@@ -182,8 +180,7 @@ class _Simplex:
         top = child  # the lowest common ancestor of both arcs
         u, v, _, _ = self.arcs[entering]
         while not (
-            self.low[top] <= self.number[u] <= self.number[top]
-            and self.low[top] <= self.number[v] <= self.number[top]
+            self.low[top] <= self.number[u] <= self.number[top] and self.low[top] <= self.number[v] <= self.number[top]
         ):
             a, b, _, _ = self.arcs[self.parent[top]]
             top = b if a == top else a

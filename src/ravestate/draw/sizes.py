@@ -6,8 +6,6 @@ from ravestate.draw.graph import Node
 from ravestate.draw.notation import JUNCTIONS
 from ravestate.draw.text import clean, shorten, width
 
-__all__ = ["LABEL", "LONGEST", "NAME", "SMALL", "label_size", "node_size", "shown"]
-
 NAME = 13.0
 """Font size of a name, pixels."""
 

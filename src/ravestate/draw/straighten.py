@@ -11,8 +11,6 @@ from itertools import pairwise
 from ravestate.draw.brandes_koepf import separation
 from ravestate.draw.layered import LayeredGraph
 
-__all__ = ["straighten"]
-
 _BEND = 60.0  # pixels of length that count as much as a step
 _ROUNDS = 4
 _LEVEL = 0.01
@@ -55,9 +53,7 @@ class _Straightener:
                     continue
                 u, v = graph.ends(segment)
                 choices = [
-                    (gain, block, by)
-                    for block, by in ((u, step), (v, -step))
-                    if (gain := self.gain(block, by)) > 0
+                    (gain, block, by) for block, by in ((u, step), (v, -step)) if (gain := self.gain(block, by)) > 0
                 ]
                 if choices:
                     _, vertex, by = max(choices, key=lambda choice: choice[0])

@@ -11,8 +11,6 @@ from typing import Literal
 
 from ravestate.draw.graph import EdgeKind, NodeKind
 
-__all__ = ["EDGE_STYLES", "NODE_COLOURS", "PAPER", "TEXT", "EdgeStyle", "Head", "Paint", "stylesheet"]
-
 Head = Literal["full", "hollow", "open"]
 
 
@@ -91,10 +89,7 @@ def stylesheet() -> str:
         rules.append((f".srs .srs-{name}-head", "stroke", style.paint, extra))
         if fill:
             rules.append((f".srs .srs-{name}-head", "fill", fill, ""))
-    light = [
-        f"{selector}{{{what}:{paint.light}{';' + more if more else ''}}}"
-        for selector, what, paint, more in rules
-    ]
+    light = [f"{selector}{{{what}:{paint.light}{';' + more if more else ''}}}" for selector, what, paint, more in rules]
     dark = [f"{selector}{{{what}:{paint.dark}}}" for selector, what, paint, _ in rules]
     return "\n".join([*light, "@media (prefers-color-scheme:dark){", *dark, "}"])
 

@@ -14,8 +14,6 @@ from ravestate.draw.sizes import LABEL, NAME, SMALL, label_size, node_size, show
 from ravestate.draw.style import stylesheet
 from ravestate.draw.text import clean
 
-__all__ = ["svg"]
-
 _MARGIN = 24.0
 _SENTENCES = 60  # edges in the description
 
@@ -34,9 +32,7 @@ def svg(diagram: Diagram) -> str:
         An XML document, to be encoded as UTF-8. It has a title and a description for screen readers, and a title for each
         node and edge.
     """
-    layout = lay_out(
-        diagram, {n.id: node_size(n) for n in diagram.nodes}, [label_size(e.label) for e in diagram.edges]
-    )
+    layout = lay_out(diagram, {n.id: node_size(n) for n in diagram.nodes}, [label_size(e.label) for e in diagram.edges])
     prefix = "srs-" + hashlib.sha256(repr(diagram).encode("utf-8", "backslashreplace")).hexdigest()[:8]
     nodes = {node.id: node for node in diagram.nodes}
     top = _MARGIN + layout.height + (28.0 if diagram.nodes else 0.0)
@@ -55,9 +51,7 @@ def svg(diagram: Diagram) -> str:
         f'<g class="srs-edges" transform="translate({number(_MARGIN)} {number(_MARGIN)})">',
     ]
     for edge, points in zip(diagram.edges, layout.lines, strict=True):
-        drawn.append(
-            f"<g><title>{_text(_sentence(edge, nodes))}</title>{line(edge.kind, points, prefix)}</g>"
-        )
+        drawn.append(f"<g><title>{_text(_sentence(edge, nodes))}</title>{line(edge.kind, points, prefix)}</g>")
     drawn.append("</g>")
     drawn.append(f'<g class="srs-nodes" transform="translate({number(_MARGIN)} {number(_MARGIN)})">')
     for edge, box in zip(diagram.edges, layout.labels, strict=True):
@@ -66,9 +60,7 @@ def svg(diagram: Diagram) -> str:
     drawn.extend(_node(node, layout.boxes[node.id]) for node in diagram.nodes)
     drawn.append("</g>")
     if diagram.nodes:
-        drawn.append(
-            f'<path class="srs-line" d="M{number(_MARGIN)} {number(top - 10.0)}H{number(width - _MARGIN)}"/>'
-        )
+        drawn.append(f'<path class="srs-line" d="M{number(_MARGIN)} {number(top - 10.0)}H{number(width - _MARGIN)}"/>')
     drawn.append(f'<g class="srs-legend" aria-label="legend">{key.elements}</g>')
     drawn.append("</svg>")
     return "\n".join(drawn) + "\n"
@@ -84,9 +76,7 @@ def _node(node: Node, box: Box) -> str:
                 f'<text class="srs-small" text-anchor="middle" x="{middle}" y="{number(y - 4.0)}">{_text(shown(node.module, SMALL))}</text>'
             )
             y += 11.0
-        texts.append(
-            f'<text text-anchor="middle" x="{middle}" y="{number(y)}">{_text(shown(node.label, NAME))}</text>'
-        )
+        texts.append(f'<text text-anchor="middle" x="{middle}" y="{number(y)}">{_text(shown(node.label, NAME))}</text>')
         if node.note:
             texts.append(
                 f'<text class="srs-small" text-anchor="middle" x="{middle}" y="{number(y + 13.0)}">{_text(shown(node.note, SMALL))}</text>'

@@ -7,8 +7,6 @@ from __future__ import annotations
 
 import unicodedata
 
-__all__ = ["clean", "shorten", "width"]
-
 _CLASSES: tuple[tuple[float, str], ...] = (
     (0.32, "\"',.Iijl| "),
     (0.40, "!()-/:;[\\]frt"),

@@ -12,8 +12,6 @@ from dataclasses import dataclass, field
 
 from ravestate.draw.acyclic import STRONG, feedback_arcs
 
-__all__ = ["Segment", "Tracks", "tracks"]
-
 Segment = tuple[int, int, float, float]
 """The port on the left, the port on the right, and the y coordinates of both."""
 

@@ -27,27 +27,6 @@ if TYPE_CHECKING:
     from ravestate.engine.spike import Spike
     from ravestate.policy.model import Clause
 
-__all__ = [
-    "CANCEL",
-    "CANCELLING",
-    "COMPLETE",
-    "END",
-    "ENDED",
-    "GATHERING",
-    "GRANT",
-    "LOSE",
-    "NEVER",
-    "READY",
-    "REFUSE",
-    "RUNNING",
-    "TRANSITIONS",
-    "WAITING",
-    "Activation",
-    "State",
-    "Step",
-]
-
-
 NEVER = float("inf")
 """A time that does not come."""
 
@@ -153,9 +132,7 @@ class Activation:
         """
         state = _TABLE[self.state][step]
         if state is None:
-            raise EngineError(
-                f"activation {self.id} of {self.clause}: {step.name} in state {self.state.name}"
-            )
+            raise EngineError(f"activation {self.id} of {self.clause}: {step.name} in state {self.state.name}")
         self.state = state
 
     def held(self, bits: int) -> Spike | None:

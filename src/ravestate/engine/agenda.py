@@ -29,9 +29,6 @@ from ravestate.errors import RuleError
 from ravestate.policy.model import Clause, RulePlan, SlotPlan
 from ravestate.policy.policy import Policy
 
-__all__ = ["Agenda"]
-
-
 ASKABLE = (READY, WAITING)
 
 

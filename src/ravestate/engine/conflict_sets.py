@@ -14,8 +14,6 @@ from ravestate.engine.holdings import Holdings
 from ravestate.engine.spike import Spike
 from ravestate.policy.model import Clause, SignalPlan
 
-__all__ = ["ConflictSets"]
-
 
 class ConflictSets(Holdings):
     """The holdings, and the queues of alternatives."""

@@ -18,8 +18,6 @@ if TYPE_CHECKING:
     from ravestate.engine.agenda import Agenda as Engine
     from ravestate.engine.group import Group
 
-__all__ = ["Refusal", "ask", "stalemate"]
-
 
 class Refusal:
     """The reasons for which an activation waits; without any it has consent.
@@ -94,9 +92,7 @@ def ask(engine: Engine, activation: Activation) -> Refusal:
     return refusal
 
 
-def _rivals(
-    engine: Engine, activation: Activation, group: Group
-) -> Iterator[tuple[Clause, Activation | None]]:
+def _rivals(engine: Engine, activation: Activation, group: Group) -> Iterator[tuple[Clause, Activation | None]]:
     """Yield the clauses that write one of the same slots, are worth more, and have a stake in the group."""
     clause = activation.clause
     slots = clause.rule.slotset

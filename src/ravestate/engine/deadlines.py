@@ -7,20 +7,6 @@ import heapq
 from collections.abc import Callable
 from typing import Any
 
-__all__ = [
-    "EXPIRE",
-    "FORGET",
-    "PATIENCE",
-    "RECHECK",
-    "RIPEN",
-    "STANDBY",
-    "TIMEOUT",
-    "WATCH",
-    "Deadlines",
-    "Entry",
-    "Kind",
-]
-
 
 class Kind(enum.IntEnum):
     """A kind of deadline. At one moment they fall due in this order: first gains, then losses."""

@@ -8,8 +8,6 @@ from typing import Any, Literal
 
 from ravestate.declare.rule import Rule
 
-__all__ = ["Cancel", "CancelReason", "Effect", "Ended", "Failed", "Run", "Spiked"]
-
 CancelReason = Literal["interrupted", "timeout", "wiped"]
 
 

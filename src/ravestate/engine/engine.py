@@ -27,8 +27,6 @@ from ravestate.errors import EngineError, RuleError, RuleTimeout, UndeclaredErro
 from ravestate.policy.model import RulePlan, SlotPlan
 from ravestate.policy.policy import Policy
 
-__all__ = ["DEFAULT_PATIENCE", "Engine"]
-
 OUTCOMES = get_args(events.OutcomeKind)
 
 DEFAULT_PATIENCE = 1.0
@@ -52,9 +50,7 @@ class Engine(Agenda):
         []
     """
 
-    def __init__(
-        self, policy: Policy, *, patience: float = DEFAULT_PATIENCE, report_ends: bool = False
-    ) -> None:
+    def __init__(self, policy: Policy, *, patience: float = DEFAULT_PATIENCE, report_ends: bool = False) -> None:
         super().__init__(policy, patience)
         self.report_ends = report_ends
 
@@ -183,9 +179,7 @@ class Engine(Agenda):
         """Replace the policy by one that has the same rules in the same order, and more."""
         known, plans = self.policy.rule_plans, event.policy.rule_plans
         if [plan.rule for plan in plans[: len(known)]] != [plan.rule for plan in known]:
-            raise EngineError(
-                "the new policy does not extend the running one: make it with policy.with_rule(rule)"
-            )
+            raise EngineError("the new policy does not extend the running one: make it with policy.with_rule(rule)")
         self.unfold_all()
         clauses = event.policy.clause_plans
         self.policy = event.policy
@@ -198,8 +192,7 @@ class Engine(Agenda):
             for spike in spikes:
                 spike.signal = event.policy.signal_plans[spike.signal.index]
         self.lacking = {
-            clauses[need.clause.index].needs[need.index]: activations
-            for need, activations in self.lacking.items()
+            clauses[need.clause.index].needs[need.index]: activations for need, activations in self.lacking.items()
         }
         self._watches = {clauses[clause.index]: watches for clause, watches in self._watches.items()}
         for watches in self._watches.values():

@@ -7,20 +7,6 @@ from typing import Any, Literal
 
 from ravestate.policy.policy import Policy
 
-__all__ = [
-    "AddRule",
-    "Discard",
-    "Emit",
-    "Event",
-    "Finish",
-    "OutcomeKind",
-    "Start",
-    "Stop",
-    "Store",
-    "Wipe",
-    "Write",
-]
-
 OutcomeKind = Literal["done", "resigned", "failed", "retired"]
 
 

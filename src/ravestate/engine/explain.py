@@ -17,11 +17,6 @@ from ravestate.policy.model import Clause, RulePlan
 if TYPE_CHECKING:
     from ravestate.engine.engine import Engine
 
-__all__ = [
-    "ActivationState", "ClauseState", "Explanation", "explain", "join", "latest", "seconds", "why_given_up", "without",
-    "words_of",
-]  # fmt: skip
-
 
 @dataclass(frozen=True, slots=True)
 class ClauseState:
@@ -85,10 +80,7 @@ class Explanation:
             sums = " or ".join(" + ".join(pathway) for pathway in clause.pathways[:3])
             lines.append(f"  when {clause.condition}")
             lines.append(f"    utility {clause.utility:.6f} nats, now {clause.effective:.6f}; pathway {sums}")
-            lines += [
-                f"    {gate}: {'true' if open_ else 'false, so it may not run'}"
-                for gate, open_ in clause.gates
-            ]
+            lines += [f"    {gate}: {'true' if open_ else 'false, so it may not run'}" for gate, open_ in clause.gates]
         if not self.activations:
             lines.append("  idle: it holds no spike")
         for one in self.activations:
@@ -133,10 +125,7 @@ def _clause(engine: Engine, clause: Clause) -> ClauseState:
     return ClauseState(
         clause.source,
         tuple(signal.name for signal in clause.signals),
-        tuple(
-            tuple(sorted(signal.name for signal in pathway))
-            for pathway in engine.policy.pathways.of_clause(clause)
-        ),
+        tuple(tuple(sorted(signal.name for signal in pathway)) for pathway in engine.policy.pathways.of_clause(clause)),
         clause.utility,
         engine.effective(clause),
         tuple((str(guard), engine.opens(slot, guard)) for slot, guard in clause.guards),
@@ -166,9 +155,7 @@ def _activation(engine: Engine, activation: Activation) -> ActivationState:
         activation.id,
         state,
         clause.source,
-        tuple(
-            (spike.signal.name, engine.now - spike.born) for spike in activation.spikes if spike is not None
-        ),
+        tuple((spike.signal.name, engine.now - spike.born) for spike in activation.spikes if spike is not None),
         tuple(need.signal.name for need in clause.needs if need.bit & activation.missing),
         tuple(waits),
         None if until == NEVER else until,
@@ -176,12 +163,9 @@ def _activation(engine: Engine, activation: Activation) -> ActivationState:
 
 
 def words_of(record: Record, others: str = "", behind: str = "") -> str:
-    """Say what a record means for the rule that it names; empty for a record that names none.
+    """Say what a record means for its rule; empty for a record without one.
 
-    Args:
-        record: From a trace.
-        others: The rules that a waiting activation waits for, if more is known of them than their names.
-        behind: The rule that raised what another rule took, if that is known.
+    `others` describes the rules that it waits for, and `behind` is the rule that raised the answering rule's input.
     """
     match record:
         case Held():
@@ -195,9 +179,7 @@ def words_of(record: Record, others: str = "", behind: str = "") -> str:
             return f"was ready and waited for {others or join(record.for_)}{latest(record.until)}"
         case Pressed():
             lacks = join(record.lacks)
-            return (
-                f"{record.by} waited for it; lacking {lacks}, it had patience until {seconds(record.until)}"
-            )
+            return f"{record.by} waited for it; lacking {lacks}, it had patience until {seconds(record.until)}"
         case Started():
             return "started"
         case Told():
@@ -231,12 +213,7 @@ def latest(until: float | None) -> str:
 
 
 def join(names: Iterable[str]) -> str:
-    """Join names to a list in a sentence.
-
-    Example:
-        >>> join(["a", "b", "c"])
-        'a, b and c'
-    """
+    """Join names to a list in a sentence: ``a, b and c``."""
     *first, last = [*names] or [""]
     return f"{', '.join(first)} and {last}" if first else last
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-__all__ = ["said", "shown"]
-
 
 def shown(value: object) -> str:
     """Return the value's `repr` or, if that fails, its type."""

@@ -9,8 +9,6 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from ravestate.engine.activation import Activation
 
-__all__ = ["Group"]
-
 NOTHING: Any = MappingProxyType[Any, Any]({})
 
 

@@ -23,8 +23,6 @@ from ravestate.engine.spike import Spike
 from ravestate.engine.state import State
 from ravestate.policy.model import Clause, Need, SignalPlan
 
-__all__ = ["Holdings"]
-
 
 class Holdings(State):
     """The state, and the changes of what activations hold."""
@@ -98,9 +96,7 @@ class Holdings(State):
         if self.tracer is not None:
             rule = clause.rule
             by, run = spike.group.root().answer(rule.slots) if reason == "consumed" else ("", 0)
-            self.tracer(
-                trace.Passed(self.now, rule.name, clause.number, spike.id, spike.signal.name, reason, by, run)
-            )
+            self.tracer(trace.Passed(self.now, rule.name, clause.number, spike.id, spike.signal.name, reason, by, run))
 
     def _update(self, activation: Activation) -> None:
         """Complete an activation whose spikes have changed or grown older, or set the deadlines that it waits for (L14)."""
@@ -187,9 +183,7 @@ class Holdings(State):
                 )
             )
 
-    def _lose(
-        self, activation: Activation, needs: Iterable[Need], reason: str, by: Activation | None = None
-    ) -> None:
+    def _lose(self, activation: Activation, needs: Iterable[Need], reason: str, by: Activation | None = None) -> None:
         """Let an activation give spikes up; without any left it ends."""
         needs = [need for need in needs if not need.bit & activation.missing]
         if not needs:

@@ -30,8 +30,6 @@ if TYPE_CHECKING:
     from ravestate.engine.agenda import Agenda as Engine
     from ravestate.engine.group import Group
 
-__all__ = ["FIRM", "NO", "SPECULATIVE", "Horizon"]
-
 NO, SPECULATIVE, FIRM = 0, 1, 2
 
 Slots = frozenset[int]
@@ -69,9 +67,7 @@ class Horizon:
         """
         return _solve(self._viable(clause, activation, group, slots))
 
-    def judge(
-        self, clause: Clause, activation: Activation | None, group: Group
-    ) -> tuple[int, dict[Activation, None]]:
+    def judge(self, clause: Clause, activation: Activation | None, group: Group) -> tuple[int, dict[Activation, None]]:
         """Return how viable a rival is, and on whose progress that depends. All that ask get the same answer."""
         known = self._judged.get((clause, activation, group))
         if known is None:
@@ -118,10 +114,7 @@ class Horizon:
         strength = min(best, default=FIRM)
         if activation is None:  # the group must meet one of them itself: help from elsewhere gives no stake
             strength = max(
-                (
-                    min(mine, *best[:k], *best[k + 1 :]) if len(best) > 1 else mine
-                    for k, mine in enumerate(here)
-                ),
+                (min(mine, *best[:k], *best[k + 1 :]) if len(best) > 1 else mine for k, mine in enumerate(here)),
                 default=NO,
             )
         if strength == NO or (clause.guards and not (yield from self._guards(clause, group, slots))):

@@ -17,8 +17,6 @@ if TYPE_CHECKING:
     from ravestate.engine.activation import Activation
     from ravestate.policy.model import RulePlan
 
-__all__ = ["MANY", "TURNS", "Lineage", "Loop", "Loops"]
-
 MANY = 500
 """Runs in one instant that are not traced; most instants have fewer, so tracing costs them nothing."""
 

@@ -15,8 +15,6 @@ from ravestate.engine.spike import Spike
 from ravestate.engine.watch import Watch
 from ravestate.policy.model import Need, SignalPlan
 
-__all__ = ["Matching"]
-
 
 class Matching(ConflictSets):
     """The conflict sets, and the births, groups and offers of spikes."""
@@ -107,9 +105,7 @@ class Matching(ConflictSets):
         if not signal.listeners and not (signal.watchers and self._watches):
             return
         rule = -1 if run is None or run.clause.rule.detached else run.clause.rule.index
-        spike = Spike(
-            self._spikes, signal, payload, self.now, group, parents, source, rule, self._activations
-        )
+        spike = Spike(self._spikes, signal, payload, self.now, group, parents, source, rule, self._activations)
         if self._loops.runs > MANY:
             spike.lineage = lineage if run is None else run.lineage
         live = self.live.get(signal.index)
@@ -174,9 +170,7 @@ class Matching(ConflictSets):
         """Offer a new spike to the `until` conditions of runs (L21)."""
         for need in spike.signal.watchers:
             for run, watch in list(self._watches.get(need.clause, {}).items()):
-                if run.state == RUNNING and all(
-                    self._test(p, spike.payload, run.clause.rule) for p in need.predicates
-                ):
+                if run.state == RUNNING and all(self._test(p, spike.payload, run.clause.rule) for p in need.predicates):
                     held = watch.spikes[need.index]
                     if held is None or not need.min_age or held.born + need.max_age < self.now:
                         watch.spikes[need.index] = spike  # otherwise the older one ripens first

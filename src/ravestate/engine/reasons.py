@@ -5,12 +5,10 @@ from __future__ import annotations
 from enum import StrEnum
 from typing import Any, Self
 
-__all__ = ["DropReason", "LossReason", "Outcome", "PassReason", "Reason", "StopReason", "Verdict"]
 
-
-def reason(value: str, words: str, tone: str = "plain") -> Any:
+def reason(*parts: str) -> Any:
     """Return the value of a `Reason` member. A bare tuple would hide from the type checker that members are strings."""
-    return value, words, tone
+    return parts
 
 
 class Reason(StrEnum):
@@ -19,10 +17,6 @@ class Reason(StrEnum):
     Attributes:
         words: The phrase.
         tone: How the board colours it: ``good``, ``busy``, ``bad`` or ``plain``.
-
-    Example:
-        >>> LossReason.say("age")
-        'the spike was too old'
     """
 
     words: str

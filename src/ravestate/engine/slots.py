@@ -14,8 +14,6 @@ from ravestate.engine.spike import Spike
 from ravestate.errors import RuleError, UndeclaredError
 from ravestate.policy.model import SlotPlan
 
-__all__ = ["ABSENT", "Slots", "equal"]
-
 
 class Slots(Matching):
     """The matching, and the slots whose changes feed it."""
@@ -24,9 +22,7 @@ class Slots(Matching):
         """Note that a run writes a slot, which it must have declared (L3)."""
         if run is not None:
             if slot.index not in run.clause.rule.slotset:
-                raise UndeclaredError(
-                    f"rule {run.clause.rule.name} writes {slot.name} without writes={slot.name}"
-                )
+                raise UndeclaredError(f"rule {run.clause.rule.name} writes {slot.name} without writes={slot.name}")
             run.wrote = True
 
     def _change(self, slot: SlotPlan, value: Any, parents: tuple[Spike, ...], run: Activation | None) -> None:

@@ -11,8 +11,6 @@ from ravestate.engine.foreign import shown
 if TYPE_CHECKING:
     from ravestate.engine.engine import Engine
 
-__all__ = ["snapshot"]
-
 
 def snapshot(engine: Engine) -> dict[str, Any]:
     """Return everything that is alive as dictionaries, lists, texts and numbers.

@@ -11,8 +11,6 @@ if TYPE_CHECKING:
     from ravestate.engine.group import Group
     from ravestate.engine.loops import Lineage
 
-__all__ = ["Spike"]
-
 
 class Spike:
     """An occurrence: payload, time of birth (seconds), parents, causal group, and holders.

@@ -33,8 +33,6 @@ from ravestate.engine.watch import Watch
 from ravestate.policy.model import Clause, Need, RulePlan, SlotPlan
 from ravestate.policy.policy import Policy
 
-__all__ = ["State"]
-
 PASSIVE = (int, float, str, bytes, bool, type(None), MappingProxyType)
 """Types whose values contexts may share: a default of another type is copied for each context."""
 
@@ -81,9 +79,7 @@ class State:
         self._dirty: dict[Group, None] = {}  # groups in which something ended
         self._stirred = False  # whether something ended that the `hoping` activations may have hoped for
         self._watches: dict[Clause, dict[Activation, Watch]] = {}
-        self._watched_by: dict[
-            Spike, dict[Watch, None]
-        ] = {}  # spikes that a watch keeps until they are old enough
+        self._watched_by: dict[Spike, dict[Watch, None]] = {}  # spikes that a watch keeps until they are old enough
         # Failures that ``core:error`` has yet to signal, each with the rules that led to it.
         self._errors: list[tuple[RuleFailure, Lineage | None]] = []
         self._loops = Loops()
@@ -142,9 +138,7 @@ class State:
 
     def live_spike(self, need: Need) -> Spike | None:
         """Return a live spike that fits a need, if there is one."""
-        return next(
-            (spike for spike in self.live.get(need.signal.index, ()) if self._fits(need, spike)), None
-        )
+        return next((spike for spike in self.live.get(need.signal.index, ()) if self._fits(need, spike)), None)
 
     def _fits(self, need: Need, spike: Spike) -> bool:
         """Return whether a live spike may meet a need: young enough, not given up, not consumed, of a fitting payload."""
@@ -182,9 +176,7 @@ class State:
                 self._fail(rule, exception, signal=True)
             return False
 
-    def _fail(
-        self, rule: RulePlan, exception: BaseException, *, signal: bool, lineage: Lineage | None = None
-    ) -> None:
+    def _fail(self, rule: RulePlan, exception: BaseException, *, signal: bool, lineage: Lineage | None = None) -> None:
         """Report a failure of a rule; with `signal`, ``core:error`` occurs next."""
         self._out.append(Failed(rule.name, exception))
         if signal:

@@ -9,23 +9,6 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
-__all__ = [
-    "Born",
-    "Dropped",
-    "GaveUp",
-    "Held",
-    "Merged",
-    "Passed",
-    "Pressed",
-    "Record",
-    "Set",
-    "Settled",
-    "Started",
-    "Told",
-    "Tracer",
-    "Waits",
-]
-
 
 @dataclass(frozen=True, slots=True)
 class Born:
@@ -166,9 +149,7 @@ class Settled:
     outcome: str
     reason: str
     fired: bool
-    error: BaseException | str | None = field(
-        default=None, repr=False, compare=False
-    )  # in a file: its traceback
+    error: BaseException | str | None = field(default=None, repr=False, compare=False)  # in a file: its traceback
 
 
 Record = Born | Dropped | Merged | Set | Held | GaveUp | Passed | Waits | Pressed | Started | Told | Settled

@@ -6,8 +6,6 @@ from ravestate.engine.activation import NEVER, Activation
 from ravestate.engine.spike import Spike
 from ravestate.policy.model import Clause
 
-__all__ = ["Watch"]
-
 
 class Watch:
     """One clause of an `until`, and the spikes that meet it, all born since the run began. It consumes nothing."""

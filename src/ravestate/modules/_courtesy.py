@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-__all__ = ["COURTESY"]
-
 COURTESY = (
     r"(?:(?:ok|okay|well|alright|all right|right|so(?! long)|then|oh|great|fine|anyway|(?:many )?thanks|thank you)\b"
     r"(?: (?:very much|much|a lot|again|for (?:the |your )?\w++(?!\s+\w)))*+[\s,.!;:-]*+)*+"

@@ -7,8 +7,6 @@ import sys
 from pathlib import Path
 from typing import Literal
 
-__all__ = ["user_folder"]
-
 
 def user_folder(kind: Literal["data", "state"]) -> Path:
     """Return Ravestate's folder among the user's own; it may not exist yet.

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import threading
 
-__all__ = ["LOADING"]
-
 LOADING = threading.RLock()
 """A lock to hold during the import of a large library, and during a load that may import parts of one.
 

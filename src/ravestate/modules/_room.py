@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import ctypes
 
-__all__ = ["give_back"]
-
 
 def give_back() -> None:
     """Return freed memory from the C library to the system; without glibc, do nothing.

@@ -14,8 +14,6 @@ from collections.abc import Iterable, Sequence
 from ravestate.policy.components import components
 from ravestate.policy.model import Clause, Need, RulePlan, SignalPlan
 
-__all__ = ["Causes"]
-
 
 class Causes:
     """The causes and closures of one policy; each closure is computed at its first use.
@@ -155,11 +153,7 @@ class Causes:
     def grounded(self, given: Iterable[int]) -> frozenset[int]:
         """Return the signals that may ever occur if those in `given` do: a least fixed point over all rules."""
         reached = set(given)
-        lacking = {
-            clause: {n.signal.index for n in clause.needs} - reached
-            for r in self.rules
-            for clause in r.clauses
-        }
+        lacking = {clause: {n.signal.index for n in clause.needs} - reached for r in self.rules for clause in r.clauses}
         waiting: dict[int, list[Clause]] = {}
         ready: list[Clause] = []
         for clause, signals in lacking.items():

@@ -11,8 +11,6 @@ from ravestate.declare.condition import AllOf, AnyOf, Condition, Constraint, Hol
 from ravestate.declare.signal import Signal
 from ravestate.errors import DeclarationError
 
-__all__ = ["MAX_CLAUSES", "Conjunction", "normal_form"]
-
 MAX_CLAUSES = 256
 """The greatest number of conjunctions of a condition; more are surely a mistake of the designer."""
 

@@ -19,8 +19,6 @@ from ravestate.policy.reachable import check_reachable
 from ravestate.policy.rules import Rules
 from ravestate.policy.utility import assign_utilities
 
-__all__ = ["build", "compile_policy"]
-
 
 def compile_policy(*modules: Module | ModuleType) -> Policy:
     """Compile modules, and the modules that they require, into a policy.

@@ -18,8 +18,6 @@ from ravestate.policy.causes import Causes
 from ravestate.policy.components import components
 from ravestate.policy.model import RulePlan, SignalPlan
 
-__all__ = ["UNIT", "Completion", "each"]
-
 UNIT = 1 << 60
 """The unit of information: sums are integers of nats / `UNIT`, so that the order of summation does not matter."""
 
@@ -38,10 +36,7 @@ class Completion:
 
     def __init__(self, signals: Sequence[SignalPlan], rules: Sequence[RulePlan], causes: Causes) -> None:
         found = [_alternatives(signal, causes) for signal in signals]
-        bare = [
-            signal.input or not found[signal.index] or frozenset() in found[signal.index]
-            for signal in signals
-        ]
+        bare = [signal.input or not found[signal.index] or frozenset() in found[signal.index] for signal in signals]
         pruned = components([() if bare[s] else causes.direct[s] for s in range(len(signals))])
         order = [signal for members in pruned.members for signal in members]
         self.place = [0] * len(signals)
@@ -50,13 +45,10 @@ class Completion:
         self.components = [[self.place[s] for s in members] for members in pruned.members]
         self.bare = [bare[s] for s in order]
         self.alternatives = [
-            tuple(tuple(sorted(self.place[c] for c in causes_)) for causes_ in found[s] if causes_)
-            for s in order
+            tuple(tuple(sorted(self.place[c] for c in causes_)) for causes_ in found[s] if causes_) for s in order
         ]
         counts = _counts(signals, rules, causes)
-        self.information = [
-            round(-math.log(counts[s] / len(rules)) * UNIT) if counts[s] else 0 for s in order
-        ]
+        self.information = [round(-math.log(counts[s] / len(rules)) * UNIT) if counts[s] else 0 for s in order]
         self._alike: dict[int, int] = {}  # sets of signals by the information of each
         for place, information in enumerate(self.information):
             self._alike[information] = self._alike.get(information, 0) | 1 << place

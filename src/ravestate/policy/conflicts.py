@@ -7,8 +7,6 @@ from dataclasses import dataclass
 from ravestate.policy.model import Clause, RulePlan
 from ravestate.policy.policy import Policy
 
-__all__ = ["Conflict", "Conflicts", "find_conflicts"]
-
 
 @dataclass(frozen=True, slots=True)
 class Conflict:

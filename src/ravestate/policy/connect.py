@@ -7,8 +7,6 @@ from collections.abc import Iterable, Sequence
 from ravestate.policy.causes import Causes
 from ravestate.policy.model import Clause, Need, RulePlan, SignalPlan, SlotPlan
 
-__all__ = ["connect", "find_contests", "find_kin"]
-
 
 def connect(signals: Sequence[SignalPlan], slots: Iterable[SlotPlan], rules: Iterable[RulePlan]) -> None:
     """Fill in the listeners of each signal, and mark the inputs (L8)."""

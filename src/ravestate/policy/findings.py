@@ -15,8 +15,6 @@ from ravestate.policy.policy import Policy
 from ravestate.policy.source import Source, acts_of, undeclared
 from ravestate.policy.wording import few
 
-__all__ = ["MAX_PEERS", "Finding", "find_all"]
-
 MAX_PEERS = 64
 """The greatest number of other rules that the search for ties compares with a rule: the first declared.
 
@@ -73,9 +71,7 @@ def _in_source(policy: Policy, source: Source) -> Iterator[Finding]:
             yield Finding("undeclared", rule.name, f"{where} {'; it '.join(faults)}")
         for method, line in islice(acts.forgotten.items(), 1):
             mend = f"write await ctx.{method}(...)" + ("" if rule.rule.is_async else " in an async def")
-            yield Finding(
-                "await", rule.name, f"{where} calls ctx.{method} in line {line} without effect: {mend}"
-            )
+            yield Finding("await", rule.name, f"{where} calls ctx.{method} in line {line} without effect: {mend}")
 
 
 def _unraised(policy: Policy) -> Iterator[Finding]:
@@ -254,8 +250,7 @@ def _cooldowns(policy: Policy) -> Iterator[Finding]:
             writers.setdefault(slot, []).append(rule)
     for rule in policy.rule_plans:
         if rule.cooldown and not any(
-            len(writers[slot]) > MAX_PEERS
-            or any(o is not rule and conflicts.best(rule, o) for o in writers[slot])
+            len(writers[slot]) > MAX_PEERS or any(o is not rule and conflicts.best(rule, o) for o in writers[slot])
             for slot in rule.slots
         ):
             yield Finding(
@@ -269,12 +264,7 @@ def _cooldowns(policy: Policy) -> Iterator[Finding]:
 
 def _unheard(policy: Policy) -> Iterator[Finding]:
     for signal in policy.signal_plans:
-        if (
-            signal.slot is None
-            and not signal.listeners
-            and not signal.watchers
-            and not signal.name.startswith("core:")
-        ):
+        if signal.slot is None and not signal.listeners and not signal.watchers and not signal.name.startswith("core:"):
             raisers = policy.causes.all_causes[signal.index]
             if raisers:
                 yield Finding(

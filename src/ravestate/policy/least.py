@@ -18,8 +18,6 @@ from collections.abc import Iterable
 from ravestate.policy.completion import Completion, each
 from ravestate.policy.components import components
 
-__all__ = ["EFFORT", "Least"]
-
 EFFORT = 100_000
 """The number of sets that all searches of a policy may examine beyond the first `FREE` of each.
 
@@ -145,11 +143,7 @@ class Least:
             more = whole & ~found
             if more:
                 found |= more
-                cost += (
-                    self._price[place]
-                    if more == whole and not more & free
-                    else self.completion.weigh(more & ~free)
-                )
+                cost += self._price[place] if more == whole and not more & free else self.completion.weigh(more & ~free)
         return found, cost
 
     def _reached(self, lacking: int) -> int:

@@ -15,8 +15,6 @@ from ravestate.policy.components import components
 from ravestate.policy.model import Clause, Need, RulePlan
 from ravestate.policy.policy import Policy
 
-__all__ = ["endless_loops"]
-
 
 def endless_loops(policy: Policy) -> Iterator[tuple[list[RulePlan], list[str]]]:
     """Yield each loop: its rules, and the names of the signals between them."""
@@ -69,7 +67,5 @@ def _raised(policy: Policy, rule: RulePlan) -> list[int]:
 def _takes_time(rule: RulePlan) -> bool:
     code: CodeType | None = getattr(rule.rule.function, "__code__", None)
     return (
-        code is None
-        or "sleep" in code.co_names
-        or any(i.opname == "GET_AWAITABLE" for i in dis.get_instructions(code))
+        code is None or "sleep" in code.co_names or any(i.opname == "GET_AWAITABLE" for i in dis.get_instructions(code))
     )

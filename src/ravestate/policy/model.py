@@ -15,8 +15,6 @@ from ravestate.declare.rule import Rule
 from ravestate.declare.signal import Signal
 from ravestate.declare.slot import Slot
 
-__all__ = ["Clause", "ClauseView", "Need", "RulePlan", "SignalPlan", "SlotPlan"]
-
 
 @dataclass(frozen=True, slots=True)
 class ClauseView:

@@ -13,8 +13,6 @@ from ravestate.declare.slot import Slot
 from ravestate.errors import DeclarationError, nearest
 from ravestate.policy.model import SignalPlan, SlotPlan
 
-__all__ = ["Names"]
-
 
 class Names:
     """The signals and slots that modules declare, in declaration order.
@@ -72,9 +70,7 @@ class Names:
     def twice(self, what: str, name: str, first: str, second: str) -> None:
         """Add the fault that two signals, slots or rules (`what`) have one name, with the places of both."""
         if self._modules[name.split(":")[0]] < 2:  # else the fault is the name of the modules
-            self.faults.append(
-                DeclarationError(f"two {what}s are named {name!r}: {first} and {second}; rename one")
-            )
+            self.faults.append(DeclarationError(f"two {what}s are named {name!r}: {first} and {second}; rename one"))
 
     def signal(self, signal: Signal[Any], where: str) -> SignalPlan | None:
         """Return the record of a signal that a declaration (`where`) names. For an unknown signal, add a fault and return None."""

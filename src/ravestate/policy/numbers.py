@@ -12,8 +12,6 @@ from ravestate.declare.settings import Number, SettingRef
 from ravestate.declare.wording import short
 from ravestate.errors import DeclarationError, nearest
 
-__all__ = ["Numbers"]
-
 
 class Numbers:
     """The values of the numbers of rules under some settings.
@@ -25,9 +23,7 @@ class Numbers:
 
     __slots__ = ("_modules", "_named", "_settings", "faults", "refers")
 
-    def __init__(
-        self, modules: Sequence[Module], settings: Mapping[str, Any], faults: list[DeclarationError]
-    ) -> None:
+    def __init__(self, modules: Sequence[Module], settings: Mapping[str, Any], faults: list[DeclarationError]) -> None:
         self.faults = faults
         self.refers = False
         self._modules = modules

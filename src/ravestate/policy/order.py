@@ -8,8 +8,6 @@ from ravestate.declare.core import core
 from ravestate.declare.module import Module
 from ravestate.errors import DeclarationError
 
-__all__ = ["in_order"]
-
 
 def in_order(given: Iterable[Module], faults: list[DeclarationError]) -> list[Module]:
     """Return the given modules and all that they require, in order.

@@ -16,8 +16,6 @@ from ravestate.declare.signal import Signal
 from ravestate.policy.completion import Completion
 from ravestate.policy.model import Clause, Need
 
-__all__ = ["MAX_PATHWAYS", "MAX_UNIONS", "Pathways"]
-
 MAX_PATHWAYS = 256
 """The greatest number of pathways of a clause, and of a signal: the cheapest. There may be exponentially many."""
 
@@ -116,9 +114,7 @@ class Pathways:
 def _cheapest(found: Costs) -> Costs:
     if len(found) <= MAX_PATHWAYS:
         return found
-    return {
-        pathway: cost for cost, pathway in heapq.nsmallest(MAX_PATHWAYS, ((c, p) for p, c in found.items()))
-    }
+    return {pathway: cost for cost, pathway in heapq.nsmallest(MAX_PATHWAYS, ((c, p) for p, c in found.items()))}
 
 
 def _run(search: Search) -> Costs:

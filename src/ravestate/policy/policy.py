@@ -21,8 +21,6 @@ if TYPE_CHECKING:
     from ravestate.policy.findings import Finding
     from ravestate.policy.source import Source
 
-__all__ = ["Policy"]
-
 
 class Policy:
     """A set of compiled modules, made by ``rs.compile``.

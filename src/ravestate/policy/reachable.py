@@ -6,8 +6,6 @@ from ravestate.errors import DeclarationError
 from ravestate.policy.causes import Causes
 from ravestate.policy.wording import few
 
-__all__ = ["check_reachable"]
-
 
 def check_reachable(causes: Causes, faults: list[DeclarationError]) -> None:
     """Refuse rules that wait for their own effects, directly or not, with no way in from outside.
@@ -20,9 +18,7 @@ def check_reachable(causes: Causes, faults: list[DeclarationError]) -> None:
     for rule in causes.rules:
         if any(all(n.signal.index in grounded for n in clause.needs) for clause in rule.clauses):
             continue
-        lacking = [
-            n.signal for clause in rule.clauses for n in clause.needs if n.signal.index not in grounded
-        ]
+        lacking = [n.signal for clause in rule.clauses for n in clause.needs if n.signal.index not in grounded]
         if not lacking:
             continue
         raisers = few(r.name for s in lacking for r in causes.all_causes[s.index])

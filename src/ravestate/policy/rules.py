@@ -14,8 +14,6 @@ from ravestate.policy.model import Clause, Need, RulePlan, SignalPlan
 from ravestate.policy.names import Names
 from ravestate.policy.numbers import Numbers
 
-__all__ = ["Rules"]
-
 FLAGS = (f"{activity.name}:", f"{pressure.name}:")
 """The beginnings of the names of the built-in flags' signals.
 
@@ -53,13 +51,9 @@ class Rules:
         plan.weight = self.numbers.number(rule, rule.weight, "weight", lambda n: n > 0, "above 0")
         plan.cooldown = self.numbers.number(rule, rule.cooldown, "cooldown", lambda n: n >= 0, "0 s or more")
         if rule.patience is not None:
-            plan.patience = self.numbers.number(
-                rule, rule.patience, "patience", lambda n: n >= 0, "0 s or more"
-            )
+            plan.patience = self.numbers.number(rule, rule.patience, "patience", lambda n: n >= 0, "0 s or more")
         if rule.timeout is not None:
-            plan.timeout = self.numbers.number(
-                rule, rule.timeout, "timeout", lambda n: n > 0, "more than 0 s"
-            )
+            plan.timeout = self.numbers.number(rule, rule.timeout, "timeout", lambda n: n > 0, "more than 0 s")
         written = [self.names.slot(slot, f"{where}: writes") for slot in rule.writes]
         read = [self.names.slot(slot, f"{where}: reads") for slot in rule.reads]
         emitted = [self.names.signal(signal, f"{where}: emits") for signal in rule.emits]
@@ -131,9 +125,7 @@ class Rules:
         def positive(n: float) -> bool:
             return n >= 0
 
-        low = self.numbers.number(
-            rule, constraint.min_age_, f"{constraint.signal}.min_age", positive, "0 s or more"
-        )
+        low = self.numbers.number(rule, constraint.min_age_, f"{constraint.signal}.min_age", positive, "0 s or more")
         high = math.inf
         if constraint.max_age_ is not None:
             high = self.numbers.number(

@@ -20,8 +20,6 @@ from ravestate.declare.slot import Slot
 from ravestate.declare.wording import spelt
 from ravestate.policy.model import RulePlan
 
-__all__ = ["Acts", "Source", "acts_of", "undeclared"]
-
 OWNERS: tuple[type[Any], ...] = (ModuleType, Slot)
 """Values whose attributes have no side effects, apart from a lazy import."""
 
@@ -114,18 +112,12 @@ class _Reader:
             ):
                 if getattr(self._resolved(slot), "kind", "") == "collection":
                     self._enter(slot, Slot, acts.writes)
-            case ast.Call(
-                func=ast.Attribute(value=ast.Name(id=self._context), attr="emit"), args=[signal, *_]
-            ):
+            case ast.Call(func=ast.Attribute(value=ast.Name(id=self._context), attr="emit"), args=[signal, *_]):
                 self._enter(signal, Signal, acts.emits)
-            case ast.Call(
-                func=ast.Attribute(value=ast.Name(id=self._context), attr="payload"), args=[signal, *_]
-            ):
+            case ast.Call(func=ast.Attribute(value=ast.Name(id=self._context), attr="payload"), args=[signal, *_]):
                 self._enter(signal, Signal, acts.payloads)
             case ast.Expr(
-                value=ast.Call(
-                    func=ast.Attribute(value=ast.Name(id=self._context), attr="sleep" | "quiet" as method)
-                )
+                value=ast.Call(func=ast.Attribute(value=ast.Name(id=self._context), attr="sleep" | "quiet" as method))
             ):
                 acts.forgotten.setdefault(method, self._first + node.lineno)
             case _:

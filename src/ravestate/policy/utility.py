@@ -10,8 +10,6 @@ from ravestate.policy.completion import UNIT, Completion
 from ravestate.policy.least import Least
 from ravestate.policy.model import RulePlan, SignalPlan
 
-__all__ = ["NO_INFORMATION", "PREDICATE", "assign_utilities"]
-
 PREDICATE = math.log(2)
 """Nats that a ``where`` or ``holds`` predicate adds: it halves the prior (L9)."""
 

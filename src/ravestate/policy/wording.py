@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-__all__ = ["few"]
-
 SHOWN = 8
 """The greatest number of names in a list."""
 

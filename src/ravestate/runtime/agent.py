@@ -11,8 +11,6 @@ from ravestate.policy.policy import Policy
 from ravestate.runtime.context import Context
 from ravestate.settings import Settings
 
-__all__ = ["Agent"]
-
 
 class Agent:
     """A policy and its settings, read and checked once, and shared by all contexts of the agent.

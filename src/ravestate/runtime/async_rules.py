@@ -13,8 +13,6 @@ from ravestate.runtime.blocking import StepTimer
 from ravestate.runtime.eager_task import EagerTask
 from ravestate.runtime.rule_context import RuleContext
 
-__all__ = ["GRACE", "AsyncRules"]
-
 GRACE = 5.0
 """Seconds that a cancelled rule has for its cleaning up before its run counts as ended."""
 

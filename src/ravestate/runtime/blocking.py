@@ -13,8 +13,6 @@ try:
 except ImportError:  # Windows
     resource = None
 
-__all__ = ["BLOCKING", "StepTimer"]
-
 BLOCKING = 0.1
 """Seconds that one step of an async rule may take before a warning names it: nothing else runs meanwhile."""
 

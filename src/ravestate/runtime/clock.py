@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import asyncio
 
-__all__ = ["Clock"]
-
 
 class Clock:
     """The seconds since a context started, without the time in which the clock was halted.

@@ -28,8 +28,6 @@ from ravestate.runtime.journal import Taken
 from ravestate.runtime.runner import Runner
 from ravestate.settings import load_settings
 
-__all__ = ["Context"]
-
 T = TypeVar("T")
 
 TRACE_LIMIT = 100_000

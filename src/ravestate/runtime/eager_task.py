@@ -17,8 +17,6 @@ from typing import Any
 from ravestate.declare.rule import Rule
 from ravestate.runtime.blocking import StepTimer
 
-__all__ = ["EagerTask"]
-
 
 class EagerTask:
     """A spare task, and the coroutine of a rule once the task has adopted one.

@@ -12,8 +12,6 @@ from ravestate.declare.wording import short
 from ravestate.engine.events import Finish
 from ravestate.errors import RuleError
 
-__all__ = ["ending"]
-
 
 def ending(run: int, rule: Rule[Any, Any], outcome: Any, raised: bool) -> Finish:
     """Return the event that ends a run.

@@ -8,8 +8,6 @@ from typing import Any
 
 from ravestate.engine.effects import Ended
 
-__all__ = ["Hooks"]
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Hooks:

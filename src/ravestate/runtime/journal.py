@@ -9,8 +9,6 @@ from ravestate.engine.effects import Effect
 from ravestate.engine.engine import Engine
 from ravestate.engine.events import Event
 
-__all__ = ["Entry", "Journal", "Taken", "replay"]
-
 
 @dataclass(slots=True)
 class Taken:

@@ -8,8 +8,6 @@ from typing import Any
 
 from ravestate.engine.effects import Spiked
 
-__all__ = ["Listeners"]
-
 
 class Listeners:
     """The listeners of one context, by the names of their signals.

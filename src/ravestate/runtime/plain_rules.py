@@ -13,8 +13,6 @@ from typing import Any
 from ravestate.runtime.rule_context import RuleContext
 from ravestate.runtime.workers import Job, JobQueue
 
-__all__ = ["STARVED", "PlainRules"]
-
 STARVED = 5.0
 """Seconds that a plain function waits for a worker thread before a warning names the rules that hold the threads."""
 
@@ -104,6 +102,5 @@ def _listed(jobs: Iterable[Job]) -> str:
     for job in jobs:
         by_name.setdefault(job.name, []).append(monotonic() - (job.began or job.made))
     return ", ".join(
-        f"{name} ({len(times)} run{'s'[: len(times) > 1]}, up to {max(times):.0f} s)"
-        for name, times in by_name.items()
+        f"{name} ({len(times)} run{'s'[: len(times) > 1]}, up to {max(times):.0f} s)" for name, times in by_name.items()
     )

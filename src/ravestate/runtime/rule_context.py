@@ -18,8 +18,6 @@ from ravestate.errors import RavestateError, RuleError, RunEnded, UndeclaredErro
 from ravestate.policy.policy import Policy
 from ravestate.runtime.clock import Clock
 
-__all__ = ["Host", "Items", "RuleContext"]
-
 T = TypeVar("T")
 V = TypeVar("V")
 
@@ -230,11 +228,7 @@ class RuleContext:
             )
         own = getattr(self.rule, what)
         line = self._spelt(value)
-        line = (
-            f"add {what}={line} to"
-            if not own
-            else f"write {what}=({', '.join(map(self._spelt, own))}, {line}) in"
-        )
+        line = f"add {what}={line} to" if not own else f"write {what}=({', '.join(map(self._spelt, own))}, {line}) in"
         raise UndeclaredError(
             f"rule {self.rule.name} ({self.rule.origin}) {did} {name} without declaring it: {line} "
             f"@{self.rule.name.split(':')[0]}.rule(...){nearest(name, [d.name for d in declared])}"

@@ -16,8 +16,6 @@ from ravestate.policy.policy import Policy
 from ravestate.runtime.agent import Agent
 from ravestate.runtime.context import Context
 
-__all__ = ["run", "run_context", "run_servers"]
-
 log = logging.getLogger("ravestate")
 
 INPUT = "rawio:input"

@@ -31,8 +31,6 @@ from ravestate.runtime.plain_rules import PlainRules
 from ravestate.runtime.rule_context import RuleContext
 from ravestate.runtime.waits import Waits
 
-__all__ = ["Runner"]
-
 ENDLESS = 200_000
 """Rounds of effects in one instant of virtual time after which the instant counts as endless."""
 
@@ -179,9 +177,7 @@ class Runner:
 
     def _held(self) -> bool:
         """Whether effects wait for a plain function in virtual time, or for rules that have just been cancelled."""
-        return bool(
-            (self._is_virtual and self._plain.runs) or (self._async.cleaning and not self.clock.halted)
-        )
+        return bool((self._is_virtual and self._plain.runs) or (self._async.cleaning and not self.clock.halted))
 
     def _work_off(self, rounds: int) -> bool:
         """Take and perform effects, for so many rounds at most; return whether there were any."""
@@ -190,9 +186,7 @@ class Runner:
         if began != self._instant:
             self._rounds = 0
         self._instant = began
-        if self._hooks.on_endless is not None and (
-            self._rounds > ENDLESS or engine.late_turns > ENDLESS // 20
-        ):
+        if self._hooks.on_endless is not None and (self._rounds > ENDLESS or engine.late_turns > ENDLESS // 20):
             self.closed = True
             self._hooks.on_endless(self._last_run)
             return False

@@ -9,8 +9,6 @@ from collections.abc import Callable, Mapping
 from ravestate.engine.activation import NEVER, Activation
 from ravestate.engine.engine import Engine
 
-__all__ = ["Waits"]
-
 
 class Waits:
     """The tasks that wait for a state of one engine.

@@ -16,8 +16,6 @@ from collections import deque
 from collections.abc import Callable
 from time import monotonic
 
-__all__ = ["LAST_GRACE", "POOL", "SHARE", "THREADS", "Job", "JobQueue", "ThreadPool"]
-
 LAST_GRACE = 5.0
 """Seconds for which the end of the process waits for functions at work."""
 

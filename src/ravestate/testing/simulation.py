@@ -27,8 +27,6 @@ from ravestate.runtime.hooks import Hooks
 from ravestate.runtime.journal import Taken
 from ravestate.testing.virtual_loop import VirtualLoop
 
-__all__ = ["Simulation", "simulate"]
-
 T = TypeVar("T")
 
 OUTPUT = "rawio:output:changed"
@@ -76,9 +74,7 @@ class Simulation:
         trace: bool = True,
         journal: Callable[[Event | Taken, float], None] | None = None,
     ) -> None:
-        self.context = Context(
-            *modules, settings=settings, seed=seed, patience=patience, trace=trace, journal=journal
-        )
+        self.context = Context(*modules, settings=settings, seed=seed, patience=patience, trace=trace, journal=journal)
         self.said: list[str] = []
         self.fired: list[str] = []
         self.failures: list[tuple[str, BaseException]] = []
@@ -127,9 +123,7 @@ class Simulation:
         except RuntimeError:
             pass
         else:
-            raise EngineError(
-                "simulate runs a loop of its own: use it in a plain function, not in an async one"
-            )
+            raise EngineError("simulate runs a loop of its own: use it in a plain function, not in an async one")
         loop = self._loop = VirtualLoop()
         context = self.context
         hooks = Hooks(

@@ -11,8 +11,6 @@ from typing import Any
 
 from ravestate.errors import EngineError
 
-__all__ = ["VirtualLoop"]
-
 REAL_LIMIT = 30.0
 """Real seconds that a plain function may keep virtual time waiting."""
 

@@ -15,8 +15,6 @@ from ravestate.modules._loading import LOADING
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["SentenceModel", "folder_of", "model_in"]
-
 TOKENS = 512
 """The tokens of a text or a pair that the models read."""
 CHARACTERS = 10_000
@@ -59,9 +57,7 @@ def folder_of(folder: Path | str | None, bundled: str) -> Path:
     if folder:
         path = Path(folder).expanduser().absolute()
         if not path.is_dir():
-            raise PlatformError(
-                f"the sentence model {str(folder)!r} is not a folder: name one with model.onnx"
-            )
+            raise PlatformError(f"the sentence model {str(folder)!r} is not a folder: name one with model.onnx")
         return path
     for place in folders_of(SENTENCE_MODELS):
         path = place / "models" / "data" / bundled
@@ -102,9 +98,7 @@ class SentenceModel:
         options.add_session_config_entry("session.intra_op.allow_spinning", "0")
         options.log_severity_level = 4  # errors are raised
         try:
-            self._session: Any = runtime.InferenceSession(
-                str(files[0]), options, providers=["CPUExecutionProvider"]
-            )
+            self._session: Any = runtime.InferenceSession(str(files[0]), options, providers=["CPUExecutionProvider"])
             self._tokenizer: Any = Tokenizer.from_file(str(files[1]))
         except Exception as error:  # each library has its own exceptions, with long messages
             broken = str(error).partition("\n")[0][:200]
@@ -136,9 +130,7 @@ class SentenceModel:
             while end < len(order):
                 length = len(codes[order[end]].ids)
                 shortest = len(codes[order[start]].ids)
-                if end > start and (
-                    length * (end - start + 1) > BATCH_TOKENS or length > 1.25 * shortest + 4
-                ):
+                if end > start and (length * (end - start + 1) > BATCH_TOKENS or length > 1.25 * shortest + 4):
                     break
                 end += 1
             indices, start = order[start:end], end

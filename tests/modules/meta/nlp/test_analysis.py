@@ -10,9 +10,7 @@ from ravestate.modules.meta.nlp.pipeline import Pipeline
 said = sorted(
     {word for name in ("triples_rows", "questions_rows") for row in labelled(name) for word in row[0].split()}
 )
-texts = st.lists(st.sampled_from([*said, "?", ",", ".", "\n"]), max_size=25).map(" ".join) | st.text(
-    max_size=60
-)
+texts = st.lists(st.sampled_from([*said, "?", ",", ".", "\n"]), max_size=25).map(" ".join) | st.text(max_size=60)
 
 
 @given(texts)

@@ -35,9 +35,7 @@ def test_an_answer_is_true_and_no_answer_false() -> None:
 
 
 words = st.sampled_from(
-    sorted(
-        {word for text, _ in labelled("yesno_rows") for word in text.split()} | {",", ".", "?", "but", "tree"}
-    )
+    sorted({word for text, _ in labelled("yesno_rows") for word in text.split()} | {",", ".", "?", "but", "tree"})
 )
 
 

@@ -45,9 +45,9 @@ def test_like_is_a_verb_and_keeps_its_lemma(reader: Pipeline) -> None:
 )  # fmt: skip
 def test_any_text_can_be_analysed(reader: Pipeline, text: str) -> None:
     seen = analyse(text, reader, ["Ravestate", "", "(?"])
-    assert "".join(word.text for word in seen.tree.words).strip() == "".join(
-        seen.tree.text.split()
-    ).strip() or any(not character.isprintable() for character in text)
+    assert "".join(word.text for word in seen.tree.words).strip() == "".join(seen.tree.text.split()).strip() or any(
+        not character.isprintable() for character in text
+    )
 
 
 def test_the_beginning_of_a_long_text_is_analysed(reader: Pipeline, caplog: pytest.LogCaptureFixture) -> None:

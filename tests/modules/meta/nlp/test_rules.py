@@ -58,9 +58,7 @@ def test_simultaneous_utterances_are_analysed_in_order(
 
     def read(text: str, *rest: Any) -> Any:
         if text == "I live in Ulm.":
-            later.wait(
-                0.2
-            )  # for the other one, which would be through by now if it did not wait for its turn
+            later.wait(0.2)  # for the other one, which would be through by now if it did not wait for its turn
         else:
             later.set()
         return analyse(text, *rest)
@@ -70,9 +68,7 @@ def test_simultaneous_utterances_are_analysed_in_order(
         sim.context.put(rawio.input, "I live in Ulm.")
         sim.context.put(rawio.input, "No, in Bremen.")
         sim.settle()
-        written = [
-            record.value for record in sim.trace if isinstance(record, Set) and record.slot == nlp.text.name
-        ]
+        written = [record.value for record in sim.trace if isinstance(record, Set) and record.slot == nlp.text.name]
     assert written == ["I live in Ulm.", "No, in Bremen."]
 
 
@@ -225,8 +221,6 @@ def test_loading_begins_at_startup_and_counts_as_no_activity(monkeypatch: pytest
 
 
 def test_nothing_heavy_is_imported_with_the_module() -> None:
-    code = (
-        "import sys; from ravestate.modules import nlp; print('spacy' in sys.modules, 'numpy' in sys.modules)"
-    )
+    code = "import sys; from ravestate.modules import nlp; print('spacy' in sys.modules, 'numpy' in sys.modules)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout == "False False\n"

@@ -103,9 +103,7 @@ def test_a_second_process_learns_which_process_has_the_file(
     assert "--set ontology.path=FILE" in said
 
 
-def test_a_second_opening_runs_no_statement(
-    tmp_path: Path, open_here: Open, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_second_opening_runs_no_statement(tmp_path: Path, open_here: Open, monkeypatch: pytest.MonkeyPatch) -> None:
     open_here(path=tmp_path / "memory.lbug").opened().result()
     asked: list[str] = []
     execute = EmbeddedStore._execute
@@ -168,9 +166,7 @@ def test_nothing_is_written_when_there_is_hardly_space(
     assert len(memory.find("Thing").result()) == 2
 
 
-def test_a_long_log_is_moved_into_the_file(
-    tmp_path: Path, open_here: Open, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_long_log_is_moved_into_the_file(tmp_path: Path, open_here: Open, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(embedded, "LOG_LIMIT", 50_000)
     path = tmp_path / "memory.lbug"
     memory = open_here(path=path)
@@ -278,9 +274,7 @@ def test_a_property_does_not_change_its_kind(file: Path, tmp_path: Path, open_he
     types.write_text("Person: {has: {shoe_size: number, hat_size: number}}")
     said = failure(path=file, types=(types,))
     assert "has Person.shoe_size as text, and the types say number: write shoe_size: text" in said
-    types.write_text(
-        "Person: {has: {shoe_size: date}}"
-    )  # kept as a text too, so it comes out when it is read
+    types.write_text("Person: {has: {shoe_size: date}}")  # kept as a text too, so it comes out when it is read
     memory = open_here(path=file, types=(types,))
     with pytest.raises(RuleError, match=r"memory has Person\.shoe_size = '38 or so', which is no date"):
         memory.find("Person").result()

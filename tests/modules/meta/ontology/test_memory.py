@@ -80,9 +80,7 @@ def test_any_text_is_a_value_and_nothing_else(memory: Memory, text: str) -> None
     assert memory.get(other.id).result() == other
 
 
-def test_every_kind_of_value_comes_back_as_it_was(
-    open_here: Open, place: dict[str, Any], tmp_path: Path
-) -> None:
+def test_every_kind_of_value_comes_back_as_it_was(open_here: Open, place: dict[str, Any], tmp_path: Path) -> None:
     types = tmp_path / "kinds.yaml"
     types.write_text("Sample: {has: {a: text, b: integer, c: number, d: yes/no, e: date, f: time}}")
     memory = open_here(**place, types=(types,))
@@ -118,9 +116,7 @@ def test_every_kind_of_value_comes_back_as_it_was(
         ("Person", {"born": "2020-01-01"}, "write for example datetime.date(1815, 12, 10)"),
     ],
 )
-def test_undeclared_names_are_refused(
-    memory: Memory, type: str, properties: dict[str, Any], said: str
-) -> None:
+def test_undeclared_names_are_refused(memory: Memory, type: str, properties: dict[str, Any], said: str) -> None:
     before = memory.export().result()
     for operation in (memory.create, memory.ensure, memory.find):
         with pytest.raises(RuleError) as caught:
@@ -283,9 +279,7 @@ def test_duplicates_are_merged(memory: Memory) -> None:
     }
 
 
-def test_merging_keeps_the_properties_of_relations(
-    open_here: Open, place: dict[str, Any], tmp_path: Path
-) -> None:
+def test_merging_keeps_the_properties_of_relations(open_here: Open, place: dict[str, Any], tmp_path: Path) -> None:
     types = tmp_path / "mine.yaml"
     types.write_text("Person: {relations: {works_for: {to: Company, has: {since: date, hours: number}}}}")
     memory = open_here(**place, types=(types,))
@@ -512,9 +506,7 @@ def test_a_newer_layout_is_left_alone(open_here: Open, place: dict[str, Any]) ->
     memory = open_here(**place)
     memory.create("Person", name="Ada").result()
     keeper = memory._worker
-    keeper.submit(
-        lambda store: store.write("MATCH (m:`_ravestate` {`key`: 'format'}) SET m.`value` = 2", {})
-    ).result()
+    keeper.submit(lambda store: store.write("MATCH (m:`_ravestate` {`key`: 'format'}) SET m.`value` = 2", {})).result()
     memory.close().result()
     with pytest.raises(PlatformError, match="is of format 2, and this version of ravestate knows up to 1"):
         open_here(**place)

@@ -89,9 +89,7 @@ class MemoryAgainstModel(RuleBasedStateMachine):
     @rule(one=nodes, name=st.sampled_from(sorted(RELATIONS)), other=nodes, end=st.booleans())
     def relate(self, one: Node, name: str, other: Node, end: bool) -> None:
         sources, targets = RELATIONS[name]
-        if not (
-            one.id in self.known and other.id in self.known and one.type in sources and other.type in targets
-        ):
+        if not (one.id in self.known and other.id in self.known and one.type in sources and other.type in targets):
             return
         if end:
             self.memory.unrelate(one, name, other).result(60)
@@ -114,9 +112,7 @@ class MemoryAgainstModel(RuleBasedStateMachine):
         for source, name, target in self.relations:
             if {source, target} == {keep.id, gone.id}:
                 continue
-            moved.add(
-                (keep.id if source == gone.id else source, name, keep.id if target == gone.id else target)
-            )
+            moved.add((keep.id if source == gone.id else source, name, keep.id if target == gone.id else target))
         self.relations = moved
 
     @rule(node=nodes)

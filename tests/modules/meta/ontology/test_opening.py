@@ -11,9 +11,7 @@ from ravestate.modules import ontology
 from ravestate.modules.meta.ontology.opening import default_path, open_memory, types_of
 
 
-def test_the_users_data_folder_is_that_of_the_platform(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
+def test_the_users_data_folder_is_that_of_the_platform(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setenv("HOME", str(tmp_path))
     monkeypatch.setattr(sys, "platform", "linux")
     monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path / "data"))
@@ -67,9 +65,7 @@ def test_types_are_read_once_and_again_after_a_change(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "why"), [("Person: {has: {x: nmber}}", "did you mean 'number'"), (None, "does not exist")]
 )
-def test_an_error_in_a_file_of_types_shows_before_anything_runs(
-    tmp_path: Path, text: str | None, why: str
-) -> None:
+def test_an_error_in_a_file_of_types_shows_before_anything_runs(tmp_path: Path, text: str | None, why: str) -> None:
     file = tmp_path / "types.yaml"
     if text is not None:
         file.write_text(text)

@@ -127,9 +127,7 @@ def test_files_do_not_contradict_each_other(tmp_path: Path) -> None:
     first = "Thing: {has: {name: text}}\nBoat: {is: Thing}\nCar: {is: Thing}"
     with pytest.raises(DeclarationError, match=r"1\.yaml:1: Boat is a Thing already \(.*0\.yaml:2\)"):
         read(tmp_path, first, "Boat: {is: Car}")
-    with pytest.raises(
-        DeclarationError, match=r"1\.yaml:1: Boat\.name is integer, and name is text at .*0\.yaml:1"
-    ):
+    with pytest.raises(DeclarationError, match=r"1\.yaml:1: Boat\.name is integer, and name is text at .*0\.yaml:1"):
         read(tmp_path, first, "Boat: {has: {name: integer}}")
 
 

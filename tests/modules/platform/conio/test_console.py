@@ -265,9 +265,7 @@ def test_only_a_terminal_needs_preparation(monkeypatch: pytest.MonkeyPatch, is_t
 
 
 @pytest.mark.skipif(os.name != "posix", reason="pseudo-terminals")
-@pytest.mark.parametrize(
-    ("keys", "ending"), [(b"\x04", "end of input"), (b"\x03", "interrupt"), (b"bye\r", "None")]
-)
+@pytest.mark.parametrize(("keys", "ending"), [(b"\x04", "end of input"), (b"\x03", "interrupt"), (b"bye\r", "None")])
 def test_on_a_terminal(tmp_path: Path, keys: bytes, ending: str) -> None:
     ours, theirs = os.openpty()
     history = tmp_path / "state" / "history"

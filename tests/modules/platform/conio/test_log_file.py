@@ -120,9 +120,7 @@ def on_terminal(monkeypatch: pytest.MonkeyPatch) -> Terminal:
     return terminal
 
 
-def test_afterwards_the_log_goes_where_it_went_before(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
+def test_afterwards_the_log_goes_where_it_went_before(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     terminal = on_terminal(monkeypatch)
     log, handler = logging.getLogger(), logging.StreamHandler(terminal)
     log.addHandler(handler)
@@ -137,18 +135,14 @@ def test_afterwards_the_log_goes_where_it_went_before(
     assert terminal.text == f"The log of this chat has 1 warning: {tmp_path / 'state' / 'log'}\noutside\n"
 
 
-def test_a_quiet_chat_ends_without_a_word_about_its_log(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
+def test_a_quiet_chat_ends_without_a_word_about_its_log(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     terminal = on_terminal(monkeypatch)
     with log_to_file(tmp_path / "log"):
         pass
     assert terminal.text == ""
 
 
-def test_a_file_that_cannot_be_written_leaves_the_log_as_it_is(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
+def test_a_file_that_cannot_be_written_leaves_the_log_as_it_is(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     on_terminal(monkeypatch)
     before = list(logging.getLogger().handlers)
     with log_to_file(tmp_path):  # a folder

@@ -28,7 +28,7 @@ class Served:
         self._patience = patience
         self._settings = {"port": 0, **settings}
         self.errors = ""
-        """What it wrote to the error stream, once it has ended."""
+        """The output on the error stream, once the process has ended."""
 
     def __enter__(self) -> "Served":
         self.process = subprocess.Popen(

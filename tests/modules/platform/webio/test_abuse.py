@@ -93,9 +93,7 @@ async def test_a_thousand_connections_that_say_nothing_are_bounded() -> None:
             try:
                 refused = 0
                 for one in silent[100:]:
-                    refused += b"too many connections from your address" in await asyncio.to_thread(
-                        everything, one
-                    )
+                    refused += b"too many connections from your address" in await asyncio.to_thread(everything, one)
                 assert refused > 850
                 assert served.files() - open_before <= 100
             finally:
@@ -161,7 +159,7 @@ async def test_a_client_that_stops_reading_is_dropped_and_costs_little() -> None
 
 
 def everything(one: socket.socket) -> bytes:
-    """What a socket receives until its other end is closed."""
+    """Return all that a socket receives until its other end closes."""
     one.settimeout(10)
     received = b""
     with contextlib.suppress(ConnectionResetError):
@@ -171,7 +169,7 @@ def everything(one: socket.socket) -> bytes:
 
 
 def until_closed(one: socket.socket) -> bytes:
-    """What a WebSocket receives until it is closed, in order or not."""
+    """Return all that a WebSocket receives until it closes, in order or not."""
     received = b""
     with contextlib.suppress(ConnectionResetError):
         while b"\x88" not in received and (more := one.recv(1000)):

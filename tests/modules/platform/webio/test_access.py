@@ -1,4 +1,4 @@
-"""Who may come in."""
+"""The access check: hosts, origins and the token."""
 
 import asyncio
 
@@ -19,9 +19,7 @@ def test_addresses_of_this_machine(host: str) -> None:
     assert is_local(host)
 
 
-@pytest.mark.parametrize(
-    "host", ["0.0.0.0", "::", "192.168.0.7", "museum.example", "", "localhost.evil.example"]
-)
+@pytest.mark.parametrize("host", ["0.0.0.0", "::", "192.168.0.7", "museum.example", "", "localhost.evil.example"])
 def test_addresses_that_others_reach(host: str) -> None:
     assert not is_local(host)
 
@@ -89,9 +87,7 @@ def test_who_may_embed_the_page_does_not_look_inside(origin: str) -> None:
 EMBEDDED = {"host": "127.0.0.1:8420", "sec-fetch-dest": "iframe"}
 
 
-@pytest.mark.parametrize(
-    "referer", ["http://museum.example/", "HTTP://museum.example/a?b", "http://museum.example"]
-)
+@pytest.mark.parametrize("referer", ["http://museum.example/", "HTTP://museum.example/a?b", "http://museum.example"])
 def test_a_page_that_may_not_show_the_chat_is_named(referer: str) -> None:
     assert Access(Settings()).foreign_embedder({**EMBEDDED, "referer": referer}) == "http://museum.example"
 
@@ -137,9 +133,7 @@ async def test_guessing_takes_long() -> None:
         await access.check_token(None)
 
 
-@pytest.mark.parametrize(
-    "origin", ["museum.example", "https://museum.example/", "*", "https://a; script-src *"]
-)
+@pytest.mark.parametrize("origin", ["museum.example", "https://museum.example/", "*", "https://a; script-src *"])
 def test_what_is_no_origin_is_no_setting(origin: str) -> None:
     with pytest.raises(ValueError, match=r"write an origin, e\.g\. https://museum\.example"):
         Settings(origins=(origin,))

@@ -1,4 +1,4 @@
-"""Whom the server waits for, before the application hears of them, and while it answers."""
+"""The time limits for requests and answers."""
 
 import asyncio
 from typing import Any

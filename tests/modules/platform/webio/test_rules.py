@@ -1,4 +1,4 @@
-"""What a visitor sees of the agent: messages, pieces, and that it is thinking."""
+"""A visitor sees messages, pieces, and the agent at work."""
 
 import asyncio
 

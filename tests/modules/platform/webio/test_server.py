@@ -135,9 +135,7 @@ async def test_a_token_with_a_control_character_is_refused_and_not_logged() -> N
                     await visit.recv()
                 assert visit.close_code == 4401
         reader, writer = await asyncio.open_connection("127.0.0.1", served.port)
-        writer.write(
-            f"GET /ws HTTP/1.1\r\nhost: {served.host}\r\nauthorization: Bearer {TOKEN}\0\r\n\r\n".encode()
-        )
+        writer.write(f"GET /ws HTTP/1.1\r\nhost: {served.host}\r\nauthorization: Bearer {TOKEN}\0\r\n\r\n".encode())
         assert b"400 Bad Request" in await reader.read()
         writer.close()
         assert served.end() == 0
@@ -265,4 +263,4 @@ def test_the_documented_client_says_when_nobody_is_there(
         nobody.bind(("127.0.0.1", 0))
         done = ask(f"127.0.0.1:{nobody.getsockname()[1]}")
     assert done.returncode == 1
-    assert done.stderr == "Nobody is there: start an agent, e.g. ravestate run webio hibye\n"
+    assert done.stderr == "No agent answers: start one, e.g. ravestate run webio hibye\n"

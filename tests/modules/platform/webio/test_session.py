@@ -1,4 +1,4 @@
-"""What passes between a visitor and the agent beside words: that one is writing, what the other is called, who left."""
+"""A conversation beside its words: writing, the agent's name, the reasons for its end."""
 
 import asyncio
 

@@ -101,9 +101,7 @@ def test_a_goal_waits_for_its_precondition_and_leaves_its_turn_to_others() -> No
     guide = agent()
     open_ = guide.flag("open", input=True)
     sold_out = guide.flag("sold_out", True, input=True)
-    agenda.goal(
-        guide, "sell", say="An ice cream?", priority=5.0, when=open_.holds(bool), unless=sold_out.holds(bool)
-    )
+    agenda.goal(guide, "sell", say="An ice cream?", priority=5.0, when=open_.holds(bool), unless=sold_out.holds(bool))
     agenda.goal(guide, "weather", say="Lovely weather.")
     with simulate(guide, settings=AT_ONCE) as sim:
         sim.advance(60.0)
@@ -195,9 +193,7 @@ def test_an_answer_to_a_goal_may_have_a_rule_of_its_own() -> None:
     guide = agent()
     offer = agenda.goal(guide, "offer", say="Shall we play a game?", done="yes")
 
-    @guide.rule(
-        when=offer.pursued.max_age(60) & rawio.input.changed.where(lambda t: t == "yes"), writes=rawio.output
-    )
+    @guide.rule(when=offer.pursued.max_age(60) & rawio.input.changed.where(lambda t: t == "yes"), writes=rawio.output)
     async def play(ctx: rs.RuleContext) -> None:
         ctx[rawio.output] = "I spy with my little eye."
 

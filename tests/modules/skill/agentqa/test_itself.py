@@ -16,9 +16,7 @@ from ravestate.modules.meta.ontology.opening import open_memory, types_of
 from ravestate.modules.skill.agentqa import Life
 from ravestate.modules.skill.agentqa.itself import RELATIONS, recall, settle
 
-LIFE = Life(
-    {"name": "Robin", "born": "2020-05-04", "hobbies": ("chess", "art"), "home": "Rome", "wheels": "3"}, {}
-)
+LIFE = Life({"name": "Robin", "born": "2020-05-04", "hobbies": ("chess", "art"), "home": "Rome", "wheels": "3"}, {})
 
 
 @pytest.fixture
@@ -37,9 +35,7 @@ def with_memory(tmp_path: Path) -> Callable[[Callable[[ontology.Memory], Awaitab
 
 
 def changed(**facts: Any) -> Life:
-    return replace(
-        LIFE, facts={key: fact for key, fact in {**LIFE.facts, **facts}.items() if fact is not None}
-    )
+    return replace(LIFE, facts={key: fact for key, fact in {**LIFE.facts, **facts}.items() if fact is not None})
 
 
 def test_memory_has_a_relation_and_a_type_for_each_fact_that_becomes_one() -> None:

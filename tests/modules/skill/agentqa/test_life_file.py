@@ -57,9 +57,7 @@ def test_the_life_that_comes_with_the_module_is_whole() -> None:
 
 
 def test_remarks_are_added_and_may_be_a_topic_of_their_own(tmp_path: Path) -> None:
-    life = life_of(
-        "topics: {grief: {remarks: rain again}, praise: {remarks: [well done], phrases: Thanks.}}", tmp_path
-    )
+    life = life_of("topics: {grief: {remarks: rain again}, praise: {remarks: [well done], phrases: Thanks.}}", tmp_path)
     assert life.topics["grief"].remarks == (*read_life().topics["grief"].remarks, "rain again")
     assert life.topics["praise"].remarks == ("well done",)
 
@@ -77,9 +75,7 @@ def test_a_fact_is_replaced_added_or_taken_away_and_the_rest_stays(tmp_path: Pat
         "facts: {name: Robin, born: 2020-02-29, hobbies: [chess], home: ~, wheels: 3, siblings: []}", tmp_path
     )
     assert life.name == "Robin" and life.born == date(2020, 2, 29)
-    assert (
-        life.facts["hobbies"] == ("chess",) and life.facts["wheels"] == "3" and life.facts["siblings"] == ()
-    )
+    assert life.facts["hobbies"] == ("chess",) and life.facts["wheels"] == "3" and life.facts["siblings"] == ()
     assert "home" not in life.facts
     assert life.facts["friends"] == read_life().facts["friends"]
     assert life.topics == read_life().topics

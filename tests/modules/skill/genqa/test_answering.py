@@ -35,9 +35,7 @@ def test_an_answer_has_a_source_and_a_confidence(collection: Answerer) -> None:
     "heard",
     ["Will it rain today?", "What is your name?", "What is the best country?", "Is it?", "what " * 20_000],
 )
-def test_questions_not_about_the_world_get_a_reason_instead_of_an_answer(
-    collection: Answerer, heard: str
-) -> None:
+def test_questions_not_about_the_world_get_a_reason_instead_of_an_answer(collection: Answerer, heard: str) -> None:
     answer = collection.answer(heard)
     assert answer.text == ""
     assert answer.reason
@@ -124,9 +122,7 @@ def test_the_largest_is_found_behind_many_that_are_the_second_largest(tmp_path: 
 
 
 def test_the_shortest_of_equal_passages_is_taken(collection: Answerer) -> None:
-    assert collection.answer("What is the life expectancy in Italy?").text.startswith(
-        "The life expectancy of Italy is"
-    )
+    assert collection.answer("What is the life expectancy in Italy?").text.startswith("The life expectancy of Italy is")
 
 
 def test_new_documents_are_known_at_once(tmp_path: Path) -> None:
@@ -185,9 +181,7 @@ def test_many_threads_may_ask(collection: Answerer) -> None:
         thread.start()
     for thread in threads:
         thread.join()
-    assert got == {
-        country: f"The capital of {country} is {capital}." for country, capital in capitals.items()
-    }
+    assert got == {country: f"The capital of {country} is {capital}." for country, capital in capitals.items()}
 
 
 def test_an_injection_in_a_document_is_a_sentence_like_any_other(tmp_path: Path) -> None:

@@ -53,9 +53,7 @@ def test_the_callback_sees_each_document_of_a_large_file(index: Index, folder: P
     assert told == [("many.jsonl", 0), ("many.jsonl", 1), ("many.jsonl", 2)]
 
 
-def test_unchanged_files_are_not_read_again(
-    index: Index, folder: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_unchanged_files_are_not_read_again(index: Index, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     take_in(index, folder)
     monkeypatch.setattr(collecting, "read", lambda path, source: pytest.fail(f"{path} was read"))
     assert take_in(index, folder) == {"tram.txt": "unchanged", "ship.md": "unchanged"}
@@ -93,9 +91,7 @@ def test_a_folder_that_is_not_there_costs_nothing(index: Index, folder: Path) ->
     folder.rename(folder.with_name("moved"))
     (outcome,) = collect(find([folder], index), index)
     assert outcome.kind == "unreadable"
-    assert (
-        outcome.why == f"it does not exist; to forget what was read from it: ravestate genqa forget {folder}"
-    )
+    assert outcome.why == f"it does not exist; to forget what was read from it: ravestate genqa forget {folder}"
     assert index.size() == 2
 
 
@@ -145,9 +141,7 @@ def test_a_name_that_is_not_utf8(index: Index, folder: Path) -> None:
     assert said(index, "cafe") == {"The cafe is closed."}
 
 
-def test_interrupted_it_keeps_what_was_complete(
-    index: Index, folder: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_interrupted_it_keeps_what_was_complete(index: Index, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def read(path: Path, source: str) -> Iterator[Document]:
         yield Document("x", source, [Passage("The tram is red.")])
         if path.name == "tram.txt":
@@ -163,9 +157,7 @@ def test_interrupted_it_keeps_what_was_complete(
 
 
 def test_a_full_disk_ends_it_and_keeps_what_was_complete(index: Index, folder: Path) -> None:
-    (folder / "zz.txt").write_text(
-        "\n\n".join(f"Passage {n} is of rain." for n in range(20_000)), encoding="utf-8"
-    )
+    (folder / "zz.txt").write_text("\n\n".join(f"Passage {n} is of rain." for n in range(20_000)), encoding="utf-8")
     base = index._base  # pyright: ignore[reportPrivateUsage]
     base.execute(f"PRAGMA max_page_count = {base.execute('PRAGMA page_count').fetchone()[0] + 40}")
     with pytest.raises(rs.PlatformError, match="disk is full"):

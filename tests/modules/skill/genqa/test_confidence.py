@@ -15,7 +15,5 @@ def test_it_is_a_probability(best: float, covered: float) -> None:
 
 
 @given(score, score, share, share)
-def test_a_better_score_and_more_of_the_question_make_it_surer(
-    a: float, b: float, c: float, d: float
-) -> None:
+def test_a_better_score_and_more_of_the_question_make_it_surer(a: float, b: float, c: float, d: float) -> None:
     assert confidence(min(a, b), min(c, d)) <= confidence(max(a, b), max(c, d))

@@ -25,9 +25,7 @@ def found(index: Index, *words: str) -> list[str]:
 
 
 def test_passages_with_more_and_rarer_words_come_first(index: Index) -> None:
-    index.put(
-        file(), notes("The tram is red.", "The bus is red.", "The tram is yellow, and goes to the beach.")
-    )
+    index.put(file(), notes("The tram is red.", "The bus is red.", "The tram is yellow, and goes to the beach."))
     assert found(index, "tram", "beach")[0] == "The tram is yellow, and goes to the beach."
     assert found(index, "submarine") == []
 
@@ -38,12 +36,7 @@ def test_passages_that_have_a_word_of_each_group(index: Index) -> None:
         "The tram is red.",
         "The bus is red.",
     }
-    assert (
-        index.search_all([["ship"], ["red"]], 9)
-        == index.search_all([], 9)
-        == index.search_all([['"'], []], 9)
-        == []
-    )
+    assert index.search_all([["ship"], ["red"]], 9) == index.search_all([], 9) == index.search_all([['"'], []], 9) == []
 
 
 def test_titles_and_hints_are_searched_and_stems_are_one(index: Index) -> None:
@@ -153,9 +146,7 @@ def test_a_file_of_a_newer_version_is_refused_and_left_alone(tmp_path: Path) -> 
     base.execute(f"PRAGMA user_version = {FORMAT + 1}")
     base.close()
     before = path.read_bytes()
-    with pytest.raises(
-        rs.PlatformError, match=rf"newer Ravestate \(format {FORMAT + 1}, this one knows {FORMAT}\)"
-    ):
+    with pytest.raises(rs.PlatformError, match=rf"newer Ravestate \(format {FORMAT + 1}, this one knows {FORMAT}\)"):
         Index(path)
     assert path.read_bytes() == before
 

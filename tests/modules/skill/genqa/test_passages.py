@@ -44,9 +44,7 @@ def test_abbreviations_and_numbers_end_no_sentence(sentence: str) -> None:
 
 
 def test_lines_that_were_broken_are_joined_again() -> None:
-    assert texts("The main-\ntenance of the pump\nis due in May.") == [
-        "The maintenance of the pump is due in May."
-    ]
+    assert texts("The main-\ntenance of the pump\nis due in May.") == ["The maintenance of the pump is due in May."]
 
 
 def test_crumbs_are_left_out() -> None:
@@ -54,9 +52,7 @@ def test_crumbs_are_left_out() -> None:
 
 
 def test_controls_and_escapes_are_not_kept() -> None:
-    assert texts("The \x1b[31mred\x1b[0m line\x00 is short\udce9 now.") == [
-        "The red line is short\ufffd now."
-    ]
+    assert texts("The \x1b[31mred\x1b[0m line\x00 is short\udce9 now.") == ["The red line is short\ufffd now."]
 
 
 def test_a_sentence_without_end_is_cut_where_it_may_be() -> None:

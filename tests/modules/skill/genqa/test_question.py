@@ -20,9 +20,7 @@ def test_a_question_that_no_document_can_answer_is_declined_with_a_reason(heard:
     assert reason in as_question(heard).declined
 
 
-@pytest.mark.parametrize(
-    "heard", ["ما هي عاصمة بيرو؟", "Peru？", 'a" OR title:b* NEAR(c)', "what is \udce9rain"]
-)
+@pytest.mark.parametrize("heard", ["ما هي عاصمة بيرو؟", "Peru？", 'a" OR title:b* NEAR(c)', "what is \udce9rain"])
 def test_any_script_and_any_mark_has_its_words(heard: str) -> None:
     question = as_question(heard)
     assert question.words

@@ -131,9 +131,7 @@ def test_an_empty_page_is_nothing_to_warn_of(tmp_path: Path, caplog: pytest.LogC
 
 
 def test_each_page_of_a_pdf_is_a_source(tmp_path: Path) -> None:
-    path = write_pdf(
-        tmp_path / "manual.pdf", "Grease the pump each month.", "The warranty is two years.", title="Pump"
-    )
+    path = write_pdf(tmp_path / "manual.pdf", "Grease the pump each month.", "The warranty is two years.", title="Pump")
     said = [(d.title, d.source, [p.text for p in d.passages]) for d in read(path, "manual.pdf")]
     assert said == [
         ("Pump", "manual.pdf, page 1", ["Grease the pump each month."]),
@@ -162,9 +160,7 @@ def why(path: Path) -> str:
 
 
 def test_text_in_an_encoding_that_is_not_told(tmp_path: Path) -> None:
-    assert why(write(tmp_path / "a.txt", "Café".encode("latin-1"))).startswith(
-        "it is not UTF-8 (byte 3): convert it"
-    )
+    assert why(write(tmp_path / "a.txt", "Café".encode("latin-1"))).startswith("it is not UTF-8 (byte 3): convert it")
 
 
 @pytest.mark.parametrize("name", ["a.txt", "a.md", "a.html"])
@@ -210,14 +206,10 @@ def test_a_line_that_is_no_document(tmp_path: Path, line: str | bytes, said: str
 
 def test_deep_nesting_is_no_way_to_break_it(tmp_path: Path) -> None:
     assert "deeply" in why(write(tmp_path / "a.jsonl", "[" * 100_000))
-    assert passages(write(tmp_path / "a.html", "<div>" * 5_000 + "There is a bottom.")) == {
-        "a": ["There is a bottom."]
-    }
+    assert passages(write(tmp_path / "a.html", "<div>" * 5_000 + "There is a bottom.")) == {"a": ["There is a bottom."]}
 
 
-@pytest.mark.parametrize(
-    "text", ["**a " * 20_000, "[" * 20_000, "<!-- " * 20_000, "```\n" * 20_001, "# a\n" * 5_000]
-)
+@pytest.mark.parametrize("text", ["**a " * 20_000, "[" * 20_000, "<!-- " * 20_000, "```\n" * 20_001, "# a\n" * 5_000])
 def test_a_file_of_opening_marks_does_not_take_for_ever(tmp_path: Path, text: str) -> None:
     assert sum(map(len, passages(write(tmp_path / "a.md", text)).values())) < 1000
 
@@ -288,10 +280,7 @@ def test_articles_of_a_zim_file(tmp_path: Path, archive: list[SimpleNamespace]) 
 
 def test_a_file_that_is_no_zim(tmp_path: Path, archive: list[SimpleNamespace]) -> None:
     assert archive == []
-    assert (
-        why(write(tmp_path / "a.zim", b"PK\x03\x04"))
-        == "it is no ZIM file, or damaged (Invalid magic number)"
-    )
+    assert why(write(tmp_path / "a.zim", b"PK\x03\x04")) == "it is no ZIM file, or damaged (Invalid magic number)"
 
 
 def test_every_kind_has_its_reader() -> None:

@@ -46,10 +46,7 @@ def test_sentences_are_short_and_whole() -> None:
 
 
 def test_it_is_small() -> None:
-    assert (
-        sum(len((FOLDER / name).read_bytes()) for name in ("world-factbook.jsonl.gz", "general.yaml"))
-        < 2_000_000
-    )
+    assert sum(len((FOLDER / name).read_bytes()) for name in ("world-factbook.jsonl.gz", "general.yaml")) < 2_000_000
 
 
 def test_it_is_taken_in_once(index: Index) -> None:

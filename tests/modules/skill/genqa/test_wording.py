@@ -41,9 +41,7 @@ def test_an_answer_with_additions_is_not_supported(said: str) -> None:
 
 
 def test_a_number_of_the_question_is_no_evidence() -> None:
-    assert not is_supported(
-        "Peru had 5 million people in 1950.", TOLD, "Did Peru have 5 million people in 1950?"
-    )
+    assert not is_supported("Peru had 5 million people in 1950.", TOLD, "Did Peru have 5 million people in 1950?")
 
 
 @pytest.mark.parametrize(

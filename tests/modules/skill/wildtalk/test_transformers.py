@@ -223,9 +223,7 @@ def hub(folder: Path) -> Iterator[str]:
             path = self.path.split("?")[0]
             names = sorted(part.name for part in folder.iterdir())
             if path.startswith("/api/models/someone/tiny/tree"):
-                listed = [
-                    {"type": "file", "path": n, "size": (folder / n).stat().st_size, "oid": n} for n in names
-                ]
+                listed = [{"type": "file", "path": n, "size": (folder / n).stat().st_size, "oid": n} for n in names]
                 return self.send(json.dumps(listed).encode(), body=body)
             if path.startswith("/api/models/someone/tiny"):
                 told = {"id": "someone/tiny", "sha": commit, "siblings": [{"rfilename": n} for n in names]}
@@ -289,9 +287,7 @@ def test_a_model_is_fetched_from_a_hub_once(tiny: Path, tmp_path: Path) -> None:
 
 def test_a_transcript_has_a_line_for_each_turn() -> None:
     past = [*TALK, Message("assistant", "Fine."), Message("user", "Good.")]
-    assert (
-        transcript(past) == "You are a robot.\n\nUser: Hello! How are you?\nAgent: Fine.\nUser: Good.\nAgent:"
-    )
+    assert transcript(past) == "You are a robot.\n\nUser: Hello! How are you?\nAgent: Fine.\nUser: Good.\nAgent:"
 
 
 @pytest.mark.parametrize(

@@ -6,8 +6,6 @@ import re
 
 from ravestate.modules._courtesy import COURTESY
 
-__all__ = ["asks_for_quiet", "last_question", "takes_leave"]
-
 LONGEST = 1000
 """The characters of an utterance that the functions read."""
 

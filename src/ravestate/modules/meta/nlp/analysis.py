@@ -18,8 +18,6 @@ from .tree import Tree
 from .triple import Triple
 from .word_set import word_set
 
-__all__ = ["Analysis", "analyse"]
-
 _SECOND_PERSON = word_set("you your yours yourself u ur")
 
 

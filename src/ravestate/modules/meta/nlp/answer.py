@@ -12,8 +12,6 @@ from dataclasses import dataclass
 from .answer_cues import CUES, FOLLOWERS, STATERS, STRICT, UNKNOWNS, Cue
 from .word_set import word_set
 
-__all__ = ["YesNo", "yesno_of"]
-
 
 @dataclass(frozen=True, slots=True)
 class YesNo:
@@ -187,9 +185,7 @@ class _Reader:
             return True
         if cue is Cue.UNSURE and words[index] in UNKNOWNS:
             return True
-        if (
-            cue in (Cue.HEDGE, Cue.MAYBE) and words[index] in STATERS
-        ):  # I guess I do, but not: I guess he is at home
+        if cue in (Cue.HEDGE, Cue.MAYBE) and words[index] in STATERS:  # I guess I do, but not: I guess he is at home
             following, _ = self.cue_at(index)
             return following is not None and following.takes_side
         if cue is Cue.SURE and words[index] in ("the", "a", "an"):
@@ -221,9 +217,7 @@ def _weigh(cues: list[Cue]) -> YesNo:
         if cue is Cue.UNSURE:
             sides.append(("unsure", 0))
         elif cue in (Cue.YES, Cue.YES_WEAK):
-            sides.append(
-                ("no" if denied else "yes", 1 if cue is Cue.YES_WEAK or (denied and not sure) else 2)
-            )
+            sides.append(("no" if denied else "yes", 1 if cue is Cue.YES_WEAK or (denied and not sure) else 2))
         elif cue in (Cue.NO, Cue.NO_WEAK):
             sides.append(("no", 2 if cue is Cue.NO else 1))
         hedged |= cue in (Cue.HEDGE, Cue.MAYBE)
@@ -233,9 +227,7 @@ def _weigh(cues: list[Cue]) -> YesNo:
         return _of_adverbs(cues)
     said = sides[0][0]
     torn = len({side for side, _ in sides}) > 1
-    if said == "unsure" or (
-        torn and (hedged or sides[0][1] == 1)
-    ):  # maybe yes, maybe no; sometimes yes, sometimes no
+    if said == "unsure" or (torn and (hedged or sides[0][1] == 1)):  # maybe yes, maybe no; sometimes yes, sometimes no
         return UNSURE
     strength = max(strong for side, strong in sides if side == said)
     if hedged or any(side == "unsure" for side, _ in sides):

@@ -7,8 +7,6 @@ from enum import Enum
 from .pattern import phrases
 from .word_set import word_set
 
-__all__ = ["CUES", "FOLLOWERS", "STATERS", "STRICT", "UNKNOWNS", "Cue"]
-
 
 class Cue(Enum):
     """The meaning of a cue."""

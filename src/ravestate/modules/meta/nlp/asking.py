@@ -8,8 +8,6 @@ from .question_word import QuestionWord
 from .tree import Word
 from .word_set import word_set
 
-__all__ = ["AUXILIARIES", "QUESTION_WORDS", "kind_at"]
-
 QUESTION_WORDS = {
     "who": QuestionWord.PERSON,
     "whom": QuestionWord.PERSON,
@@ -81,8 +79,4 @@ def _asks_what_for(rest: Sequence[Word]) -> bool:
         if word.pos == "PUNCT":
             break
         clause.append(word)
-    return (
-        len(clause) > 2
-        and clause[-1].low == "for"
-        and not any(word.lemma.lower() in _FOUGHT_FOR for word in clause)
-    )
+    return len(clause) > 2 and clause[-1].low == "for" and not any(word.lemma.lower() in _FOUGHT_FOR for word in clause)

@@ -10,8 +10,6 @@ from importlib.abc import MetaPathFinder
 from importlib.machinery import ModuleSpec
 from types import ModuleType
 
-__all__ = ["blocked"]
-
 
 class _BlockingFinder(MetaPathFinder):
     def __init__(self, names: frozenset[str]) -> None:

@@ -27,8 +27,6 @@ from .verbs import (
 )
 from .word_set import word_set
 
-__all__ = ["Clause"]
-
 _DIRECT = (
     "dobj",
     "attr",
@@ -135,9 +133,7 @@ class Clause:
         own = [word for word in self._own if word.dep != "ROOT" and self.tree.head(word) not in later]
         if any(word.low in NEGATIONS and not denies_conjunct(self.tree, word, self._others) for word in own):
             return True
-        if any(
-            word.low == "longer" and (before := self.tree.before(word)) and before.low == "no" for word in own
-        ):
+        if any(word.low == "longer" and (before := self.tree.before(word)) and before.low == "no" for word in own):
             return True
         if any(word.low == "no" and word.dep == "det" and not _is_no_one(self.tree, word) for word in own):
             return True
@@ -273,9 +269,7 @@ class Clause:
             subjects = [part for part, _ in self._written(self._agents)]
         if unknown is None:
             return subjects, objects or [("", False)]
-        asked = unknown.top.dep in SUBJECTS and not any(
-            word for word in self._own_subjects if word != unknown.top
-        )
+        asked = unknown.top.dep in SUBJECTS and not any(word for word in self._own_subjects if word != unknown.top)
         if self._agents and unknown.top.dep == "agent":  # who was it written by
             return [unknown.kind], objects
         if self._agents and asked:  # what was written by him
@@ -347,15 +341,11 @@ class Clause:
         if own:
             if len(own) == 1 and own[0].low in ("who", "that", "which") and self.verb.dep == "relcl":
                 return self._antecedents
-            lets = own[0].low in ("'s", "us", "s") and any(
-                clause._is_lets for clause in self._others.values()
-            )
+            lets = own[0].low in ("'s", "us", "s") and any(clause._is_lets for clause in self._others.values())
             if lets:
                 return ["we"]
             return [part for part, _ in self._written(own)]
-        if self.verb.dep == "ROOT" or (
-            self.verb.dep in ("ccomp", "parataxis", "dep") and self._head_clause is None
-        ):
+        if self.verb.dep == "ROOT" or (self.verb.dep in ("ccomp", "parataxis", "dep") and self._head_clause is None):
             return self._unsaid()
         if self.verb.dep == "acl":
             return []
@@ -376,9 +366,7 @@ class Clause:
         """Return the implied subject of a request or of thanks."""
         if self.verb.lemma.lower() == "thank":
             return ["I"]
-        request = self.verb.tag in ("VB", "VBP") or any(
-            aux.low == "do" for aux in self.tree.children(self.verb, "aux")
-        )
+        request = self.verb.tag in ("VB", "VBP") or any(aux.low == "do" for aux in self.tree.children(self.verb, "aux"))
         return ["you"] if request else [""]
 
     @property
@@ -404,9 +392,7 @@ class Clause:
         if relative:
             return [(part, False) for part in self._antecedents]
         for verb in reversed(self.chain):
-            if better := [
-                w for w in tree.children(verb, "advmod") if w.low in _STATES and lemma_of(verb) in _SENSES
-            ]:
+            if better := [w for w in tree.children(verb, "advmod") if w.low in _STATES and lemma_of(verb) in _SENSES]:
                 return self._written(better, verb)
         for verb in reversed(self.chain):
             if indirect := [word for word in tree.children(verb, "dative") if word.pos != "ADP"]:
@@ -421,9 +407,7 @@ class Clause:
         subjects = self._own_subjects
         if not (self._is_copula and len(subjects) == 1 and subjects[0].index > self.chain[-1].index):
             return []
-        names = [
-            word for word in self.tree.children(self.chain[-1], "npadvmod") if self.tree.children(word, "det")
-        ]
+        names = [word for word in self.tree.children(self.chain[-1], "npadvmod") if self.tree.children(word, "det")]
         if not names:  # is your mother at home
             return self._in_phrases(subjects[0], of=False)
         return self._written(names[:1])
@@ -481,9 +465,7 @@ class Clause:
         return []
 
     def _adjectives(self, verb: Word, unknown: _Unknown) -> list[tuple[Part, bool]]:
-        words = [
-            word for word in self.tree.children(verb, "acomp", "attr", "nsubj") if word.pos in ("ADJ", "ADV")
-        ]
+        words = [word for word in self.tree.children(verb, "acomp", "attr", "nsubj") if word.pos in ("ADJ", "ADV")]
         return self._written([word for word in words if word != unknown.top], verb)
 
     # ------------------------------------------------------------------------------------- questions
@@ -526,9 +508,7 @@ class Clause:
                     words = gerund_phrase(self.tree, word)
                 else:
                     words = noun_phrase(self.tree, word)
-                found.append(
-                    (self._whose(self.tree.phrase(words)), is_contrasted(self.tree, word, self._others))
-                )
+                found.append((self._whose(self.tree.phrase(words)), is_contrasted(self.tree, word, self._others)))
         return found
 
     def _whose(self, phrase: str) -> str:

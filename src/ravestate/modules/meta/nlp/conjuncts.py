@@ -6,8 +6,6 @@ from collections.abc import Container
 
 from .tree import Tree, Word
 
-__all__ = ["conjuncts", "denies_conjunct", "is_contrasted"]
-
 
 def conjuncts(tree: Tree, head: Word, clauses: Container[int]) -> list[Word]:
     """Return `head` with its conjuncts, without the verbs in `clauses` (indices)."""
@@ -19,9 +17,7 @@ def conjuncts(tree: Tree, head: Word, clauses: Container[int]) -> list[Word]:
 
 def is_contrasted(tree: Tree, word: Word, clauses: Container[int]) -> bool:
     """Return whether *not* precedes this conjunct alone: *coffee* in *tea, but not coffee*."""
-    return word.dep == "conj" and any(
-        denies_conjunct(tree, child, clauses) for child in _negations_at(tree, word)
-    )
+    return word.dep == "conj" and any(denies_conjunct(tree, child, clauses) for child in _negations_at(tree, word))
 
 
 def _negations_at(tree: Tree, word: Word) -> list[Word]:

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import asyncio
 
-__all__ = ["ContextLock"]
-
 
 class ContextLock(asyncio.Lock):
     """A first-in, first-out lock that each context copies for itself."""

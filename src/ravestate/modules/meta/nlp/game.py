@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import re
 
-__all__ = ["wants_to_play"]
-
 _FLAGS = re.IGNORECASE | re.VERBOSE
 
 _GAME = r"""(?: (?:a | another | some | any | the | this | that | our | my | your | one[ ]more )\s+ (?:\w+\s+)?
@@ -44,9 +42,7 @@ _DENIED = re.compile(
     r"\b(?:not | never | \w+n't | dont | cant | wont | no[ ]more)\b (?:\s+\w+){0,4} \s+ (?:play | playing | games?)\b",
     _FLAGS,
 )
-_INVITED = re.compile(
-    r"\bwhy (?:don't|dont|not|do not)\b|\b(?:don't|dont) you (?:want|wanna)\b", re.IGNORECASE
-)
+_INVITED = re.compile(r"\bwhy (?:don't|dont|not|do not)\b|\b(?:don't|dont) you (?:want|wanna)\b", re.IGNORECASE)
 """Negations that invite: *why don't we play*."""
 
 

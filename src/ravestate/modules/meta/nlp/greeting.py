@@ -7,8 +7,6 @@ import re
 from .pattern import phrases
 from .word_set import word_set
 
-__all__ = ["says_bye", "says_hi"]
-
 Phrase = tuple[str, ...]
 
 _OPENERS = frozenset(

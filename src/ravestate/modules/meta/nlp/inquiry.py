@@ -14,8 +14,6 @@ from .question_word import QuestionWord
 from .tree import Tree, Word
 from .word_set import word_set
 
-__all__ = ["question_of"]
-
 _OPENERS = word_set(
     "well so oh ok okay hi hello hey hallo good morning evening afternoon um uh hmm ah and but or then now please sorry excuse ",
     "me thanks great fine yes no yeah nice cool right alright also actually just by the way anyway sure wow haha",
@@ -136,9 +134,7 @@ def _parts(sentence: Sequence[Word]) -> list[list[Word]]:
 
 def _direct(part: Sequence[Word], asked: bool, *, alone: bool) -> QuestionWord | None:
     """Return the kind of a question that begins with its question word or its verb."""
-    begin = (
-        1 if len(part) > 1 and part[0].pos in ("ADP", "SCONJ") and part[0].low not in QUESTION_WORDS else 0
-    )
+    begin = 1 if len(part) > 1 and part[0].pos in ("ADP", "SCONJ") and part[0].low not in QUESTION_WORDS else 0
     first = part[begin]
     if (kind := kind_at(part, begin)) is not None and (begin == 0 or part[0].low != "like"):
         return kind if _asks(part[begin:], asked, alone=alone) else None
@@ -238,11 +234,7 @@ def _is_inverted(words: Sequence[Word], asked: bool) -> bool:
         return asked
     if first in _BE and subject in ("a", "an", "not", "so", "very") and not asked:
         return False  # was a nice day
-    return (
-        subject in _PRONOUNS
-        or subject in _DETERMINERS
-        or rest[0].pos in ("PROPN", "NOUN", "PRON", "DET", "ADJ")
-    )
+    return subject in _PRONOUNS or subject in _DETERMINERS or rest[0].pos in ("PROPN", "NOUN", "PRON", "DET", "ADJ")
 
 
 def _within(words: Sequence[Word]) -> QuestionWord | None:

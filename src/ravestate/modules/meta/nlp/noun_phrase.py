@@ -5,11 +5,7 @@ from __future__ import annotations
 from .tree import Tree, Word
 from .word_set import word_set
 
-__all__ = ["DETERMINERS", "adjective_phrase", "gerund_phrase", "noun_phrase", "without_determiners"]
-
-DETERMINERS = word_set(
-    "the a an this that these those some any every each all both no another neither either"
-)
+DETERMINERS = word_set("the a an this that these those some any every each all both no another neither either")
 """Words that a phrase leaves out, unless it has no others."""
 
 _KEPT = ("amod", "compound", "poss", "nummod", "nmod", "case", "det", "quantmod")

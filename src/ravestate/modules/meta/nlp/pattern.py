@@ -5,8 +5,6 @@ from __future__ import annotations
 import re
 from itertools import product
 
-__all__ = ["phrases"]
-
 _ALTERNATIVES = re.compile(r"\(([^()]*)\)")
 
 

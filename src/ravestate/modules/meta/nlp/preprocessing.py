@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import re
 
-__all__ = ["READ_AS", "preprocess"]
-
 READ_AS = {"have": "like"}
 """Replaced lemmas. The small pipelines often take *like* for a preposition in short sentences; they know *have*."""
 

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from enum import Enum
 
-__all__ = ["QuestionWord"]
-
 
 class QuestionWord(Enum):
     """The kinds of questions. In a `Triple` it is the unknown."""

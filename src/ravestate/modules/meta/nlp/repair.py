@@ -11,8 +11,6 @@ from dataclasses import replace
 from .tree import Word
 from .word_set import word_set
 
-__all__ = ["repaired"]
-
 _BE = word_set("am is are was were 's")
 _GERUND_TAKERS = word_set(
     "enjoy like love hate prefer dislike enjoyed liked loved hated preferred enjoys likes loves hates"
@@ -81,9 +79,7 @@ def _gerund(tree: _Draft, word: Word) -> None:
     """Correct *enjoy* in *I enjoy cooking*: not an auxiliary of *cooking*."""
     if word.dep == "aux" and word.low in _GERUND_TAKERS and tree.words[word.head].tag == "VBG":
         gerund = tree.words[word.head]
-        own = [
-            child for child in tree.children(gerund) if child.index > gerund.index and child.pos != "PUNCT"
-        ]
+        own = [child for child in tree.children(gerund) if child.index > gerund.index and child.pos != "PUNCT"]
         tree.change(word, pos="VERB")
         tree.promote(word, gerund, "xcomp")
         for child in own:
@@ -95,9 +91,7 @@ def _called(tree: _Draft, word: Word) -> None:
     if word.low in _BE and word.dep in ("csubjpass", "csubj"):
         verb = tree.words[word.head]
         for child in list(tree.children(word)):
-            tree.change(
-                child, head=verb.index, dep="oprd" if child.tag in ("WP", "WDT", "WRB") else child.dep
-            )
+            tree.change(child, head=verb.index, dep="oprd" if child.tag in ("WP", "WDT", "WRB") else child.dep)
         for child in tree.children(verb, "nsubj"):
             tree.change(child, dep="nsubjpass")
         tree.change(word, dep="auxpass", pos="AUX")
@@ -178,12 +172,7 @@ def _adjective_for_noun(tree: _Draft, word: Word) -> None:
         return
     noun = tree.words[word.head]
     verb = tree.words[noun.head]
-    if (
-        noun.index == word.index - 1
-        and noun.dep in ("nsubj", "attr")
-        and verb.low in _BE
-        and verb.index < noun.index
-    ):
+    if noun.index == word.index - 1 and noun.dep in ("nsubj", "attr") and verb.low in _BE and verb.index < noun.index:
         tree.change(word, dep="acomp", head=verb.index)
         tree.change(noun, dep="nsubj")
 
@@ -204,12 +193,7 @@ def _noun_after_do(tree: _Draft, word: Word) -> None:
 def _verb_of_noun(tree: _Draft, word: Word) -> None:
     """Correct *is* in *what is love* and *why is the sky blue*: not an auxiliary of the last word."""
     last = tree.words[word.head]
-    if (
-        word.dep == "aux"
-        and word.low in _BE
-        and last.pos in ("NOUN", "PROPN", "ADJ")
-        and last.index > word.index
-    ):
+    if word.dep == "aux" and word.low in _BE and last.pos in ("NOUN", "PROPN", "ADJ") and last.index > word.index:
         own = [
             child
             for child in tree.children(last)
@@ -275,7 +259,5 @@ def _noun_after_relative(tree: _Draft, word: Word) -> None:
     if word.tag != "NNS" or word.dep != "dobj" or relative.dep != "relcl" or noun.dep != "ROOT":
         return
     if word.index == relative.index + 1 and not any(tree.children(word, "det", "amod", "poss", "nummod")):
-        tree.change(
-            word, dep="ROOT", head=word.index, pos="VERB", tag="VBZ", lemma=word.low.removesuffix("s")
-        )
+        tree.change(word, dep="ROOT", head=word.index, pos="VERB", tag="VBZ", lemma=word.low.removesuffix("s"))
         tree.change(noun, dep="nsubj", head=word.index)

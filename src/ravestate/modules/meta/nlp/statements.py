@@ -6,8 +6,6 @@ from .clause import Clause
 from .tree import Tree
 from .triple import Triple
 
-__all__ = ["MOST", "triples_of"]
-
 MOST = 64
 """The most triples of one text; enumerations multiply."""
 

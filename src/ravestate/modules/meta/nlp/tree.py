@@ -6,8 +6,6 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
-__all__ = ["Tree", "Word"]
-
 
 @dataclass(frozen=True, slots=True)
 class Word:

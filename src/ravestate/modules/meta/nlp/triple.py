@@ -6,8 +6,6 @@ from typing import NamedTuple
 
 from .question_word import QuestionWord
 
-__all__ = ["Triple"]
-
 
 class Triple(NamedTuple):
     """One statement or question of a text, by the conventions of the README.

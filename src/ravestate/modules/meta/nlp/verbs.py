@@ -6,32 +6,14 @@ from .asking import QUESTION_WORDS
 from .tree import Tree, Word
 from .word_set import word_set
 
-__all__ = [
-    "NEGATIONS",
-    "PLACES",
-    "SUBJECTS",
-    "VERBAL",
-    "following_verb",
-    "heads_clause",
-    "is_denied",
-    "is_infinitive",
-    "lemma_of",
-    "makes_future",
-    "particles",
-]
-
 SUBJECTS = ("nsubj", "nsubjpass", "csubj", "csubjpass")
 _HEADS = ("ROOT", "conj", "ccomp", "xcomp", "advcl", "relcl", "parataxis", "pcomp", "csubj", "dep", "acl")
 VERBAL = ("VERB", "AUX")
 
-PLACES = word_set(
-    "here there home abroad outside inside upstairs downstairs away everywhere nowhere somewhere"
-)
+PLACES = word_set("here there home abroad outside inside upstairs downstairs away everywhere nowhere somewhere")
 _MOTION = word_set("come go travel fly drive run move stay")
 """Verbs with an infinitive of purpose, which is an action of its own."""
-_GERUND_TAKERS = word_set(
-    "like love hate enjoy prefer dislike start stop begin continue keep practise practice try"
-)
+_GERUND_TAKERS = word_set("like love hate enjoy prefer dislike start stop begin continue keep practise practice try")
 NEGATIONS = frozenset(["not", "n't", "nt", "never"])
 _BE = frozenset(["be", "am", "is", "are", "was", "were", "m", "s", "re", "'s", "'m", "'re"])
 _MISTAKEN = word_set("like love play work live study dance swim paint cook")
@@ -73,9 +55,7 @@ def following_verb(tree: Tree, verb: Word) -> Word | None:
             continue
         if child.tag not in ("VBG", "VB") and not infinitive:
             continue
-        if any(
-            w.low in QUESTION_WORDS and w.index > verb.index for w in tree.children(child)
-        ):  # learn how to cook
+        if any(w.low in QUESTION_WORDS and w.index > verb.index for w in tree.children(child)):  # learn how to cook
             continue
         between = [w for w in tree.words[verb.index + 1 : child.index] if w.head in (verb.index, child.index)]
         if not any(w.dep in ("dobj", "dative", "prep") or w.low in PLACES for w in between):

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-__all__ = ["word_set"]
-
 
 def word_set(*texts: str) -> frozenset[str]:
     """Return the words of `texts`, separated by white space.

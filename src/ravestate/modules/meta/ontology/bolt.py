@@ -18,8 +18,6 @@ from .types import Types
 if TYPE_CHECKING:
     from neo4j import AsyncResult, AsyncSession, AsyncTransaction
 
-__all__ = ["BoltStore"]
-
 T = TypeVar("T")
 
 META = "_ravestate"
@@ -56,9 +54,7 @@ class BoltStore:
             with LOADING:
                 import neo4j
         except ImportError as error:
-            raise PlatformError(
-                f"ontology needs neo4j for the server {url}: pip install 'ravestate[neo4j]'"
-            ) from error
+            raise PlatformError(f"ontology needs neo4j for the server {url}: pip install 'ravestate[neo4j]'") from error
         # The driver warns of queries for a property that no node has yet, which is no fault.
         logging.getLogger("neo4j.notifications").setLevel(logging.ERROR)
         self._neo4j: Any = neo4j  # the driver is only partly typed
@@ -150,11 +146,7 @@ class BoltStore:
         except errors.Neo4jError as error:
             code = error.code or ""
             if "DatabaseNotFound" in code or "DatabaseUnavailable" in code:
-                named = (
-                    f"has no database {self._database!r}"
-                    if self._database
-                    else "has no database of its own choice"
-                )
+                named = f"has no database {self._database!r}" if self._database else "has no database of its own choice"
                 raise PlatformError(
                     f"memory {self._place} {named}: make it there, or name another with --set ontology.database=NAME"
                 ) from error

@@ -9,8 +9,6 @@ from .names import memory
 from .names import module as ontology
 from .node import Node
 
-__all__ = ["bound"]
-
 
 def bound(module: rs.Module, name: str, type: str) -> rs.Slot[Node | None]:
     """Declare a slot whose node is written to memory whenever the slot is.

@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, cast
 
-__all__ = ["copy_database"]
-
 Rows = list[list[Any]]
 
 
@@ -25,10 +23,7 @@ def copy_database(source: Any, target: Any) -> None:
     nodes = [str(name) for name, kind in tables if kind == "NODE"]
     for name in nodes:
         columns = {row[1]: (row[2], row[4]) for row in _rows(source, f"CALL table_info('{name}') RETURN *")}
-        listed = [
-            f"`{key}` {kind}" + (" PRIMARY KEY" if primary else "")
-            for key, (kind, primary) in columns.items()
-        ]
+        listed = [f"`{key}` {kind}" + (" PRIMARY KEY" if primary else "") for key, (kind, primary) in columns.items()]
         _rows(target, f"CREATE NODE TABLE `{name}` ({', '.join(listed)})")
         for [node] in _rows(source, f"MATCH (n:`{name}`) RETURN n"):
             values = _values(node, columns)

@@ -8,8 +8,6 @@ import sys
 from pathlib import Path
 from typing import Any
 
-__all__ = ["connect", "survives"]
-
 BUFFER = 256 * 2**20
 """Bytes of memory that pages of the file may take at most."""
 

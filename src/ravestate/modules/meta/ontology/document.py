@@ -12,16 +12,12 @@ from .node import Node, Relation, Value
 from .store import FORMAT
 from .types import Kind, Types
 
-__all__ = ["read_document", "write_document"]
-
 
 def write_document(nodes: Iterable[Node], relations: Iterable[Relation]) -> dict[str, Any]:
     """Return a document of nodes and their relations; dates and times are ISO 8601 texts."""
     return {
         "format": FORMAT,
-        "nodes": [
-            {"id": node.id, "type": node.type, "properties": _plain(node.properties)} for node in nodes
-        ],
+        "nodes": [{"id": node.id, "type": node.type, "properties": _plain(node.properties)} for node in nodes],
         "relations": [
             {
                 "from": relation.source.id,
@@ -41,9 +37,7 @@ def read_document(document: Mapping[str, Any], types: Types) -> tuple[list[Node]
         RuleError: The document is invalid; the message names the first wrong entry.
     """
     if not isinstance(document, Mapping) or document.get("format") != FORMAT:  # pyright: ignore[reportUnnecessaryIsInstance]  # a file may hold anything
-        raise RuleError(
-            f"this is no document of memory of format {FORMAT}: write one with ravestate memory export"
-        )
+        raise RuleError(f"this is no document of memory of format {FORMAT}: write one with ravestate memory export")
     nodes: dict[str, Node] = {}
     for entry in _entries(document, "nodes"):
         type, id = _text(entry, "type"), _text(entry, "id")
@@ -77,10 +71,7 @@ def _text(entry: Mapping[str, Any], key: str) -> str:
 
 
 def _plain(values: Mapping[str, Value]) -> dict[str, Any]:
-    return {
-        name: value.isoformat() if isinstance(value, (date, datetime)) else value
-        for name, value in values.items()
-    }
+    return {name: value.isoformat() if isinstance(value, (date, datetime)) else value for name, value in values.items()}
 
 
 def _values(kinds: Mapping[str, Kind], entry: Mapping[str, Any]) -> dict[str, Value]:
@@ -95,8 +86,6 @@ def _values(kinds: Mapping[str, Kind], entry: Mapping[str, Any]) -> dict[str, Va
             elif kinds.get(name) == "time":
                 value = datetime.fromisoformat(value)
         except (TypeError, ValueError):
-            raise RuleError(
-                f"{name} = {value!r} of {dict(entry)} is no {kinds[name]} as of ISO 8601"
-            ) from None
+            raise RuleError(f"{name} = {value!r} of {dict(entry)} is no {kinds[name]} as of ISO 8601") from None
         found[name] = value
     return found

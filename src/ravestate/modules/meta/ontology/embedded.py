@@ -33,8 +33,6 @@ from .store import RawNode, RawRelation
 from .tables import missing_tables, undeclared_types
 from .types import Types
 
-__all__ = ["EmbeddedStore"]
-
 RESERVE = 16 * 2**20
 """Free bytes on the disk that a write must leave: ladybug cannot recover from a failed write."""
 
@@ -268,7 +266,7 @@ class EmbeddedStore:
                 self._files.seal()
             finally:
                 self._open()
-        except (PlatformError, RuntimeError, OSError) as error:
+        except Exception as error:  # copying a damaged page raises whatever is at hand
             log.warning(
                 "memory %s: the forgotten nodes are gone, but the file still has their bytes: %s",
                 self._path,

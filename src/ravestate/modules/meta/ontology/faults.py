@@ -6,18 +6,6 @@ import re
 from collections.abc import Iterable
 from pathlib import Path
 
-__all__ = [
-    "ENDS_PROCESS",
-    "is_about_log",
-    "is_damage",
-    "is_failed_write",
-    "is_foreign_log",
-    "reason",
-    "said_by",
-    "why_broken",
-    "why_not_opened",
-]
-
 ELSE = "name another file with --set ontology.path=FILE"
 ENDS_PROCESS = "it ends the process that reads it"
 
@@ -74,9 +62,7 @@ def why_not_opened(path: Path, said: str, files: Iterable[Path]) -> str:
     if "set lock" in said:
         held = re.search(r"PID (\d+)", said)
         who = f"process {held[1]}" if held else "another process"
-        return (
-            f"memory {path} is in use by {who}: only one process may have it open. End that agent, or {ELSE}"
-        )
+        return f"memory {path} is in use by {who}: only one process may have it open. End that agent, or {ELSE}"
     if version := re.search(r"file version: (\d{1,3}), Current build storage version: (\d+)", said):
         newer = int(version[1]) > int(version[2])
         return (

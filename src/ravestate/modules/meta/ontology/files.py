@@ -9,8 +9,6 @@ import re
 from collections.abc import Iterable
 from pathlib import Path
 
-__all__ = ["AT_CHECKPOINT", "MemoryFiles"]
-
 AT_CHECKPOINT = (".shadow", ".checkpoint.intent.lock", ".checkpoint.apply.lock")
 """The files that ladybug creates while it moves its log into the database."""
 

@@ -12,8 +12,6 @@ from .node import Node, Relation, Value
 from .store import RawNode, RawRelation, Store
 from .types import Types
 
-__all__ = ["Graph"]
-
 T = TypeVar("T")
 
 AGENT = "Agent"
@@ -107,9 +105,7 @@ class Graph:
         """Return the nodes at the other end of a relation."""
         self._types.check_end(node.type, relation, back=back)
         pattern = f"<-[:`{relation}`]-" if back else f"-[:`{relation}`]->"
-        return self._nodes(
-            f"MATCH (a:`{node.type}` {{`id`: $id}}){pattern}(b) RETURN b", {"id": _known(node).id}
-        )
+        return self._nodes(f"MATCH (a:`{node.type}` {{`id`: $id}}){pattern}(b) RETURN b", {"id": _known(node).id})
 
     def relations(self, node: Node) -> list[Relation]:
         """Return all relations from a node, then those to it."""

@@ -15,8 +15,6 @@ from .store import Store
 from .types import Types
 from .worker import StoreWorker
 
-__all__ = ["Memory"]
-
 T = TypeVar("T")
 
 

@@ -11,8 +11,6 @@ from datetime import date, datetime
 from types import MappingProxyType
 from typing import Any
 
-__all__ = ["Node", "Relation", "Value"]
-
 Value = str | int | float | bool | date | datetime | None
 """A property's value. None stands for a property without a value."""
 

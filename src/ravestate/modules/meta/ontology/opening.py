@@ -14,8 +14,6 @@ from .type_files import types_in
 from .types import Types
 from .worker import StoreWorker
 
-__all__ = ["default_path", "open_memory", "path_of", "types_of"]
-
 
 def default_path(agent: str) -> Path:
     """Return the file of an agent's memory in the user's data folder."""

@@ -9,8 +9,6 @@ from collections.abc import Callable, Generator
 from concurrent.futures import Executor, Future
 from typing import Any, Generic, TypeVar
 
-__all__ = ["Reply"]
-
 log = logging.getLogger("ravestate.ontology")
 
 T = TypeVar("T")

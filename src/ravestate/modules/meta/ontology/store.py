@@ -11,8 +11,6 @@ from ravestate.errors import PlatformError
 
 from .types import Types
 
-__all__ = ["FORMAT", "RawNode", "RawRelation", "Store", "check_format"]
-
 FORMAT = 1
 """The number of the layout of nodes and relations; a new layout has a greater one."""
 

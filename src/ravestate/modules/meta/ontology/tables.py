@@ -10,8 +10,6 @@ from ravestate.errors import PlatformError
 from .store import FORMAT, check_format
 from .types import Kind, Types
 
-__all__ = ["META", "missing_tables", "undeclared_types"]
-
 Execute = Callable[[str], list[list[Any]]]
 
 META = "_ravestate"
@@ -76,9 +74,7 @@ def undeclared_types(execute: Execute, types: Types) -> list[str]:
     return sorted(name for name in unknown if execute(f"MATCH (n:`{name}`) RETURN n.`id` LIMIT 1"))
 
 
-def _missing_columns(
-    execute: Execute, table: str, properties: Mapping[str, Kind], place: str
-) -> Iterator[str]:
+def _missing_columns(execute: Execute, table: str, properties: Mapping[str, Kind], place: str) -> Iterator[str]:
     present = {row[0]: row[1] for row in execute(f"CALL table_info('{table}') RETURN name, type")}
     for name, kind in properties.items():
         if name not in present:

@@ -30,8 +30,6 @@ from .types import KINDS, Kind, Relating, Type, Types
 if TYPE_CHECKING:
     import yaml
 
-__all__ = ["read_types", "types_in"]
-
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,62}")
 OF_A_TYPE = ("is", "has", "relations")
 OF_A_RELATION = ("to", "has")
@@ -133,10 +131,7 @@ class _Reader:
                 name: Type(name, self._parents[name][0] if name in self._parents else None, has)
                 for name, has in self._has.items()
             },
-            {
-                name: Relating(name, frozenset(ends), self._relation_has[name])
-                for name, ends in self._ends.items()
-            },
+            {name: Relating(name, frozenset(ends), self._relation_has[name]) for name, ends in self._ends.items()},
         )
 
     # ------------------------------------------------------------------------------- parts
@@ -171,9 +166,7 @@ class _Reader:
             for item in targets.value if kind_of(targets) == "sequence" else [targets]:
                 ends.setdefault((source, _text(file, item, f"{name} goes to types")), line_of(file, item))
 
-    def _add_properties(
-        self, file: str, node: yaml.Node, owner: str, into: dict[str, Kind], *, relation: bool
-    ) -> None:
+    def _add_properties(self, file: str, node: yaml.Node, owner: str, into: dict[str, Kind], *, relation: bool) -> None:
         for key, name, value in _entries(file, node, f"{owner} has properties by name"):
             _check_name(file, key, name, "property")
             if name.lower() == "id":
@@ -186,9 +179,7 @@ class _Reader:
                     value,
                     f"{owner}.{name}: {kind!r} is no kind{nearest(kind, KINDS)} (kinds: {', '.join(KINDS)})",
                 )
-            spelt, known, where = self._kinds.setdefault(
-                (relation, name.lower()), (name, found, line_of(file, key))
-            )
+            spelt, known, where = self._kinds.setdefault((relation, name.lower()), (name, found, line_of(file, key)))
             if (spelt, known) != (name, found):
                 raise fault(
                     file,

@@ -12,8 +12,6 @@ from ravestate.errors import RuleError, nearest
 
 from .node import Value
 
-__all__ = ["KINDS", "Kind", "Relating", "Type", "Types"]
-
 Kind = Literal["text", "integer", "number", "yes/no", "date", "time"]
 """The kind of a property's values."""
 

@@ -10,8 +10,6 @@ from typing import TypeVar
 
 from .store import Store
 
-__all__ = ["StoreWorker"]
-
 T = TypeVar("T")
 
 _shared: dict[str, StoreWorker] = {}

@@ -6,8 +6,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-__all__ = ["Intent"]
-
 
 @dataclass(frozen=True, slots=True)
 class Intent:

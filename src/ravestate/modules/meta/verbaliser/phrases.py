@@ -36,8 +36,6 @@ import yaml
 from ravestate.errors import DeclarationError, RuleError, nearest
 from ravestate.modules._yaml import fault, kind_of, read_nodes
 
-__all__ = ["Phrase", "PhraseBook", "Template"]
-
 Source = Path | Traversable | str
 
 
@@ -270,9 +268,7 @@ def _added(name: str, node: yaml.Node) -> bool:
 
 def _entries(name: str, node: yaml.Node, meaning: str) -> Iterator[tuple[yaml.Node, yaml.Node]]:
     if kind_of(node) != "mapping":
-        raise fault(
-            name, node, f"{meaning}, and this is no mapping: write for example\ngreet:\n  en: [Hello!]"
-        )
+        raise fault(name, node, f"{meaning}, and this is no mapping: write for example\ngreet:\n  en: [Hello!]")
     if _added(name, node):
         raise fault(name, node, "!add goes in front of phrases: write en: !add [...]")
     seen: set[str] = set()

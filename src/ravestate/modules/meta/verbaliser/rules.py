@@ -59,7 +59,5 @@ def phrase_book(package: str | None, own: tuple[Path, ...], language: str) -> Ph
     try:
         inside = [files(name) / "phrases.yaml" for name in packages]
     except ImportError as error:
-        raise RuleError(
-            f"verbaliser.Intent: there is no package {package!r}; write package=__package__"
-        ) from error
+        raise RuleError(f"verbaliser.Intent: there is no package {package!r}; write package=__package__") from error
     return PhraseBook.load([*inside, *own], language)

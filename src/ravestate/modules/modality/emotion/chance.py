@@ -9,8 +9,6 @@ from collections.abc import Iterable, Mapping
 from .feeling import Feeling
 from .utterance import sentences
 
-__all__ = ["by_chance"]
-
 OCCASIONS: tuple[tuple[Feeling, re.Pattern[str]], ...] = (
     ("affectionate", re.compile(r"^(?:(?:ok|okay|well) )?(?:good)?bye\b|\bgood ?(?:night|bye)\b|\bsee you\b|\btake care\b|\bfarewell\b")),
     ("happy", re.compile(r"^(?:hi|hello|hey|hiya|howdy|greetings|good (?:morning|afternoon|evening|day))\b|\bthank(?:s| you)\b")),

@@ -6,8 +6,6 @@ import random
 
 from .feeling import Feeling
 
-__all__ = ["EMOJI", "emoji_for"]
-
 EMOJI: dict[Feeling, tuple[str, ...]] = {
     "shy": ("😳", "🙈", "☺️"),
     "surprised": ("😮", "😲", "😯"),

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import Literal
 
-__all__ = ["FEELINGS", "Feeling"]
-
 Feeling = Literal["shy", "surprised", "happy", "affectionate", "sad"]
 """The name of a feeling and of its signal."""
 

@@ -7,18 +7,6 @@ from __future__ import annotations
 
 import re
 
-__all__ = [
-    "AFFECTION",
-    "AFFECTION_ASKED",
-    "DESPITE_NOT",
-    "IMAGINED",
-    "JOY",
-    "PRAISE",
-    "SORROW",
-    "SURPRISE",
-    "SURPRISE_ASKED",
-]
-
 STRENGTH = (
     "so|such|very|really|truly|quite|pretty|rather|just|simply|always|all|absolutely|most|more|too|also|still|even|"
     "super|real|honestly|actually|do|have|been|is|am|are|the|a|an|my|our|one of|kind of|feeling|already|again|"

@@ -9,8 +9,6 @@ from .patterns import IMAGINED, STRENGTH
 from .sentiment import polarity, valence
 from .utterance import is_denied
 
-__all__ = ["is_kind", "is_praise"]
-
 KIND = 1.5
 """The least valence of a word of praise."""
 

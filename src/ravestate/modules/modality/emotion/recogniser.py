@@ -25,8 +25,6 @@ from .praise import is_kind, is_praise
 from .sentiment import polarity
 from .utterance import LONGEST, Sentence, is_denied, sentences
 
-__all__ = ["recognise"]
-
 DELIGHT = 0.5
 """The least polarity of a joyful exclamation or sentence about oneself."""
 
@@ -85,9 +83,7 @@ def is_affectionate(sentence: Sentence) -> bool:
 
 def praises(sentence: Sentence) -> bool:
     """Return whether the user pays the agent a compliment."""
-    return not sentence.asks and (
-        _has(sentence, PRAISE, of=IMAGINED) or any(map(is_praise, sentence.clauses))
-    )
+    return not sentence.asks and (_has(sentence, PRAISE, of=IMAGINED) or any(map(is_praise, sentence.clauses)))
 
 
 def saddens(sentence: Sentence) -> bool:

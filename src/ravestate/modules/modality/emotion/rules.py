@@ -28,9 +28,7 @@ def be_moved(ctx: rs.RuleContext) -> None:
     names = settings.names or (ctx[interloc.agent],)
     feeling = recognise(heard, names)
     if feeling is None:
-        likely: dict[Feeling, float] = {
-            name: getattr(settings, name) for name in (*dict(OCCASIONS), "surprised")
-        }
+        likely: dict[Feeling, float] = {name: getattr(settings, name) for name in (*dict(OCCASIONS), "surprised")}
         feeling = by_chance(heard, likely, ctx.random, names)
     if feeling is not None:
         ctx.emit(SIGNALS[feeling])
@@ -55,9 +53,7 @@ for each in FEELINGS:
 
 
 @module.rule(
-    when=felt.changed.max_age(
-        None
-    ).detached(),  # an answer to the same words is a write of its own (L10, L19)
+    when=felt.changed.max_age(None).detached(),  # an answer to the same words is a write of its own (L10, L19)
     writes=rawio.output,
     until=rawio.input.changed | felt.changed,  # the moment is over, or a later feeling shows
     detached=True,

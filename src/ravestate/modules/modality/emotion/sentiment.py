@@ -9,8 +9,6 @@ from typing import Any
 from ravestate.errors import PlatformError
 from ravestate.modules._loading import LOADING
 
-__all__ = ["polarity", "valence"]
-
 
 def polarity(text: str) -> float:
     """Return how positive `text` is, from -1 to 1.

@@ -6,8 +6,6 @@ import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
-__all__ = ["Sentence", "is_denied", "sentences"]
-
 LONGEST = 1000
 """The characters of an utterance that count."""
 

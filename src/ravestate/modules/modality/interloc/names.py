@@ -6,8 +6,6 @@ from typing import Any
 
 import ravestate as rs
 
-__all__ = ["agent", "module", "users"]
-
 module = rs.Module("interloc")
 
 agent: rs.Slot[str] = module.slot("agent", "Ravestate", type=str, input=True)

@@ -6,8 +6,6 @@ from typing import Any
 
 import ravestate as rs
 
-__all__ = ["input", "module", "output", "picture", "piece", "speaking", "typing"]
-
 module = rs.Module("rawio")
 
 input = module.slot("input", "", type=str, always=True, input=True)

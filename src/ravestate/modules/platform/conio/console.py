@@ -15,8 +15,6 @@ from ravestate.errors import PlatformError
 from ravestate.modules._folders import user_folder
 from ravestate.modules._text import printable, without_controls
 
-__all__ = ["Console", "Screen", "history_file", "prepare"]
-
 _FULL = (errno.ENOSPC, errno.EFBIG, errno.EDQUOT)
 
 Ending = Literal["end of input", "interrupt", "closed"]
@@ -199,9 +197,7 @@ def _screen(
         try:
             from .terminal import Terminal
         except ImportError as error:
-            raise PlatformError(
-                "conio on a terminal needs prompt_toolkit: pip install 'ravestate[console]'"
-            ) from error
+            raise PlatformError("conio on a terminal needs prompt_toolkit: pip install 'ravestate[console]'") from error
         return Terminal(prompt, history, on_key)
     from .pipes import Pipes
 

@@ -12,8 +12,6 @@ from pathlib import Path
 
 from ravestate.modules._folders import user_folder
 
-__all__ = ["log_file", "log_to_file"]
-
 LARGEST = 1_000_000
 """Bytes of a log file after which a new one is begun; one old file is kept."""
 
@@ -36,9 +34,7 @@ def log_to_file(file: Path) -> Generator[None]:
     try:
         file.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
         os.close(os.open(file, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o600))  # for the user's eyes alone
-        handler = RotatingFileHandler(
-            file, maxBytes=LARGEST, backupCount=1, encoding="utf-8", errors="replace"
-        )
+        handler = RotatingFileHandler(file, maxBytes=LARGEST, backupCount=1, encoding="utf-8", errors="replace")
     except OSError:
         yield
         return

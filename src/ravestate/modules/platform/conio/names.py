@@ -7,8 +7,6 @@ from ravestate.modules import interloc, rawio
 
 from .console import Console
 
-__all__ = ["Settings", "module", "screen"]
-
 
 class Settings(rs.Settings):
     """The look of the console, and the data that it keeps."""

@@ -9,8 +9,6 @@ import sys
 import threading
 from typing import TextIO
 
-__all__ = ["Pipes"]
-
 _BLOCK = 1 << 16
 
 

@@ -24,9 +24,6 @@ from prompt_toolkit.utils import get_cwidth
 
 from ravestate.modules._text import without_controls
 
-__all__ = ["Terminal"]
-
-
 LONGEST = 10_000
 """Characters in a line after which keys add nothing. Every key can be undone, and may cost as much memory as the line.
 Pasted text is taken whole."""

@@ -1,4 +1,4 @@
-"""Who may come in: which hosts the page answers to, which web sites may connect and embed it, and the token."""
+"""The access check: the hosts that the page answers to, the web sites that may connect or embed it, and the token."""
 
 from __future__ import annotations
 
@@ -15,14 +15,12 @@ from .protocol import ProtocolError
 if TYPE_CHECKING:
     from .names import Settings
 
-__all__ = ["Access", "is_local"]
-
 PAUSE = 1.0
-"""Seconds after which a wrong token is refused, so that guessing takes long."""
+"""Seconds before the server refuses a wrong token, so that guessing takes long."""
 
 
 def is_local(host: str) -> bool:
-    """Whether an address to listen on is this machine's own, which others cannot reach."""
+    """Return whether only this machine can reach an address to listen on."""
     if host == "localhost":
         return True
     try:
@@ -32,14 +30,14 @@ def is_local(host: str) -> bool:
 
 
 class Access:
-    """The checks before anything is served.
+    """Checks each request before the server answers it.
 
-    A page of this machine's own needs no token, so anything that this machine's browser shows could talk to it. Hence it
-    answers only to names of this machine, which keeps out a web site whose name was made to point here (DNS rebinding),
-    and only to pages that it has served itself, or whose origin the settings name.
+    A page that only this machine can reach needs no token, so any site in this machine's browser could talk to it. Two
+    checks prevent that. The server answers only to names of this machine, against DNS rebinding. It accepts only its own
+    origin and those in the settings.
 
     Args:
-        settings: Those of ``webio``.
+        settings: The settings of ``webio``.
     """
 
     def __init__(self, settings: Settings) -> None:
@@ -49,10 +47,10 @@ class Access:
         self._named = {urlsplit(origin).netloc for origin in settings.origins}
 
     def refusal(self, headers: Mapping[str, str]) -> str | None:
-        """Why a request is refused; None if it is not.
+        """Return why the server refuses a request; None if it accepts it.
 
         Args:
-            headers: Those of the request, names in small letters.
+            headers: The request's headers, with names in lower case.
         """
         host = headers.get("host", "").lower()
         name = _name_of(host)
@@ -65,10 +63,10 @@ class Access:
         return None
 
     def refusal_of_board(self, headers: Mapping[str, str]) -> str | None:
-        """Why a request that `refusal` lets in may not look inside of the agent, as only the page itself may; else None.
+        """Return why a request may not reach the board, which only the server's own page may; None if it may.
 
         Args:
-            headers: Those of the request, names in small letters.
+            headers: The request's headers, with names in lower case.
         """
         origin, host = headers.get("origin", "").lower(), headers.get("host", "").lower()
         if origin and not _is_own(origin, host):
@@ -79,12 +77,12 @@ class Access:
         return None
 
     def foreign_embedder(self, headers: Mapping[str, str]) -> str | None:
-        """The origin of a page that wants to show this one in a frame, which the browser will not let it; else None.
+        """Return the origin of a site that tries to embed the page without permission; None for any other request.
 
-        Browsers send what tells it over HTTPS and to this machine; widget.js lets them.
+        Browsers send the headers for this over HTTPS and to this machine; widget.js allows them to.
 
         Args:
-            headers: Those of the request, names in small letters.
+            headers: The request's headers, with names in lower case.
         """
         if headers.get("sec-fetch-dest") not in ("iframe", "frame"):
             return None
@@ -97,16 +95,16 @@ class Access:
         return _is_own(origin, host) or origin in self.origins
 
     def admits(self, token: str | None) -> bool:
-        """Whether a token is right, or none is needed. It takes as long whichever character is wrong."""
+        """Return whether a token is right, or none is needed. The time does not depend on the wrong character."""
         return self._token is None or hmac.compare_digest(
             (token or "").encode("utf-8", "replace"), self._token.encode("utf-8", "replace")
         )
 
     async def check_token(self, token: str | None) -> None:
-        """Refuse a wrong token, after a while.
+        """Refuse a wrong token, after a pause.
 
         Raises:
-            ProtocolError: It is wrong.
+            ProtocolError: The token is wrong or missing.
         """
         if not self.admits(token):
             if token:
@@ -115,12 +113,12 @@ class Access:
 
 
 def _is_own(origin: str, host: str) -> bool:
-    """Whether a page was served under the name that is asked for."""
+    """Return whether an origin is the requested host itself."""
     return origin.partition("://")[2] == host
 
 
 def _name_of(host: str) -> str:
-    """The name in a Host header, without the port."""
+    """Return the name in a Host header, without the port."""
     try:
         return urlsplit(f"//{host}").hostname or ""
     except ValueError:

@@ -1,4 +1,4 @@
-"""The page as an ASGI application: its files, its WebSocket, and what guards them."""
+"""The page as an ASGI application: its files, its WebSocket, and the access check."""
 
 from __future__ import annotations
 
@@ -28,25 +28,23 @@ if TYPE_CHECKING:
 
     from .names import Settings
 
-__all__ = ["PAGE", "AccessMiddleware", "make_app"]
-
 PAGE = Path(__file__).parent / "page"
-"""What ``npm run build`` in ``frontend/`` makes."""
+"""The output of ``npm run build`` in ``frontend/``."""
 
 CONSOLES = ("conio",)
-"""Platforms for one user, of which there would be one in each visitor's context."""
+"""Platforms for a single user; each visitor's context would have one."""
 
 MOST_LOGGED = 100
-"""Sites that the log names at most, each once: anybody could write into it."""
+"""The most sites that the log names, each once, so that strangers cannot fill it."""
 
 log = logging.getLogger("ravestate.webio")
 
 
 def make_app(agent: Agent, routes: Iterable[BaseRoute] = (), inside: str | None = None) -> Starlette:
-    """See `webio.app`. The conversations are in ``app.state.sessions``, the checks in ``app.state.access``.
+    """Return the application of `webio.app`, with ``app.state.sessions`` and ``app.state.access``.
 
     Raises:
-        PlatformError: The agent lacks ``webio``, or has a platform that is for one user.
+        PlatformError: The agent lacks ``webio``, or has a platform for a single user.
     """
     settings = _settings_of(agent)
     access = Access(settings)
@@ -84,16 +82,14 @@ def _settings_of(agent: Agent) -> Settings:
 
 
 class AccessMiddleware:
-    """Refuses requests that `Access` refuses, and sends headers with everything that keep scripts and frames in bounds.
+    """Middleware that refuses requests without access, and adds headers that restrict scripts and frames.
 
-    Sites whose pages may not show the chat are named in the log, as it is an empty frame that one sees there.
-
-    One guards the whole application that `make_app` makes. A second one in it guards what looks inside of the agent: sites
-    that may connect to the chat and show it may not do so there.
+    The log names sites that try to embed the page without permission: their visitors see an empty frame only. One instance
+    guards the whole application; a second one guards the board, which no other site may reach.
 
     Args:
-        app: What is guarded.
-        inside: Whether it looks inside of the agent.
+        app: The application to guard.
+        inside: Whether the application is the board.
     """
 
     def __init__(self, app: ASGIApp, *, inside: bool = False) -> None:
@@ -102,7 +98,7 @@ class AccessMiddleware:
         self._embedders: set[str] = set()
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Check a request, and answer it or pass it on."""
+        """Refuse a request, or pass it on."""
         if scope["type"] == "lifespan":
             await self._app(scope, receive, send)
             return
@@ -123,9 +119,7 @@ class AccessMiddleware:
             if message["type"] == "http.response.start":
                 answered = MutableHeaders(scope=message)
                 for name, value in _bounds(() if self._inside else access.origins).items():
-                    answered.setdefault(
-                        name, value
-                    )  # unless the one for the inside, which is stricter, was here
+                    answered.setdefault(name, value)  # the board's header is stricter and wins
             await send(message)
 
         answer = self._app if refusal is None else PlainTextResponse(refusal, 403)
@@ -134,14 +128,14 @@ class AccessMiddleware:
     def _log_embedder(self, origin: str | None) -> None:
         if origin is not None and origin not in self._embedders and len(self._embedders) < MOST_LOGGED:
             self._embedders.add(origin)
-            log.warning("a page of %s wanted to show the chat: add it to the setting webio.origins", origin)
+            log.warning("a page of %s may not embed the chat: add it to the setting webio.origins", origin)
 
 
 def _bounds(framing: Iterable[str]) -> dict[str, str]:
-    """Headers that keep scripts and frames in bounds.
+    """Return headers that restrict scripts and frames.
 
     Args:
-        framing: Origins whose pages may show this one in a frame.
+        framing: The origins that may embed the page.
     """
     policy = (
         "default-src 'none'",

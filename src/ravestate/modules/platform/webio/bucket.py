@@ -1,16 +1,14 @@
-"""A token bucket: how often somebody may do something."""
+"""A token bucket, for rate limits."""
 
 from __future__ import annotations
 
-__all__ = ["Bucket"]
-
 
 class Bucket:
-    """Lets through a burst, then so many a second.
+    """A rate limit: a burst, then so many a second.
 
     Args:
-        burst: What may come at once.
-        rate: What may come each second after that.
+        burst: The most events at once.
+        rate: Events per second after that.
         now: The time (seconds).
 
     Example:
@@ -30,13 +28,13 @@ class Bucket:
         self._time = now
 
     def wait(self, now: float) -> float:
-        """Take one, also if there is none; the seconds until there would have been."""
+        """Count an event in any case; return the seconds until the limit allows it."""
         self._fill(now)
         self._level -= 1
         return max(0.0, -self._level / self._rate)
 
     def take(self, now: float) -> bool:
-        """Take one if there is one; whether there was."""
+        """Count an event if the limit allows it; return whether it does."""
         self._fill(now)
         if self._level < 1:
             return False

@@ -1,4 +1,4 @@
-"""A WebSocket with manners, whatever language is spoken on it: what it takes, for how long, and how it ends."""
+"""A WebSocket with limits, for any protocol: the size of frames, time limits, and closing codes."""
 
 from __future__ import annotations
 
@@ -11,21 +11,19 @@ from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from .protocol import CLOSING_CODES, Error, ProtocolError, serialise
 
-__all__ = ["LONGEST", "Channel"]
-
 LONGEST = 128 * 1024
-"""Bytes that a frame may have: JSON may write a character with twelve, and the longest text has 10,000."""
+"""The most bytes of a frame: the longest text has 10,000 characters, and JSON may need twelve bytes for each."""
 
 SILENT = 10.0
-"""Seconds within which a client says hello."""
+"""Seconds that a client has for its hello."""
 
 
 class Channel:
-    """Carries frames, as text, between a client and who serves it.
+    """A WebSocket that carries frames as text.
 
     Args:
-        socket: Not accepted yet.
-        replies: How many may wait for the client. Who asks on and on, and does not read, is dropped.
+        socket: A WebSocket that nobody has accepted yet.
+        replies: The most replies that may wait for the client. A client that asks on without reading is dropped.
     """
 
     def __init__(self, socket: WebSocket, replies: int) -> None:
@@ -33,24 +31,22 @@ class Channel:
         self._most = replies
         self._replies: deque[str] = deque()
         self.woken = asyncio.Event()
-        """Whether there is something to send, a reply for one."""
+        """Set when there is something to send, such as a reply."""
 
     async def carry(self, serve: Callable[[], Awaitable[None]]) -> None:
-        """Accept the client, and serve it until either side closes. What is wrong with it, as a `ProtocolError`, is told."""
+        """Accept the client, and serve it until either side closes. The client gets each `ProtocolError` as a frame."""
         try:
             await self._socket.accept()
             try:
                 await serve()
             except ProtocolError as error:
                 await self.send(serialise(Error(error.code, str(error))))
-                await self._socket.close(
-                    CLOSING_CODES.get(error.code, CLOSING_CODES["malformed"]), error.code
-                )
+                await self._socket.close(CLOSING_CODES.get(error.code, CLOSING_CODES["malformed"]), error.code)
         except WebSocketDisconnect:
             pass
 
     async def both(self, read: Coroutine[Any, Any, None], write: Coroutine[Any, Any, None]) -> None:
-        """Read and write until either ends."""
+        """Read and write at once until either ends."""
         tasks = [asyncio.create_task(read), asyncio.create_task(write)]
         try:
             await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
@@ -62,13 +58,13 @@ class Channel:
                 raise end
 
     async def first(self, expected: str) -> str | bytes:
-        """The first frame, which comes soon.
+        """Return the first frame.
 
         Args:
-            expected: What it looks like.
+            expected: An example of it, for the error.
 
         Raises:
-            ProtocolError: It does not come, or see `receive`.
+            ProtocolError: It does not come in time, or is too large.
         """
         try:
             async with asyncio.timeout(SILENT):
@@ -77,10 +73,10 @@ class Channel:
             raise ProtocolError("silent", f"no hello within {SILENT:g} s: begin with {expected}") from None
 
     async def receive(self) -> str | bytes:
-        """The next frame.
+        """Return the next frame.
 
         Raises:
-            ProtocolError: It is too large.
+            ProtocolError: The frame is too large.
         """
         message = await self._socket.receive()
         if message["type"] == "websocket.disconnect":
@@ -95,17 +91,17 @@ class Channel:
         await self._socket.send_text(text)
 
     def reply(self, text: str) -> None:
-        """Have a frame sent by who writes."""
+        """Queue a frame for the writing task."""
         if len(self._replies) >= self._most:
             raise WebSocketDisconnect(1008, "it does not read")
         self._replies.append(text)
         self.woken.set()
 
     async def send_replies(self) -> None:
-        """Send what was replied since."""
+        """Send the queued frames."""
         while self._replies:
             await self.send(self._replies.popleft())
 
     async def end(self) -> None:
-        """Close it, as all was said."""
+        """Close the WebSocket in order."""
         await self._socket.close(CLOSING_CODES["ended"], "ended")

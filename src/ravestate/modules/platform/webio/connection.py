@@ -1,4 +1,4 @@
-"""One WebSocket: what its client says goes to a conversation, what happens there goes to the client."""
+"""One WebSocket between a client and a conversation."""
 
 from __future__ import annotations
 
@@ -30,21 +30,19 @@ from .protocol import (
     Writing,
     parse,
     serialise,
-)
+)  # fmt: skip
 from .session import Ending, Session
 
 if TYPE_CHECKING:
     from .access import Access
     from .sessions import Sessions
 
-__all__ = ["Connection"]
-
 BURST, RATE = 20, 5.0
-"""Frames that are taken at once, and each second after that. Who sends more has to wait, and nothing is lost; but as many
-`Writing` are taken beside them, and more of those are left aside."""
+"""Frames that a client may send at once, and each second after that. The server reads further frames later, and loses none.
+`Writing` has a limit of its own with the same numbers; the server ignores the rest."""
 
 REPLIES = 32
-"""Replies that may wait for a client."""
+"""The most replies that may wait for a client."""
 
 HELLO = f'{{"type": "hello", "v": {VERSION}}}'
 
@@ -53,11 +51,12 @@ class Connection:
     """Carries the protocol over one WebSocket.
 
     Args:
-        socket: Not accepted yet.
+        socket: A WebSocket that nobody has accepted yet.
         sessions: The conversations.
-        access: Knows the token.
-        title: What the agent is called; None: what it calls itself.
-        inside: Where the page may look inside of the agent, e.g. ``board/``; None: nowhere.
+        access: The access check.
+        title: The agent's name on the page; None for its own name.
+        inside: The path of the board, e.g. ``board/``; None if there is none.
+        suggestions: Things that the visitor could say first.
     """
 
     def __init__(
@@ -82,7 +81,7 @@ class Connection:
         await self._channel.carry(self._serve)
 
     def wake(self) -> None:
-        """Something has changed in the conversation."""
+        """Look for changes in the conversation."""
         self._channel.woken.set()
 
     async def _serve(self) -> None:
@@ -97,9 +96,7 @@ class Connection:
             first, newest = session.history.first, session.history.last
             agent = self._name_of(session)
             await self._send(
-                Welcome(
-                    VERSION, session.id, resumed, first, agent, self._inside, newest, True, self._suggestions
-                )
+                Welcome(VERSION, session.id, resumed, first, agent, self._inside, newest, True, self._suggestions)
             )
             await self._channel.both(self._read(session), self._write(session, max(last, first - 1), agent))
         finally:
@@ -125,7 +122,7 @@ class Connection:
                 if isinstance(frame, Writing):
                     if writing.take(now()):
                         session.notice_writing()
-                    await asyncio.sleep(0)  # others have their turn, however many there are
+                    await asyncio.sleep(0)  # let other tasks run between many of them
                     continue
                 self._take(frame, session)
             except ProtocolError as error:
@@ -149,8 +146,7 @@ class Connection:
     # ------------------------------------------------------------------------------------ to the client
 
     async def _write(self, session: Session, last: int, agent: str) -> None:
-        """Tell the client what it has not seen: another name than `agent`, messages after number `last`, and what is
-        being said."""
+        """Send all that the client has not seen: a name other than `agent`, messages after `last`, the growing utterance."""
         shown, typing, paused = "", False, False
         woken = self._channel.woken
         while True:
@@ -161,7 +157,7 @@ class Connection:
                 await self._send(Renamed(agent))
             for message in session.history.since(last):
                 if message.n != last + 1:
-                    raise ProtocolError("behind", f"message {last + 1} is kept no more: connect again")
+                    raise ProtocolError("behind", f"message {last + 1} is no longer kept: connect again")
                 await self._send(message)
                 last = message.n
                 shown = "" if message.speaker == "agent" else shown
@@ -182,7 +178,7 @@ class Connection:
             await woken.wait()
 
     def _name_of(self, session: Session) -> str:
-        """What the agent is called on the page."""
+        """Return the agent's name on the page."""
         return session.agent if self._title is None else self._title
 
     async def _send(self, frame: ServerFrame) -> None:
@@ -190,14 +186,12 @@ class Connection:
 
 
 def _common(one: str, other: str) -> int:
-    """How many characters two texts begin with alike."""
-    if other.startswith(one):  # as it grows
+    """Return the length of the common beginning of two texts."""
+    if other.startswith(one):  # the usual case: it grows
         return len(one)
-    return next(
-        (n for n, (a, b) in enumerate(zip(one, other, strict=False)) if a != b), min(len(one), len(other))
-    )
+    return next((n for n, (a, b) in enumerate(zip(one, other, strict=False)) if a != b), min(len(one), len(other)))
 
 
 def _units(text: str) -> int:
-    """The length of a text in UTF-16 units, which is JavaScript's."""
+    """Return the length of a text in UTF-16 units, as JavaScript counts."""
     return len(text) + sum(character > "\uffff" for character in text)

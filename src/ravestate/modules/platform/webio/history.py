@@ -1,4 +1,4 @@
-"""What was said in a conversation, numbered, as far back as it is kept."""
+"""The last messages of a conversation, with their numbers."""
 
 from __future__ import annotations
 
@@ -8,15 +8,13 @@ from typing import Literal
 
 from .protocol import Message
 
-__all__ = ["History"]
-
 Speaker = Literal["user", "agent"]
 
 MESSAGES = 500
-"""Messages that are kept."""
+"""The most messages that a history keeps."""
 
 CHARACTERS = 200_000
-"""Characters that are kept."""
+"""The most characters that a history keeps."""
 
 
 class History:
@@ -40,15 +38,15 @@ class History:
 
     @property
     def first(self) -> int:
-        """The number of the oldest message that is kept; the next one's where there is none."""
+        """The number of the oldest message; of the next one while there is none."""
         return self.last - len(self._messages) + 1
 
     def newest(self, speaker: Speaker) -> Message | None:
-        """The newest message of one of the two that is kept, if there is one."""
+        """Return the newest message of a speaker, if the history has one."""
         return next((message for message in reversed(self._messages) if message.speaker == speaker), None)
 
     def add(self, speaker: Speaker, text: str, time: int, id: str | None = None) -> Message:
-        """Number and keep a message; of one that is larger than everything may be, the beginning."""
+        """Add a message and return it. A text that is longer than a whole history is cut."""
         text = text[: self._characters]
         self.last += 1
         message = Message(self.last, speaker, text, time, id)
@@ -59,7 +57,7 @@ class History:
         return message
 
     def since(self, number: int) -> Iterator[Message]:
-        """The kept messages with greater numbers, in order; others may be added meanwhile."""
+        """Yield the messages with greater numbers, in order; others may be added meanwhile."""
         while number < self.last:
             number = max(number + 1, self.first)
             yield self._messages[number - self.first]

@@ -1,6 +1,6 @@
-"""What a connection may cost before the application hears of it, and after its client has stopped reading.
+"""Connection limits, for the time before the application gets a request and after a client has stopped reading.
 
-Both build on uvicorn's own protocols, which bound neither.
+The classes extend uvicorn's protocols, which have no such limits.
 """
 
 from __future__ import annotations
@@ -17,25 +17,25 @@ from uvicorn.protocols.utils import ClientDisconnected
 from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
 from websockets.exceptions import InvalidState
 
-__all__ = ["LimitedHTTP", "LimitedWebSocket"]
-
 TIMEOUT = 10.0
-"""Seconds in which a client is to send its request, and then to read the answer."""
+"""Seconds that a client has to send its request, and then to read the answer."""
 
 LOWEST_RATE = 8 * 1024
-"""Bytes a second that a client is to send at least while more of its request is to come; it may be `TIMEOUT` late."""
+"""The lowest rate of a request (bytes a second). A client may fall behind by `TIMEOUT` seconds."""
 
 STALL_TIMEOUT = 20.0
-"""Seconds for which a client may leave unread what the server has for it."""
+"""Seconds for which a client may leave data unread."""
 
-FULL = b"HTTP/1.1 503 Service Unavailable\r\nconnection: close\r\ncontent-type: text/plain\r\ncontent-length: %d\r\n\r\n%s"
+FULL = (
+    b"HTTP/1.1 503 Service Unavailable\r\nconnection: close\r\ncontent-type: text/plain\r\ncontent-length: %d\r\n\r\n%s"
+)
 
 FOREIGN = (
     "Invalid HTTP request received.",
     "Invalid UTF-8 sequence received from client.",
     "Unsupported upgrade request.",
 )
-"""What clients do wrong, in uvicorn's words. They are told; in the log anybody could write as much of it as they like."""
+"""Uvicorn's messages about faults of clients. The clients get them; in the log they would let strangers fill the disk."""
 
 log = logging.getLogger("ravestate.webio.limits")
 log.setLevel(logging.WARNING)
@@ -43,11 +43,11 @@ log.addFilter(lambda record: record.msg not in FOREIGN)
 
 
 class LimitedHTTP(H11Protocol):
-    """HTTP: bounds the number of connections, in all and from one address, and does not wait for the silent.
+    """HTTP with a limit on connections, in total and per address, and with time limits.
 
     Args:
-        per_address: Connections from one address, WebSockets among them.
-        most: Connections in all.
+        per_address: The most connections from one address, including WebSockets.
+        most: The most connections in total.
     """
 
     def __init__(self, *args: Any, per_address: int, most: int, **kwargs: Any) -> None:
@@ -55,38 +55,37 @@ class LimitedHTTP(H11Protocol):
         self.logger = log
         self._per_address = per_address
         self._most = most
-        self._received = 0  # bytes, since the last look
-        self._waited: object = None  # the request for whose client was waited at the last look; at first, any
-        self._late: tuple[object, float] = (None, 0.0)  # a request, and by how many bytes it is behind
+        self._received = 0  # bytes since the last check
+        self._waited: object = None  # the request whose client was slow at the last check
+        self._late: tuple[object, float] = (None, 0.0)  # a request, and its deficit in bytes
 
     def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]  # as above it
         """Take a connection, or refuse it."""
         super().connection_made(transport)
         if len(self.connections) > self._most:
             self._refuse("too many connections")
-        elif self._from_here() > self._per_address:
+        elif self._from_same_address() > self._per_address:
             self._refuse("too many connections from your address")
         else:
-            self.loop.call_later(TIMEOUT, self._look)
+            self.loop.call_later(TIMEOUT, self._check)
 
     def data_received(self, data: bytes) -> None:
-        """Take what the client has sent."""
+        """Receive bytes from the client."""
         self._received += len(data)
         super().data_received(data)
 
-    def _from_here(self) -> int:
+    def _from_same_address(self) -> int:
         here = self.client[0] if self.client else None
         addresses = (cast("Any", other).client for other in self.connections)
         return sum(1 for address in addresses if address and address[0] == here)
 
     def _refuse(self, why: str) -> None:
-        self.connections.discard(self)  # it counts no more, though it takes a moment to close
+        self.connections.discard(self)  # stop counting it, though closing takes a moment
         self.transport.write(FULL % (len(why), why.encode()))
         self.transport.close()
 
-    def _look(self) -> None:
-        """Close if nothing has been asked since the last look, or the rest of it does not come, or its answer is still not
-        read."""
+    def _check(self) -> None:
+        """Hang up if the client has sent no request since the last check, sends one too slowly, or leaves its answer unread."""
         if self.transport.is_closing() or self.transport.get_protocol() is not self:
             return
         request = cast("RequestResponseCycle | None", self.cycle)
@@ -100,10 +99,10 @@ class LimitedHTTP(H11Protocol):
             _hang_up(self.transport)
             return
         self._received = 0
-        self.loop.call_later(TIMEOUT, self._look)
+        self.loop.call_later(TIMEOUT, self._check)
 
     def _is_late(self, request: RequestResponseCycle) -> bool:
-        """Whether a request comes in more slowly than it should, all in all, and not because the server does not read."""
+        """Return whether a request is too slow on the whole, through no fault of the server's."""
         due = LOWEST_RATE * TIMEOUT
         behind = self._late[1] if self._late[0] is request else 0.0
         waits = self.flow.read_paused or not request.more_body
@@ -113,7 +112,7 @@ class LimitedHTTP(H11Protocol):
 
 
 class LimitedWebSocket(WebSocketsSansIOProtocol):
-    """WebSockets: drops who does not read, instead of keeping what is meant for them."""
+    """A WebSocket that drops clients which do not read, instead of keeping their data."""
 
     _stalled: asyncio.TimerHandle | None = None
 
@@ -122,17 +121,17 @@ class LimitedWebSocket(WebSocketsSansIOProtocol):
         self.logger = log
 
     async def send(self, message: Any) -> None:
-        """Send what the application has for the client; one that was closed for what it has sent is gone."""
+        """Send a message to the client, unless its connection was closed for a fault."""
         if self.close_sent:
             raise ClientDisconnected
         await super().send(message)
         if self.close_sent:
-            self.handshake_complete = True  # also where it was refused, which uvicorn takes for an oversight
+            self.handshake_complete = True  # uvicorn would log a refusal as an oversight
 
     async def run_asgi(self) -> None:
-        """Run the application; who has not closed its end some time after that is hung up on."""
+        """Run the application, and hang up later on a client that does not close."""
         await super().run_asgi()
-        self.loop.call_later(TIMEOUT, self._see_off)
+        self.loop.call_later(TIMEOUT, self._end_late)
 
     def shutdown(self) -> None:
         """Close the connection when the server stops. uvicorn fails if the client is closing it at the same moment."""
@@ -140,45 +139,45 @@ class LimitedWebSocket(WebSocketsSansIOProtocol):
             super().shutdown()
         self.transport.close()
 
-    def _see_off(self) -> None:
+    def _end_late(self) -> None:
         if not self.disconnected:
             _hang_up(self.transport)
 
     def pause_writing(self) -> None:
-        """The client leaves much unread: it has some time to make up."""
+        """Give a client that leaves much unread some time to catch up."""
         super().pause_writing()
         self._stalled = self.loop.call_later(STALL_TIMEOUT, _hang_up, self.transport)
 
     def resume_writing(self) -> None:
-        """The client reads again."""
+        """Stop the time limit: the client reads again."""
         super().resume_writing()
-        self._forgive()
+        self._stop_timer()
 
     def connection_lost(self, exc: Exception | None) -> None:
-        """It is gone."""
-        self._forgive()
+        """Clean up after a connection."""
+        self._stop_timer()
         super().connection_lost(exc)
 
     def handle_ping(self) -> None:
-        """Answer, unless the client asks on and on and does not read the answers."""
+        """Answer a ping, unless the client does not read the answers."""
         if self.writable.is_set():
             super().handle_ping()
         else:
             _hang_up(self.transport)
 
     def keepalive_timeout(self) -> None:
-        """It answers no more: what is still meant for it will not be read."""
+        """Hang up on a client that no longer answers pings."""
         super().keepalive_timeout()
         _hang_up(self.transport)
 
-    def _forgive(self) -> None:
+    def _stop_timer(self) -> None:
         if self._stalled is not None:
             self._stalled.cancel()
             self._stalled = None
 
 
 def _hang_up(transport: asyncio.Transport) -> None:
-    """Close at once, and let the system forget what was not read, instead of trying to deliver it."""
+    """Close at once; the system drops unread data instead of trying to deliver it."""
     connected = transport.get_extra_info("socket")
     if connected is not None:
         with contextlib.suppress(OSError):

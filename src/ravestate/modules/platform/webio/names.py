@@ -15,8 +15,6 @@ from .serving import serve
 if TYPE_CHECKING:
     from .session import Session
 
-__all__ = ["ORIGIN", "Settings", "module", "page"]
-
 ORIGIN = re.compile(r"https?://[^\s/?#@'\";,*]+")
 """The origin of a web site: scheme, host and port."""
 

@@ -1,4 +1,4 @@
-"""The files of the page, as they were built: held in memory, also compressed."""
+"""The files of the built page, in memory, plain and compressed."""
 
 from __future__ import annotations
 
@@ -12,8 +12,6 @@ from starlette.responses import PlainTextResponse, Response
 from starlette.types import Receive, Scope, Send
 from starlette.websockets import WebSocket
 
-__all__ = ["Pages"]
-
 KINDS = {
     ".css": "text/css; charset=utf-8",
     ".html": "text/html; charset=utf-8",
@@ -23,7 +21,7 @@ KINDS = {
     ".woff2": "font/woff2",
 }
 COMPRESSED = {".woff2"}
-"""What compressing would not make smaller."""
+"""Types that are compressed already."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,10 +33,10 @@ class _File:
 
 
 class Pages:
-    """An ASGI application that serves a folder; a folder within it by its ``index.html``.
+    """An ASGI application that serves the files of a folder, with ``index.html`` for folders.
 
     Args:
-        folder: What is in it now is served, also when it changes.
+        folder: The folder; later changes in it have no effect.
     """
 
     def __init__(self, folder: Path) -> None:
@@ -48,9 +46,7 @@ class Pages:
                 data = file.read_bytes()
                 packed = None if file.suffix in COMPRESSED else gzip.compress(data, mtime=0)
                 tag = f'"{hashlib.sha256(data).hexdigest()[:16]}"'
-                self._files[f"/{file.relative_to(folder).as_posix()}"] = _File(
-                    data, packed, KINDS[file.suffix], tag
-                )
+                self._files[f"/{file.relative_to(folder).as_posix()}"] = _File(data, packed, KINDS[file.suffix], tag)
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Answer a request; a WebSocket has no page here."""

@@ -80,9 +80,7 @@ def heard_text(text: str) -> str:
     """
     text = printable(text)
     if len(text) > LONGEST_TEXT:
-        raise ProtocolError(
-            "too-long", f'say: "text" has at most {LONGEST_TEXT:,} characters, not {len(text):,}'
-        )
+        raise ProtocolError("too-long", f'say: "text" has at most {LONGEST_TEXT:,} characters, not {len(text):,}')
     if not text.strip():
         raise ProtocolError("empty", 'say: "text" has nothing in it')
     return text

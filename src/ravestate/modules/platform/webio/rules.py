@@ -1,4 +1,4 @@
-"""What a conversation on the page hears of its agent."""
+"""The rules that show the agent's words and work on the page."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from ravestate.modules import interloc, rawio
 from .names import module, page
 
 SLOW = 0.3
-"""Seconds that an answer may take before the page shows that it is being made."""
+"""Seconds of waiting before the page shows that the agent is working."""
 
 
 @module.rule(when=rawio.output.changed.max_age(None).detached(), reads=page)
 async def show(ctx: rs.RuleContext) -> None:
-    """Show what is said."""
+    """Show an utterance."""
     session = ctx[page]
     if session is not None:
         session.utter(ctx.payload(rawio.output.changed))
@@ -21,7 +21,7 @@ async def show(ctx: rs.RuleContext) -> None:
 
 @module.rule(when=rawio.piece.max_age(None).detached(), reads=page, background=True)
 async def show_piece(ctx: rs.RuleContext) -> None:
-    """Show what is being said."""
+    """Show a piece of a growing utterance."""
     session = ctx[page]
     if session is not None:
         session.grow(ctx.payload(rawio.piece))
@@ -29,7 +29,7 @@ async def show_piece(ctx: rs.RuleContext) -> None:
 
 @module.rule(when=rawio.speaking.false.max_age(None).detached(), reads=page, background=True)
 async def end_piece(ctx: rs.RuleContext) -> None:
-    """Take back what was being said if it never became an utterance."""
+    """End a growing utterance that was never written as a whole."""
     session = ctx[page]
     if session is not None:
         session.fall_silent()
@@ -37,7 +37,7 @@ async def end_piece(ctx: rs.RuleContext) -> None:
 
 @module.rule(when=interloc.agent.changed.max_age(None).detached(), reads=page, background=True)
 async def show_name(ctx: rs.RuleContext) -> None:
-    """Show what the agent is called now."""
+    """Show the agent's new name."""
     session = ctx[page]
     if session is not None:
         session.notify()
@@ -45,7 +45,7 @@ async def show_name(ctx: rs.RuleContext) -> None:
 
 @module.rule(when=rs.pressure.true.min_age(SLOW).max_age(None).detached(), reads=page, background=True)
 async def show_delay(ctx: rs.RuleContext) -> None:
-    """Show that an answer is due."""
+    """Show that the agent is working."""
     session = ctx[page]
     if session is not None:
         session.show_work()

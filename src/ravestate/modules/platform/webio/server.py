@@ -1,4 +1,4 @@
-"""The web server: one socket, one application, bounds on who holds a connection."""
+"""The web server: one socket, one application, limits on connections."""
 
 from __future__ import annotations
 
@@ -30,30 +30,28 @@ if TYPE_CHECKING:
 
     from .names import Settings
 
-__all__ = ["Server"]
-
 SPARE = 128
-"""Files that are left to others, of those that the process may open."""
+"""Open files of the process that the server leaves to others."""
 
 BACKLOG = 256
-"""Connections that are taken in one go, before any of them is looked at."""
+"""Connections that the system accepts before the server takes them."""
 
 UNREAD = 128 * 1024
-"""Bytes that the system keeps for a client that does not read."""
+"""Bytes that the system buffers for a client that does not read."""
 
 LAST_WORDS = 2.0
-"""Seconds that connections have to close at the end."""
+"""Seconds that connections have to close when the server ends."""
 
 
 class Server:
     """Serves the page of an agent: ``async with Server(agent) as server``.
 
     Args:
-        agent: With ``webio`` among its modules, whose settings say where to listen.
+        agent: An agent with ``webio`` among its modules; the settings say where to listen.
         routes, inside: As for `webio.app`.
 
     Raises:
-        PlatformError: The address can be reached by others, and there is no token; or see `make_app`.
+        PlatformError: Others can reach the address, and there is no token; or see `make_app`.
     """
 
     def __init__(self, agent: Agent, routes: Iterable[BaseRoute] = (), inside: str | None = None) -> None:
@@ -73,13 +71,11 @@ class Server:
         """Listen.
 
         Raises:
-            PlatformError: The port is in use, or the address is none of this machine's.
+            PlatformError: The port is in use, or the address is not one of this machine.
         """
         settings = self._settings
         self._socket = _listen(settings.host, settings.port)
-        limits = functools.partial(
-            LimitedHTTP, per_address=settings.per_address, most=_most(2 * settings.sessions)
-        )
+        limits = functools.partial(LimitedHTTP, per_address=settings.per_address, most=_most(2 * settings.sessions))
         self._uvicorn = _Uvicorn(
             uvicorn.Config(
                 self._app,
@@ -110,7 +106,7 @@ class Server:
     async def __aexit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        """Tell the visitors, end their conversations in order, and close."""
+        """End the conversations in order, and close."""
         assert self._uvicorn is not None and self._task is not None  # it was entered
         with self._saved:
             await self._app.state.sessions.close()
@@ -119,13 +115,13 @@ class Server:
 
     @property
     def port(self) -> int:
-        """Where it listens."""
+        """The port that the server listens on."""
         assert self._socket is not None  # it was entered
         return int(self._socket.getsockname()[1])
 
     @property
     def address(self) -> str:
-        """Where the page is: by this machine's name, where it listens on all addresses."""
+        """The address of the page; it has this machine's name if the server listens on all addresses."""
         host = self._settings.host.strip("[]")
         if host in ("0.0.0.0", "::"):
             host = socket.gethostname()
@@ -148,8 +144,7 @@ class Server:
 
         def lines(address: Callable[[str], str]) -> str:
             return (
-                "\n".join(f"The {name} is at {address(path)}" for name, path in pages.items())
-                + " (Ctrl-C ends it)\n"
+                "\n".join(f"The {name} is at {address(path)}" for name, path in pages.items()) + " (Ctrl-C ends it)\n"
             )
 
         if self._settings.token is None or sys.stdout.isatty():
@@ -162,13 +157,13 @@ class Server:
         sys.stdout.flush()
 
     async def until_failed(self) -> None:
-        """Wait for what should not happen: that the server ends by itself."""
+        """Wait until the server ends by itself, which only a failure brings."""
         assert self._task is not None  # it was entered
         await asyncio.shield(self._task)
 
 
 class _Uvicorn(uvicorn.Server):
-    """Without a tick, and without handlers of signals: whoever runs the agent has them."""
+    """A server without a tick and without signal handlers: the runner of the agent has its own."""
 
     def __init__(self, config: uvicorn.Config) -> None:
         super().__init__(config)
@@ -176,13 +171,13 @@ class _Uvicorn(uvicorn.Server):
         self.told = asyncio.Event()
 
     async def main_loop(self) -> None:
-        """Wait until told to end."""
+        """Wait for the end."""
         self.listening.set()
         await self.told.wait()
 
     @contextlib.contextmanager
     def capture_signals(self) -> Generator[None]:
-        """Leave them alone."""
+        """Leave the signal handlers as they are."""
         yield
 
 
@@ -195,8 +190,8 @@ def _listen(host: str, port: int) -> socket.socket:
         raise PlatformError(f"webio: host {host!r} is no address of this machine: {error.strerror}") from None
     listener = socket.socket(family, kind, protocol)
     try:
-        listener.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, UNREAD)  # whom it accepts inherits it
-        if sys.platform != "win32":  # there it would share the port
+        listener.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, UNREAD)  # accepted sockets inherit it
+        if sys.platform != "win32":  # on Windows it would share the port
             listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         listener.bind(address)
     except OSError as error:
@@ -210,7 +205,7 @@ def _listen(host: str, port: int) -> socket.socket:
 
 
 def _most(wanted: int) -> int:
-    """How many connections there may be, as the process may open only so many files."""
+    """Return the most connections that the process's limit on open files allows."""
     try:
         import resource
     except ImportError:  # not on Windows

@@ -15,8 +15,6 @@ if TYPE_CHECKING:
 
     from ravestate.runtime.agent import Agent
 
-__all__ = ["app", "serve"]
-
 
 async def serve(agent: Agent) -> None:
     """Serve an agent's page with the settings of ``webio`` until the task is cancelled.

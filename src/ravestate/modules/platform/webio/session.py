@@ -1,4 +1,4 @@
-"""One conversation: a context, what was said in it, and the connections that look on."""
+"""One conversation: a context, its messages, and its open windows."""
 
 from __future__ import annotations
 
@@ -21,13 +21,11 @@ from .protocol import LONGEST_NAME, name_of
 if TYPE_CHECKING:
     from ravestate.runtime.context import Context
 
-__all__ = ["Ending", "Onlooker", "Session"]
-
 REMEMBERED = 512
-"""Ids of the client's messages that are known, so that what is sent twice is heard once."""
+"""The ids of a client's messages that a session remembers, to ignore repeated ones."""
 
 GRACE = 0.3
-"""Seconds that an answer may take before it is shown that it is being made."""
+"""Seconds of waiting before the page shows that the agent is working."""
 
 FAREWELL = 5.0
 """Seconds that the agent has for a farewell."""
@@ -36,7 +34,7 @@ log = logging.getLogger("ravestate.webio")
 
 
 class Ending(enum.StrEnum):
-    """Why a conversation is over, for whoever looks on."""
+    """Why a conversation is over, in words for other people than the visitor."""
 
     BYE = "the visitor left"
     ABANDONED = "nobody was there"
@@ -48,44 +46,44 @@ class Ending(enum.StrEnum):
 
     @property
     def for_visitor(self) -> str:
-        """The same, for the visitor."""
+        """The reason in words for the visitor."""
         return "you left" if self is Ending.BYE else self.value
 
 
 class Onlooker(Protocol):
-    """Whoever wants to know when something in a conversation changes."""
+    """A listener for changes in a conversation."""
 
     def wake(self) -> None:
-        """Something has changed: look when you have time."""
+        """Note that something has changed; look at it later."""
         ...
 
 
 class Session:
-    """A visitor's conversation. It outlives its connections; all of it happens on one event loop.
+    """A visitor's conversation. It outlives its connections, and runs on one event loop.
 
-    It holds no queue for anybody: an `Onlooker` is woken, and reads what it has not seen yet.
+    It has no queue: it wakes each `Onlooker`, which reads all that it has not seen yet.
 
     Args:
-        context: The visitor's own, which nobody has entered yet.
-        name: What the visitor is called, if it is known.
+        context: The visitor's context, not entered yet.
+        name: The visitor's name, if it is known.
     """
 
     def __init__(self, context: Context, name: str | None = None) -> None:
         self.id = secrets.token_urlsafe(24)
-        """The secret by which a client takes the conversation up again."""
+        """The secret with which a client resumes the conversation."""
         self.visitor = f"webio-{secrets.token_hex(4)}"
         """The key of the visitor in ``interloc.users``."""
         self.name = name
         self.began = _now()
-        """When it began (milliseconds since 1970)."""
+        """The time of its beginning (milliseconds since 1970)."""
         self.context = context
         self.history = History()
         self.partial = ""
-        """What is being said, as far as it goes."""
+        """The growing utterance so far."""
         self.spoken = False
         """Whether the visitor has ever said anything."""
         self.ended: Ending | None = None
-        """Why the conversation is over, once it is."""
+        """Why the conversation is over; None while it goes on."""
         self.onlookers: set[Onlooker] = set()
         self._begun = False
         self._left: asyncio.Event = asyncio.Event()
@@ -100,7 +98,7 @@ class Session:
     # ------------------------------------------------------------------------------------ life
 
     async def live(self) -> None:
-        """Be there until the visitor or the agent leaves, or this is cancelled; then end in order."""
+        """Run until the visitor or the agent leaves, or the task is cancelled; then end in order."""
         try:
             async with self.context as context:
                 self._begun = True
@@ -112,7 +110,7 @@ class Session:
                     await context.quiet()
         except TimeoutError:
             pass  # the farewell took too long
-        except RavestateError as failure:  # of one conversation; the others go on
+        except RavestateError as failure:  # the other conversations go on
             self._reason = Ending.FAILED
             log.error("a conversation ended: %s", failure)
         finally:
@@ -133,7 +131,7 @@ class Session:
         stopped = asyncio.create_task(self.context.until_stopped())
         try:
             await asyncio.wait((left, stopped), return_when=asyncio.FIRST_COMPLETED)
-            self._left.set()  # from now on nothing is heard
+            self._left.set()  # from now on it takes no input
             if stopped.done():
                 self._reason = Ending.LEFT
                 stopped.result()
@@ -149,18 +147,18 @@ class Session:
 
     @property
     def leaving(self) -> bool:
-        """Whether the visitor or the agent has left, so that nothing more is heard; a farewell may still be said."""
+        """Whether the visitor or the agent has left: the session takes no more input, but the agent may say goodbye."""
         return self._left.is_set()
 
     def hear(self, id: str, text: str) -> bool:
-        """The visitor says something. What came before under the same `id` is left aside.
+        """Take the visitor's words. Words that came before under the same `id` are ignored.
 
         Args:
-            id: What the message is called: 1 to 64 letters, digits, ``-`` or ``_``.
-            text: As `heard_text` gives it.
+            id: The client's name for them: 1 to 64 letters, digits, ``-`` or ``_``.
+            text: The words, checked by `heard_text`.
 
         Returns:
-            Whether it was taken, now or before; not once somebody is `leaving`.
+            Whether the session took them, now or before; False while somebody is `leaving`.
         """
         if self.leaving:
             return False
@@ -177,7 +175,7 @@ class Session:
         return True
 
     def notice_writing(self) -> None:
-        """The visitor is writing something."""
+        """Tell the agent that the visitor is writing."""
         if not self.leaving:
             self.context.emit(rawio.typing)
 
@@ -185,7 +183,7 @@ class Session:
 
     @property
     def agent(self) -> str:
-        """What the agent calls itself: 1 to 80 characters on one line, whatever stands in ``interloc.agent``."""
+        """The agent's own name, as one line of 1 to 80 characters."""
         name = self.context.read(interloc.agent) if self._begun else ""
         return name_of(name[:LONGEST_NAME]) or interloc.agent.default
 

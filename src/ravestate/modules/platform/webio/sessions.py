@@ -1,4 +1,4 @@
-"""The conversations that are going on, by their secrets: opened, taken up again, kept for a while, ended."""
+"""All conversations with one agent, by their secrets."""
 
 from __future__ import annotations
 
@@ -12,19 +12,17 @@ from .session import Ending, Onlooker, Session
 if TYPE_CHECKING:
     from ravestate.runtime.agent import Agent
 
-__all__ = ["Sessions"]
-
 ONLOOKERS = 8
-"""Connections to one conversation at a time: a visitor's windows."""
+"""The most windows of one conversation at a time."""
 
 
 class Sessions:
     """All conversations with one agent.
 
     Args:
-        agent: Makes the context of each.
-        limit: How many there may be. Beyond it those end first that nobody looks on; then new ones are refused.
-        keep: Seconds for which a conversation that nobody looks on is kept.
+        agent: The agent; it makes a context for each conversation.
+        limit: The most conversations. Beyond it, one without a window ends first; then new ones are refused.
+        keep: Seconds for which a conversation without a window is kept.
     """
 
     def __init__(self, agent: Agent, *, limit: int, keep: float) -> None:
@@ -33,30 +31,28 @@ class Sessions:
         self._keep = keep
         self._sessions: dict[str, Session] = {}
         self._tasks: dict[Session, asyncio.Task[None]] = {}
-        self._timers: dict[
-            Session, asyncio.TimerHandle
-        ] = {}  # of those that nobody looks on, the longest first
+        self._timers: dict[Session, asyncio.TimerHandle] = {}  # those without a window; the oldest timer first
         self._closed = False
 
     def __len__(self) -> int:
         return len(self._tasks)
 
     def __iter__(self) -> Iterator[Session]:
-        """Those that are going on, or about to end; the oldest first."""
+        """Yield the conversations, also those about to end; the oldest first."""
         return iter(tuple(self._tasks))
 
     def get(self, id: str) -> Session | None:
-        """The conversation of a secret, if it is still going on."""
+        """Return the conversation with a secret, if it still goes on."""
         return self._sessions.get(id)
 
     async def open(self, name: str | None = None) -> Session:
         """Begin a conversation.
 
         Args:
-            name: What the visitor is called, if it is known.
+            name: The visitor's name, if it is known.
 
         Raises:
-            ProtocolError: There are too many already, or no more are begun.
+            ProtocolError: There are too many already, or the agent is being switched off.
         """
         if len(self._tasks) >= self._limit:
             await self._make_room()
@@ -67,26 +63,24 @@ class Sessions:
         session = Session(self._agent.context(), name)
         self._sessions[session.id] = session
         self._tasks[session] = asyncio.create_task(self._live(session))
-        self._abandon(session)  # until somebody looks on
+        self._abandon(session)  # until a window opens
         return session
 
     def enter(self, session: Session, onlooker: Onlooker) -> None:
-        """Somebody looks on.
+        """Add an onlooker.
 
         Raises:
-            ProtocolError: Too many do already.
+            ProtocolError: The conversation has too many already.
         """
         if len(session.onlookers) >= ONLOOKERS:
-            raise ProtocolError(
-                "full", f"{ONLOOKERS} windows show this conversation already: close one of them"
-            )
+            raise ProtocolError("full", f"{ONLOOKERS} windows show this conversation already: close one of them")
         session.onlookers.add(onlooker)
         timer = self._timers.pop(session, None)
         if timer is not None:
             timer.cancel()
 
     def exit(self, session: Session, onlooker: Onlooker) -> None:
-        """Somebody looks on no more."""
+        """Remove an onlooker."""
         session.onlookers.discard(onlooker)
         if not session.onlookers and session in self._tasks:
             self._abandon(session)
@@ -100,7 +94,7 @@ class Sessions:
         session.leave(reason)
 
     async def close(self) -> None:
-        """End all of them, as the agent is switched off, and begin no more."""
+        """End all conversations, and begin no more: the agent is being switched off."""
         self._closed = True
         for session in list(self._tasks):
             self.leave(session, Ending.OFF)
@@ -108,12 +102,10 @@ class Sessions:
             await asyncio.wait(list(self._tasks.values()))
 
     def _abandon(self, session: Session) -> None:
-        self._timers[session] = asyncio.get_running_loop().call_later(
-            self._keep, self.leave, session, Ending.ABANDONED
-        )
+        self._timers[session] = asyncio.get_running_loop().call_later(self._keep, self.leave, session, Ending.ABANDONED)
 
     async def _make_room(self) -> None:
-        """End the conversation that is missed least: one in which nothing was said, or else the one left longest ago."""
+        """End a conversation without a window: one without words if possible, else the one left longest ago."""
         abandoned = min(self._timers, key=lambda session: session.spoken, default=None)
         if abandoned is not None:
             task = self._tasks[abandoned]
@@ -124,5 +116,5 @@ class Sessions:
         try:
             await session.live()
         finally:
-            self.leave(session, Ending.CANCELLED)  # unless it has left already
+            self.leave(session, Ending.CANCELLED)  # no effect after another reason
             self._tasks.pop(session, None)

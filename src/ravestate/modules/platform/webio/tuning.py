@@ -1,4 +1,4 @@
-"""How the interpreter shares its time while many talk at once."""
+"""Settings of the interpreter for short answers to many visitors."""
 
 from __future__ import annotations
 
@@ -8,20 +8,18 @@ import sys
 from collections.abc import Generator
 from dataclasses import dataclass
 
-__all__ = ["COLLECT", "SWITCH", "low_latency"]
-
 SWITCH = 0.0005
-"""Seconds after which a thread that computes lets others have their turn. An answer takes several turns of the event
-loop, and while one sentence is read in a thread each of them would wait 5 ms, which is Python's own default."""
+"""Seconds after which a computing thread gives way. An answer takes several turns of the event loop. With Python's
+default, each turn would wait 5 ms while a thread analyses a sentence."""
 
 COLLECT = (10_000, 10, 10)
-"""New objects, and rounds, after which those are looked for that only refer to each other. Python's own (700, 10, 10) looks
-at everything that some hundred conversations hold every few seconds, and nobody is answered meanwhile."""
+"""The thresholds of the cyclic garbage collector. With Python's default (700, 10, 10) it scans all objects of some hundred
+conversations every few seconds, and no answer is sent meanwhile."""
 
 
 @dataclass(slots=True)
 class _Saved:
-    """How many serve, and what was set before the first of them. The interpreter has one of each, whoever serves."""
+    """The number of running servers, and the settings before the first of them."""
 
     users: int = 0
     switch: float = 0.0
@@ -33,7 +31,7 @@ _saved = _Saved()
 
 @contextlib.contextmanager
 def low_latency() -> Generator[None]:
-    """Within, the interpreter is set for short answers to many. It is as before once the last has left."""
+    """Set the interpreter for short answers, until the last server has ended."""
     if not _saved.users:
         _saved.switch, _saved.collect = sys.getswitchinterval(), gc.get_threshold()
         sys.setswitchinterval(SWITCH)

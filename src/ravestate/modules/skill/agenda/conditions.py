@@ -7,8 +7,6 @@ from typing import Any
 import ravestate as rs
 from ravestate.declare.condition import AllOf, AnyOf, Condition, Constraint, Holds
 
-__all__ = ["negated", "watching"]
-
 
 def watching(condition: Condition) -> Condition:
     """Return the condition with all its constraints detached, so that it consumes nothing."""

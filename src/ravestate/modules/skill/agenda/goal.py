@@ -19,8 +19,6 @@ from .conditions import negated, watching
 from .names import goals, opportunity
 from .state import OPEN, GoalState, Status
 
-__all__ = ["Goal", "goal"]
-
 Words = str | Iterable[str] | Callable[[rs.RuleContext], str | Awaitable[str]]
 
 MOMENT = 1.0
@@ -139,9 +137,7 @@ def goal(
             return rs.Retire(f"it is {state.status}")
         past = ctx.now - state.since
         if state.tries and (past < cooldown or state.tries >= tries):
-            return rs.Resign(
-                f"it was pursued {past:.0f} s ago, and rests for another {max(cooldown - past, 0):.0f} s"
-            )
+            return rs.Resign(f"it was pursued {past:.0f} s ago, and rests for another {max(cooldown - past, 0):.0f} s")
         words = await _worded(ctx, texts, state.tries) if intent is None else ""
         over = done is None
         ctx[goals].add(whole, GoalState("done" if over else "pursued", state.tries + 1, ctx.now))
@@ -192,9 +188,7 @@ async def _worded(ctx: rs.RuleContext, say: Any, tries: int) -> str:
     return await words if inspect.isawaitable(words) else words
 
 
-def _condition(
-    event: Condition | str, words: re.Pattern[str] | None, unless: re.Pattern[str] | None
-) -> Condition:
+def _condition(event: Condition | str, words: re.Pattern[str] | None, unless: re.Pattern[str] | None) -> Condition:
     """Return the condition that ends a goal; it consumes nothing."""
     if words is None:
         assert not isinstance(event, str)  # a text has become `words`
@@ -227,9 +221,7 @@ def _check(goal: str, say: object, intent: object, priority: object, cooldown: o
             f"goal {goal}: say={say!r} and intent={intent!r}: write one of them, such as say='Shall we play?'"
         )
     if say is not None and not callable(say):
-        texts = list(
-            cast("Iterable[object]", (say,) if isinstance(say, str) or not isinstance(say, Iterable) else say)
-        )
+        texts = list(cast("Iterable[object]", (say,) if isinstance(say, str) or not isinstance(say, Iterable) else say))
         if not texts or not all(isinstance(text, str) and text for text in texts):
             raise rs.DeclarationError(
                 f"goal {goal}: say={say!r}: write a text, several, or a function of the rule context"

@@ -7,8 +7,6 @@ from typing import Annotated
 
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field
 
-__all__ = ["Wish", "without_twins"]
-
 Text = Annotated[str, Field(min_length=1)]
 
 
@@ -22,9 +20,7 @@ def _expression(pattern: str) -> str:
 
 def _no_truth(value: object) -> object:
     if isinstance(value, bool):
-        raise ValueError(
-            f'YAML reads yes and no without quotes as {value}: write "{"yes" if value else "no"}"'
-        )
+        raise ValueError(f'YAML reads yes and no without quotes as {value}: write "{"yes" if value else "no"}"')
     return value
 
 

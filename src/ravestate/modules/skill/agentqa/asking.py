@@ -10,8 +10,6 @@ import re
 from collections.abc import Collection, Iterable
 from dataclasses import dataclass
 
-__all__ = ["Asked", "about_agent", "plain", "returns", "statements"]
-
 LONGEST = 2000
 """Characters of an utterance that are read."""
 WORDS = 20
@@ -151,9 +149,7 @@ def _unwrapped(words: list[str]) -> tuple[list[str], bool]:
         words = ["do", "you", "have", *words]
     elif words[:1] == ["got"]:
         words = ["do", "you", "have", *words[1:]]
-    elif words[:3] == ["have", "you", "got"] or (
-        words[:2] == ["have", "you"] and not _SOME.isdisjoint(words[2:3])
-    ):
+    elif words[:3] == ["have", "you", "got"] or (words[:2] == ["have", "you"] and not _SOME.isdisjoint(words[2:3])):
         words = ["do", "you", "have", *words[3 if words[2:3] == ["got"] else 2 :]]
     return words, told
 

@@ -9,8 +9,6 @@ from ravestate.modules.meta.ontology import Memory, Node
 
 from .life import Fact, Life
 
-__all__ = ["RELATIONS", "recall", "settle"]
-
 
 class _Relation(NamedTuple):
     name: str
@@ -80,9 +78,7 @@ async def recall(life: Life, memory: Memory) -> Mapping[str, Fact]:
         facts["born"] = node["born"].isoformat()
     known = await memory.relations(node)
     for fact, (relation, _) in RELATIONS.items():
-        names = [
-            str(one.target.get("name", "")) for one in known if one.name == relation and one.source == node
-        ]
+        names = [str(one.target.get("name", "")) for one in known if one.name == relation and one.source == node]
         before = texts(facts.get(fact, ()))
         order = {name: place for place, name in enumerate(before)}  # as in the file, the new ones last
         facts[fact] = tuple(sorted(filter(None, names), key=lambda name: order.get(name, len(order))))

@@ -6,8 +6,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from datetime import date
 
-__all__ = ["Fact", "Life", "Topic"]
-
 Fact = str | tuple[str, ...] | tuple[tuple[str, str], ...]
 """A fact: a text, several, or pairs such as ``(("animal", "the octopus"),)``."""
 

@@ -20,8 +20,6 @@ from .life import Fact, Life, Topic
 if TYPE_CHECKING:
     import yaml
 
-__all__ = ["read_life"]
-
 COUNTED = ("age", "mood", "time", "date", "memory")
 """Parameters of phrases that come from the clock or from slots."""
 KNOWN = ("name", "born", *COUNTED)
@@ -51,16 +49,12 @@ def read_life(own: Path | None = None) -> Life:
     try:
         text = own.read_text(encoding="utf-8")
     except FileNotFoundError as error:
-        near = (
-            nearest(own.name, [other.name for other in own.parent.iterdir()]) if own.parent.is_dir() else ""
-        )
+        near = nearest(own.name, [other.name for other in own.parent.iterdir()]) if own.parent.is_dir() else ""
         raise PlatformError(f"the file {str(own)!r} does not exist{near}") from error
     except OSError as error:
         raise PlatformError(f"the file {str(own)!r} cannot be read: {error.strerror or error}") from error
     except UnicodeDecodeError as error:
-        raise DeclarationError(
-            f"{own}: this is no text in UTF-8 ({error.reason} at byte {error.start})"
-        ) from None
+        raise DeclarationError(f"{own}: this is no text in UTF-8 ({error.reason} at byte {error.start})") from None
     return _parsed(str(own), text, life)
 
 
@@ -127,18 +121,12 @@ class _Known:
 
 
 def _topic(key: str, node: yaml.Node, before: Topic | None, known: _Known) -> Topic:
-    parts = dict(
-        _entries(known.file, node, _PARTS_OF_TOPIC, f"the topic {key} has questions and phrases, and")
-    )
+    parts = dict(_entries(known.file, node, _PARTS_OF_TOPIC, f"the topic {key} has questions and phrases, and"))
     topic = before or Topic(key, (), ())
     if "questions" in parts:
-        topic = replace(
-            topic, questions=(*topic.questions, *_texts(known.file, parts["questions"], "questions"))
-        )
+        topic = replace(topic, questions=(*topic.questions, *_texts(known.file, parts["questions"], "questions")))
     if "remarks" in parts:
-        topic = replace(
-            topic, remarks=(*topic.remarks, *_expressions(known.file, parts["remarks"], "remarks"))
-        )
+        topic = replace(topic, remarks=(*topic.remarks, *_expressions(known.file, parts["remarks"], "remarks")))
     if "asides" in parts:
         topic = replace(topic, asides=(*topic.asides, *_expressions(known.file, parts["asides"], "asides")))
     if "phrases" in parts:
@@ -147,9 +135,7 @@ def _topic(key: str, node: yaml.Node, before: Topic | None, known: _Known) -> To
         topic = replace(topic, otherwise=known.check(parts["otherwise"]))
     if "named" in parts:
         named: list[tuple[str, tuple[str, ...]]] = []
-        for fact, phrases in _entries(
-            known.file, parts["named"], known.facts, "it has a fact and phrases, and"
-        ):
+        for fact, phrases in _entries(known.file, parts["named"], known.facts, "it has a fact and phrases, and"):
             named.append((fact, known.check(phrases, NAMED)))
         topic = replace(topic, named=tuple(named))
     if "unnamed" in parts:
@@ -187,9 +173,7 @@ def _fact(name: str, key: str, node: yaml.Node) -> Fact | None:
     if key in ("name", "born") and _kind(node) != "scalar":
         raise _fault(name, node, f"{key} is one text, not a {_kind(node)}")
     if _kind(node) == "mapping":
-        return tuple(
-            (other, _text(name, value)) for other, value in _entries(name, node, None, "it has pairs, and")
-        )
+        return tuple((other, _text(name, value)) for other, value in _entries(name, node, None, "it has pairs, and"))
     if _kind(node) == "sequence":
         return _texts(name, node, "texts", empty=True)
     text = _text(name, node)
@@ -225,9 +209,7 @@ def _entries(
     for key, value in node.value:
         word = _text(name, key)
         if allowed is not None and word not in allowed:
-            raise _fault(
-                name, key, f"{word!r} means nothing here{nearest(word, allowed)}: {', '.join(allowed[:12])}"
-            )
+            raise _fault(name, key, f"{word!r} means nothing here{nearest(word, allowed)}: {', '.join(allowed[:12])}")
         if allowed is None and not word.replace(" ", "_").replace("-", "_").isidentifier():
             raise _fault(name, key, f"{word!r} is no name: letters, digits and _")
         if word in seen:

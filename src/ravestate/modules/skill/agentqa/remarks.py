@@ -10,9 +10,6 @@ from functools import lru_cache
 from .asking import statements
 from .life import Life
 
-__all__ = ["Remark", "remark_in"]
-
-
 ASIDE = 80
 """The greatest number of characters in an aside."""
 

@@ -23,8 +23,6 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-__all__ = ["Match", "Miss", "Router", "router_of"]
-
 SHARPNESS = 4.0
 """The slope of the similarity of meaning: the vectors of short questions lie close together."""
 SPELLING = 0.1
@@ -104,9 +102,7 @@ class Router:
             if self._learnt is None:
                 with LOADING:
                     import_module("numpy")  # all below needs it
-                pairs = [
-                    (plain(q), topic.name) for topic in self.life.topics.values() for q in topic.questions
-                ]
+                pairs = [(plain(q), topic.name) for topic in self.life.topics.values() for q in topic.questions]
                 pairs += [(plain(q), OTHERS) for q in self.life.others]
                 self._learnt = _learnt(tuple(pairs), self._encoder)
 

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-__all__ = ["Slips"]
-
 SHORTEST = 6
 """Shorter words are left alone: too many other words are like them."""
 

@@ -10,8 +10,6 @@ from datetime import date, datetime
 from .itself import texts
 from .life import Fact, Topic
 
-__all__ = ["age", "listed", "telling", "without_question"]
-
 
 def telling(
     topic: Topic, question: str, facts: Mapping[str, Fact], *, mood: str, now: datetime
@@ -96,9 +94,7 @@ def _names(question: str, it: str) -> bool:
 def _filled(phrases: Sequence[str], values: Mapping[str, str]) -> tuple[str, ...]:
     """Return the phrases whose parameters are known, filled in."""
     known = [phrase for phrase in phrases if _parameters(phrase) <= values.keys()]
-    return tuple(
-        _BEGINNING.sub(lambda found: found[0].upper(), phrase.format_map(values)) for phrase in known
-    )
+    return tuple(_BEGINNING.sub(lambda found: found[0].upper(), phrase.format_map(values)) for phrase in known)
 
 
 def _parameters(phrase: str) -> set[str]:

@@ -15,16 +15,12 @@ ENOUGH = 5.0
 @module.rule(
     when=rawio.input.changed.detached(),
     emits=idle.impatient,
-    until=rawio.input.changed
-    | rawio.output.changed
-    | rawio.speaking.true
-    | rs.activity.false
-    | idle.impatient,
+    until=rawio.input.changed | rawio.output.changed | rawio.speaking.true | rs.activity.false | idle.impatient,
     detached=True,
     background=True,
 )
 async def notice_no_answer(ctx: rs.RuleContext) -> None:
-    """Raise `impatient` when an answer runs long without output. `idle` sees only rules that are kept waiting."""
+    """Raise `impatient` when a rule runs long without output. (`idle` notices rules that wait.)"""
     await ctx.sleep(ctx.settings.unanswered_after)
     ctx.emit(idle.impatient)
 
@@ -67,18 +63,14 @@ async def notice_answer(ctx: rs.RuleContext) -> rs.Resign | None:
     return None
 
 
-@module.rule(
-    when=promised.true.max_age(None), emits=lost, until=promised.false, detached=True, background=True
-)
+@module.rule(when=promised.true.max_age(None), emits=lost, until=promised.false, detached=True, background=True)
 async def notice_late_answer(ctx: rs.RuleContext) -> None:
     """Raise `lost` when the answer takes too long."""
     await ctx.sleep(ctx.settings.answer_within)
     ctx.emit(lost)
 
 
-@module.rule(
-    when=rs.activity.false.max_age(None) & promised.holds(bool), emits=lost, detached=True, background=True
-)
+@module.rule(when=rs.activity.false.max_age(None) & promised.holds(bool), emits=lost, detached=True, background=True)
 async def notice_no_rule_left(ctx: rs.RuleContext) -> None:
     """Raise `lost` when no rule is left that could answer."""
     ctx.emit(lost)

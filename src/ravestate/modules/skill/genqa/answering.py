@@ -19,8 +19,6 @@ from .shipped import bring_up
 from .stems import Stems
 from .variants import variants_of
 
-__all__ = ["Answer", "Answerer", "Candidate"]
-
 RETRIEVED = 16
 """The number of passages with some word of a question, and again of those with all; they are compared word by word."""
 READ = (1, 1, 2, 4)
@@ -163,9 +161,7 @@ class Answerer:
             """Return the greatest possible number of passages with a word."""
             return min(known.get(stem, 0) for stem in stem_of[word])
 
-        rare = [
-            word for word in stem_of if standing(word) <= (COMMON_KIND if word in question.kinds else COMMON)
-        ]
+        rare = [word for word in stem_of if standing(word) <= (COMMON_KIND if word in question.kinds else COMMON)]
         others = _other_ranks(question.text)
         found = index.search(rare or list(stem_of), RETRIEVED, others)
         # A passage with all words may be hidden behind many that repeat the rarest one.

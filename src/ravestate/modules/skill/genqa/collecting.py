@@ -13,8 +13,6 @@ from .document import Document
 from .index import Index, IndexedFile
 from .reading import Unreadable, kind_of, read
 
-__all__ = ["Found", "Outcome", "Reading", "collect", "find", "name_of", "within"]
-
 Reading = Callable[[Path, int], object]
 """A callback for each document that is read: the file, and the number of its documents before this one."""
 
@@ -107,9 +105,7 @@ def within(name: str, root: Path) -> bool:
 
 def _walk(root: Path, found: Found) -> None:
     def complain(error: OSError) -> None:
-        found.unreadable.append(
-            Outcome(Path(error.filename or root), "unreadable", why=error.strerror or str(error))
-        )
+        found.unreadable.append(Outcome(Path(error.filename or root), "unreadable", why=error.strerror or str(error)))
 
     for folder, folders, names in os.walk(root, onerror=complain):
         folders[:] = sorted(name for name in folders if not name.startswith("."))

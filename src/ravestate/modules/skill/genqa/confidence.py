@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import math
 
-__all__ = ["confidence"]
-
 INTERCEPT, SCORE, COVERED = -6.419, 0.634, 5.337
 
 

@@ -15,8 +15,6 @@ from ravestate.modules._text import printable
 from .document import Document
 from .stems import TOKENIZER
 
-__all__ = ["Found", "Index", "IndexedFile"]
-
 FORMAT = 1
 """The version of the file format. A greater one is refused."""
 APPLICATION = 0x52764741
@@ -158,9 +156,7 @@ class Index:
         """Return the number of passages with each stem, without those in none."""
         marks = ", ".join("?" * len(stems))
         with self._lock, self._told():
-            return dict(
-                self._base.execute(f"SELECT term, doc FROM words WHERE term IN ({marks})", tuple(stems))
-            )
+            return dict(self._base.execute(f"SELECT term, doc FROM words WHERE term IN ({marks})", tuple(stems)))
 
     def search(self, words: Sequence[str], limit: int, without: Sequence[str] = ()) -> list[Found]:
         """Return the passages that share most with `words`, by BM25, best first.
@@ -172,9 +168,7 @@ class Index:
         """
         return self._matching(_any_of(words), limit, without)
 
-    def search_all(
-        self, groups: Sequence[Sequence[str]], limit: int, without: Sequence[str] = ()
-    ) -> list[Found]:
+    def search_all(self, groups: Sequence[Sequence[str]], limit: int, without: Sequence[str] = ()) -> list[Found]:
         """Return passages like `search`, but only those with a word of each group."""
         each = [any_of for group in groups if (any_of := _any_of(group))]
         return self._matching(" AND ".join(f"({any_of})" for any_of in each), limit, without)
@@ -258,9 +252,7 @@ class Index:
         self._base.execute("PRAGMA synchronous = NORMAL")
         if empty:
             with self._changing():
-                if not self._base.execute("SELECT count(*) FROM sqlite_master").fetchone()[
-                    0
-                ]:  # nobody was faster
+                if not self._base.execute("SELECT count(*) FROM sqlite_master").fetchone()[0]:  # nobody was faster
                     for statement in _SCHEMA.split(";\n"):
                         self._base.execute(statement)
 

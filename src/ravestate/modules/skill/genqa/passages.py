@@ -9,8 +9,6 @@ from ravestate.modules._text import printable
 
 from .document import Passage
 
-__all__ = ["LONGEST", "passages_of"]
-
 LONGEST = 280
 """The greatest number of characters in a passage; a longer sentence is cut."""
 SHORTEST = 12

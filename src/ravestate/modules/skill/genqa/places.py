@@ -10,8 +10,6 @@ from ravestate.modules._folders import user_folder
 from .answering import Answerer
 from .names import Settings
 
-__all__ = ["answerer_of", "path_of"]
-
 _answerers: dict[tuple[Path, bool, Path | None], Answerer] = {}
 _making = threading.Lock()
 

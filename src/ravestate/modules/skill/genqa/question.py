@@ -7,8 +7,6 @@ from dataclasses import dataclass
 
 from ravestate.modules._text import printable
 
-__all__ = ["Question", "as_question", "asks_in_short", "is_vague"]
-
 LONGEST = 2000
 """Characters of an utterance; a longer one is no question about the world."""
 
@@ -95,14 +93,10 @@ def as_question(heard: str) -> Question:
         return Question(heard[:LONGEST], declined="it is too long for a question")
     text = " ".join(printable(heard).replace("’", "'").split())
     sentences = [_FRONT.sub("", sentence) or sentence for sentence in _SENTENCE.split(text)]
-    asking = (
-        [s for s in sentences if _ASKS.match(s)] or [s for s in sentences if s.endswith("?")] or sentences
-    )
+    asking = [s for s in sentences if _ASKS.match(s)] or [s for s in sentences if s.endswith("?")] or sentences
     asked = asking[0]
     folded = asked.lower()
-    said = dict.fromkeys(
-        word for word in re.findall(r"[^\W_]+", asked) if word.lower() not in _EMPTY or word == "US"
-    )
+    said = dict.fromkeys(word for word in re.findall(r"[^\W_]+", asked) if word.lower() not in _EMPTY or word == "US")
     words = tuple(word for word in said if word.lower() not in _KINDS)
     kinds = tuple(word for word in said if word.lower() in _KINDS)
     if not words:  # "What is time?" has no other words

@@ -8,8 +8,6 @@ from dataclasses import dataclass
 
 from ravestate.modules._text import printable
 
-__all__ = ["Before", "completed", "other_wordings"]
-
 LONGEST = 200
 """Characters of a question that may refer to another."""
 

@@ -71,9 +71,7 @@ def find(ctx: rs.RuleContext) -> rs.Resign | None:
     if not answer.text:
         return rs.Resign(answer.reason)
     if answer.confidence < (settings.sure if short else settings.unsure):
-        return rs.Resign(
-            f"the documents have only {answer.text!r}, with a confidence of {answer.confidence:.2f}"
-        )
+        return rs.Resign(f"the documents have only {answer.text!r}, with a confidence of {answer.confidence:.2f}")
     ctx[before] = Before(answer.question.rstrip(" ?!."), answer.title, ctx.now)
     ctx.emit(found, answer)
     return None

@@ -12,8 +12,6 @@ from typing import Any
 from .document import Document, Passage
 from .index import Index, IndexedFile
 
-__all__ = ["SHIPPED", "bring_up", "documents"]
-
 SHIPPED = "ravestate:collection"
 """The collection's name among the files of an index."""
 

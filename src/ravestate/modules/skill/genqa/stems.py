@@ -5,8 +5,6 @@ from __future__ import annotations
 import sqlite3
 import threading
 
-__all__ = ["TOKENIZER", "Stems"]
-
 TOKENIZER = "porter unicode61 remove_diacritics 2"
 """Letters and digits, lower case, without accents and English endings."""
 
@@ -31,9 +29,7 @@ class Stems:
         with self._lock:
             self._base.execute("DELETE FROM texts")
             self._base.executemany("INSERT INTO texts(rowid, text) VALUES (?, ?)", enumerate(texts))
-            rows: list[tuple[str, int, int]] = self._base.execute(
-                'SELECT term, doc, "offset" FROM words'
-            ).fetchall()
+            rows: list[tuple[str, int, int]] = self._base.execute('SELECT term, doc, "offset" FROM words').fetchall()
         for term, text, offset in rows:
             found[text].append((offset, term))
         return [[term for _, term in sorted(stems)] for stems in found]

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-__all__ = ["variants_of"]
-
 _GROUPS = """
 become became | begin began begun start | break broke broken | bring brought | build built | buy bought | catch caught
 choose chose chosen | die died death | do did done | draw drew drawn | drink drank drunk | drive drove driven | eat ate eaten feed

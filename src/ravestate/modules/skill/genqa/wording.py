@@ -14,8 +14,6 @@ from .answering import Answer
 from .names import Settings, found
 from .names import module as genqa
 
-__all__ = ["intent_of", "is_supported", "prompt", "wording_rule"]
-
 TOLD = 3
 """The greatest number of passages in the prompt."""
 WORTH_TELLING = 3.0
@@ -36,9 +34,7 @@ _NUMBER_WORDS = """
     one two three four five six seven eight nine ten eleven twelve dozen twenty thirty forty fifty hundred thousand million
     billion trillion half twice first second third
 """
-_DENIAL = re.compile(
-    r"\b(?:not|no|never|none|nobody|nothing|neither|nor|without|cannot)\b|n['’]t\b", re.IGNORECASE
-)
+_DENIAL = re.compile(r"\b(?:not|no|never|none|nobody|nothing|neither|nor|without|cannot)\b|n['’]t\b", re.IGNORECASE)
 _PLAIN = frozenset(_PLAIN_WORDS.split())
 _NUMBERS = frozenset(_NUMBER_WORDS.split())
 

@@ -13,9 +13,7 @@ JUST_NOW = 60.0
 """Seconds for which a goodbye counts: a user who leaves after it hears no second one."""
 
 
-@module.rule(
-    when=interloc.users.added, writes=verbaliser.intent, weight=1.1
-)  # before a goodbye in the same moment
+@module.rule(when=interloc.users.added, writes=verbaliser.intent, weight=1.1)  # before a goodbye in the same moment
 async def greet_who_comes(ctx: rs.RuleContext) -> None:
     """Greet a user who comes."""
     name = ctx.payload(interloc.users.added).item

@@ -6,8 +6,6 @@ import re
 
 from ravestate.modules._courtesy import COURTESY
 
-__all__ = ["is_farewell", "is_greeting"]
-
 GREETING = re.compile(
     r"(hi+|hello+|hey+|hiya|howdy|greetings|good (morning|afternoon|evening|day)|hallo+|guten (morgen|tag|abend)|moin)\b",
     re.IGNORECASE,

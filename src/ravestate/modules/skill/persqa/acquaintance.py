@@ -12,8 +12,6 @@ from .profile import Facts, merged, told_apart
 from .talk import Talk
 from .topics import NAME, in_order
 
-__all__ = ["Acquaintance", "Noted"]
-
 
 @dataclass(frozen=True, slots=True)
 class Acquaintance:

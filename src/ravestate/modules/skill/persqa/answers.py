@@ -11,8 +11,6 @@ from .statements import gerund, worker
 from .topics import NAME, TOPICS, Fact, Kind
 from .words import REMARKS, STATES, VERBS
 
-__all__ = ["answer", "correction", "has_none", "refuses"]
-
 OPENING = re.compile(
     r"^\W*("
     + either(r"""

@@ -10,8 +10,6 @@ from .patterns import either
 from .statements import statements
 from .topics import Fact
 
-__all__ = ["to_forget", "wants_to_be_forgotten"]
-
 _MINE = r"(about me|of me|me|myself|my (personal )?(data|name|information|info|details|profile|memory)|(the )?(data|information) (about|on|of) me)"
 _FORGET = re.compile(
     r"(?<![\w'])"
@@ -22,9 +20,7 @@ _FORGET = re.compile(
     """),
     re.IGNORECASE,
 )  # fmt: skip
-_ASKED_TO = re.compile(
-    r"((can|could|would|will) you |(want|like) (you )?to )(please |just )*$", re.IGNORECASE
-)
+_ASKED_TO = re.compile(r"((can|could|would|will) you |(want|like) (you )?to )(please |just )*$", re.IGNORECASE)
 _OTHERWISE = re.compile(
     r"((don't|do not|never|won't|didn't|not|will|did|have|would|could) (\w+ )?(you )?(ever )?|"
     r"\b(i|we|you|they|he|she|people|everybody|everyone|who|to) (will |would |always |might |may |could )*)$",
@@ -52,9 +48,7 @@ _REQUEST = re.compile(
     r"(?:forget|delete|erase|unlearn|don't remember|do not remember) (?:about )?(?:that )?(?P<what>.+)$",
     re.IGNORECASE,
 )
-_OWN = re.compile(
-    r"(?:(?:what|where|who|when|how old|everything|anything|all) )?(?:i|i'm|my|me)\b", re.IGNORECASE
-)
+_OWN = re.compile(r"(?:(?:what|where|who|when|how old|everything|anything|all) )?(?:i|i'm|my|me)\b", re.IGNORECASE)
 
 
 def to_forget(text: str, known: Mapping[str, tuple[str, ...]]) -> list[Fact] | None:
@@ -72,9 +66,7 @@ def to_forget(text: str, known: Mapping[str, tuple[str, ...]]) -> list[Fact] | N
     if request is None:
         return None
     what = request["what"].strip(" .!?")
-    topics = [
-        topic for topic, values in known.items() if what.casefold() in [value.casefold() for value in values]
-    ]
+    topics = [topic for topic, values in known.items() if what.casefold() in [value.casefold() for value in values]]
     if topics:
         return [Fact(topic, (what,), gone=True) for topic in topics]
     found = [Fact(fact.topic, fact.values, gone=True) for fact in statements(what)]

@@ -14,8 +14,6 @@ from .topics import NAME, RELATIVES, TOPICS, Fact, favourite
 from .wording import among
 from .words import word_set
 
-__all__ = ["EVERYTHING", "about_oneself", "inquiry", "of_whom"]
-
 EVERYTHING = "everything"
 """Stands for all topics."""
 

@@ -19,9 +19,7 @@ from .topics import ASKED
 def _known(topics: tuple[str, ...]) -> tuple[str, ...]:
     for name in topics:
         if name not in ASKED:
-            raise ValueError(
-                f"there is no topic {name!r}{nearest(name, ASKED)}; there are {', '.join(ASKED)}"
-            )
+            raise ValueError(f"there is no topic {name!r}{nearest(name, ASKED)}; there are {', '.join(ASKED)}")
     return topics
 
 

@@ -9,8 +9,6 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping
 
-__all__ = ["Patterns", "either", "patterns", "wanted"]
-
 Patterns = tuple[tuple[str, re.Pattern[str]], ...]
 """Names and their expressions."""
 

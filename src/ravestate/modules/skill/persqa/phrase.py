@@ -12,8 +12,6 @@ from .topics import Kind, Topic
 from .wording import tidy
 from .words import DETERMINERS, NEVER_IN, NO_EMPLOYER, NO_HOBBY, NO_PLACE, NO_SUBJECT, STATES
 
-__all__ = ["LONGEST", "is_value", "plain", "values"]
-
 LONGEST = 500
 """Characters of an utterance that are read. A longer one answers no question."""
 
@@ -139,9 +137,7 @@ def is_value(value: str, topic: Topic) -> bool:
             return words[-1] not in NO_PLACE
         case "organisation":
             return (
-                not NO_EMPLOYER & {first, words[-1]}
-                and first not in ("and", "or", "not", "no")
-                and not first.isdigit()
+                not NO_EMPLOYER & {first, words[-1]} and first not in ("and", "or", "not", "no") and not first.isdigit()
             )
         case "subject":
             return first not in NO_SUBJECT

@@ -8,8 +8,6 @@ from dataclasses import dataclass
 from .topics import NAME, TOPICS, Fact, in_order
 from .wording import among
 
-__all__ = ["Facts", "News", "learn", "merged", "told_apart"]
-
 Facts = Mapping[str, tuple[str, ...]]
 """Values by topic; an empty tuple means that there are none."""
 

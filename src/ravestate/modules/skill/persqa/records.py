@@ -9,8 +9,6 @@ from ravestate.modules import ontology
 from .topics import NAME, TOPICS, Topic, about, in_order
 from .wording import among
 
-__all__ = ["known", "named", "note"]
-
 
 def named(graph: ontology.Graph, name: str) -> ontology.Node | None:
     """Return the person of this name; among several the one with the most relations, then the oldest."""

@@ -10,8 +10,6 @@ from .profile import Facts
 from .topics import TOPICS, in_order
 from .wording import clause, joined, spoken
 
-__all__ = ["asking", "clauses", "learned", "memorable", "say", "stating", "summary"]
-
 PACKAGE = __name__.rpartition(".")[0]
 """The package with the phrases."""
 

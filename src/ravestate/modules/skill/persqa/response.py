@@ -21,8 +21,6 @@ from .topics import NAME, TOPICS, Fact
 from .understanding import Meaning
 from .wording import among, same
 
-__all__ = ["Response", "respond_to"]
-
 T = TypeVar("T")
 
 
@@ -146,11 +144,7 @@ def _learning(talk: Talk, meaning: Meaning, news: News, name: str | None) -> Tal
     main = NAME if name is not None else _main(meaning, news)
     latest = (name,) if name is not None else next((f.values for f in meaning.facts if f.topic == main), ())
     talk = talk.learning(topics, main, latest)
-    if (
-        talk.question is not None
-        and (asked := TOPICS.get(talk.question.topic))
-        and set(asked.besides) & set(topics)
-    ):
+    if talk.question is not None and (asked := TOPICS.get(talk.question.topic)) and set(asked.besides) & set(topics):
         talk = replace(talk, question=None)
     once = {topic: (*talk.once.get(topic, ()), *news.facts.get(topic, ())) for topic in news.topics}
     once = {topic: tuple(dict.fromkeys(values)) for topic, values in once.items()}

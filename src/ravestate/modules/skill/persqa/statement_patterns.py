@@ -5,8 +5,6 @@ from __future__ import annotations
 from .patterns import patterns
 from .topics import NAME, RELATIVES
 
-__all__ = ["ADVERBS", "AM", "GONE", "HAVING", "STATED"]
-
 ADVERBS = (
     r"((actually|currently|now|still|just|really|also|mostly|originally|mainly|usually|only|sort of|kind of|always|"
     r"already|recently|sometimes|often) )*"

@@ -11,8 +11,6 @@ from .statement_patterns import ADVERBS, AM, GONE, HAVING, STATED
 from .topics import NAME, TOPICS, Fact, favourite
 from .words import NO_STUDENT, NOT_DONE, OCCUPATIONS, STATES, VERBS
 
-__all__ = ["gerund", "likings", "relative_in", "statements", "worker"]
-
 _I_AM = re.compile(rf"(?<![\w'])(?:{AM}|this is )(?=(?P<wanted>.+))", re.IGNORECASE)
 _A = re.compile(r"(?:an? )(.+)", re.IGNORECASE)
 _NAMED = re.compile(r"\b(?:called|named|names?)\b", re.IGNORECASE)
@@ -50,9 +48,7 @@ def statements(text: str, *, persons: Collection[str] = (), asked: str = "") -> 
         known = found.get(fact.topic)
         if known is None or (known.gone and not fact.gone):  # I don't live in Ulm, I live in Bremen
             found[fact.topic] = fact
-    if (
-        asked == "home" and "origin" in found and "home" not in found
-    ):  # the user says that they are from there
+    if asked == "home" and "origin" in found and "home" not in found:  # the user says that they are from there
         origin = found.pop("origin")
         found["home"] = Fact("home", origin.values, origin.gone)
     return list(found.values())
@@ -114,9 +110,7 @@ def likings(said: Iterable[str]) -> list[Fact]:
     """
     by: dict[str, tuple[str, ...]] = {}
     for value in said:
-        done = any(
-            word.endswith("ing") and len(word) > 4 and word not in NOT_DONE for word in value.lower().split()
-        )
+        done = any(word.endswith("ing") and len(word) > 4 and word not in NOT_DONE for word in value.lower().split())
         topic = "hobby" if done else "liking"
         by[topic] = (*by.get(topic, ()), value)
     return [Fact(topic, by[topic]) for topic in ("hobby", "liking") if topic in by]

@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, fields, replace
 
-__all__ = ["FORGET", "TRIES", "Question", "Talk"]
-
 FORGET = "forget"
 """The topic of the question whether the user really wants to be forgotten."""
 

@@ -7,8 +7,6 @@ from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Literal
 
-__all__ = ["ASKED", "NAME", "RELATIVES", "TOPICS", "Fact", "Topic", "about", "due", "favourite", "in_order"]
-
 Kind = Literal["name", "place", "activity", "work", "organisation", "subject", "people", "thing", "number"]
 """The kind of a value. It decides how the value is read and written."""
 
@@ -103,9 +101,7 @@ ASKED = tuple(topic.name for topic in TOPICS.values() if topic.asked)
 RELATIVES = tuple(topic for topic in TOPICS.values() if topic.nouns)
 """The topics with nouns: *my sister*."""
 
-NOT_EMPLOYED = frozenset(
-    ["student", "pupil", "retired", "self-employed", "freelancer", "freelance", "pensioner"]
-)
+NOT_EMPLOYED = frozenset(["student", "pupil", "retired", "self-employed", "freelancer", "freelance", "pensioner"])
 """Occupations without an employer."""
 
 
@@ -173,10 +169,7 @@ def due(
     open_ = [
         name
         for name in wanted
-        if name not in known
-        and name not in closed
-        and tries.get(name, 0) < limit
-        and _makes_sense(name, known)
+        if name not in known and name not in closed and tries.get(name, 0) < limit and _makes_sense(name, known)
     ]
     if not open_:
         return ""

@@ -18,8 +18,6 @@ from .talk import FORGET, Talk
 from .topics import NAME, TOPICS, Fact
 from .words import VERBS
 
-__all__ = ["Heard", "Meaning", "persons_in", "understand"]
-
 Kind = Literal[
     "nothing",  # for persqa
     "told",
@@ -79,9 +77,7 @@ class Meaning:
     aloud: bool = True
 
 
-def understand(
-    heard: Heard, talk: Talk, known: Mapping[str, tuple[str, ...]], now: float, within: float
-) -> Meaning:
+def understand(heard: Heard, talk: Talk, known: Mapping[str, tuple[str, ...]], now: float, within: float) -> Meaning:
     """Return the meaning of an utterance.
 
     Args:
@@ -131,9 +127,7 @@ def understand(
         return Meaning("declined", topic=topic)
     if pending.fresh and has_none(text):
         return Meaning("none" if topic != NAME else "declined", topic=topic)
-    answered = answer(text, topic) or (
-        correction(text, topic, ()) if heard.yesno.no else []
-    )  # no, from Bremen
+    answered = answer(text, topic) or (correction(text, topic, ()) if heard.yesno.no else [])  # no, from Bremen
     if answered and may_stand_alone(heard):
         return Meaning("told", tuple(answered), topic)
     if not pending.fresh:

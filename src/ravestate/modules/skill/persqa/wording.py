@@ -7,8 +7,6 @@ from collections.abc import Iterable, Sequence
 from .topics import TOPICS, Topic
 from .words import SMALL
 
-__all__ = ["among", "clause", "joined", "same", "spoken", "tidy"]
-
 BARE = frozenset(["retired", "self-employed", "freelance", "unemployed"])
 """Occupations without an article."""
 

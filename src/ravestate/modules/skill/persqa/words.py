@@ -2,23 +2,6 @@
 
 from __future__ import annotations
 
-__all__ = [
-    "DETERMINERS",
-    "NEVER_IN",
-    "NOT_DONE",
-    "NO_EMPLOYER",
-    "NO_HOBBY",
-    "NO_PLACE",
-    "NO_STUDENT",
-    "NO_SUBJECT",
-    "OCCUPATIONS",
-    "REMARKS",
-    "SMALL",
-    "STATES",
-    "VERBS",
-    "word_set",
-]
-
 
 def word_set(text: str) -> frozenset[str]:
     """Return the words of a text."""
@@ -109,9 +92,7 @@ REMARKS = word_set(
 )
 """First words of remarks that are no answers, except in names: *New York*, but *no chance*."""
 
-SMALL = word_set(
-    "of the and in on upon am an at der die das den von van de da di del la le du y zu near for bei a"
-)
+SMALL = word_set("of the and in on upon am an at der die das den von van de da di del la le du y zu near for bei a")
 """Words without a capital inside a name."""
 
 NO_STUDENT = word_set("good bad new old lazy high-school high school college university uni phd exchange")

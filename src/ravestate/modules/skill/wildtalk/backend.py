@@ -6,8 +6,6 @@ from collections.abc import AsyncGenerator, Callable, Sequence
 from dataclasses import dataclass
 from typing import Literal, Protocol
 
-__all__ = ["Backend", "Message", "Progress", "Role"]
-
 Role = Literal["system", "user", "assistant"]
 
 Progress = Callable[[float], None]

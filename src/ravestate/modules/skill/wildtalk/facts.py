@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import re
 
-__all__ = ["asks_for_fact"]
-
 _FRONT = re.compile(
     r"^(?:(?:so|and|but|well|ok|okay|hey|please|now|then|by the way|can you tell me|could you tell me|tell me|"
     r"do you know|do you happen to know|any idea|i wonder|und|aber|also|bitte|sag mal|kannst du mir sagen|"

@@ -10,8 +10,6 @@ from ravestate.modules._text import printable
 
 from .backend import Message
 
-__all__ = ["EXAMPLES", "PERSONA", "History"]
-
 PERSONA = (
     "You are {name}, a friendly robot. You make small talk in short, simple sentences. You never state facts about the "
     "world; if you are asked for one, you say that you do not know."

@@ -7,8 +7,6 @@ from collections.abc import AsyncGenerator, Sequence
 
 from .backend import Message, Progress
 
-__all__ = ["ListeningBackend"]
-
 TO_A_REMARK = (
     "I see.",
     "Go on, I'm listening.",

@@ -17,8 +17,6 @@ from .backend import Message, Progress
 from .llama_process import LlamaProcess, ModelKey
 from .openai import OpenAIBackend
 
-__all__ = ["LlamaBackend", "bundled_model", "checked_model"]
-
 _OWN_MODEL = "--set wildtalk.model_path=/path/to/model.gguf"
 
 
@@ -114,8 +112,7 @@ class LlamaBackend:
             grace = 0.5 if error.__cause__ is not None else 0.0
             if obituary := await asyncio.to_thread(process.obituary, grace):
                 raise PlatformError(
-                    f"wildtalk: the language model's process ended ({obituary}). It starts again for "
-                    f"the next answer"
+                    f"wildtalk: the language model's process ended ({obituary}). It starts again for the next answer"
                 ) from error
             raise
         finally:

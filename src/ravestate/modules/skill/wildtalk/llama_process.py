@@ -21,8 +21,6 @@ from typing import IO, Any
 
 from ravestate.errors import PlatformError
 
-__all__ = ["LlamaProcess", "ModelKey", "drop", "take"]
-
 
 @dataclass(frozen=True, slots=True)
 class ModelKey:
@@ -118,9 +116,7 @@ class LlamaProcess:
                 start_new_session=True,
             )
         except (OSError, ValueError) as error:
-            raise PlatformError(
-                f"wildtalk: cannot start Python for the model ({sys.executable!r}): {error}"
-            ) from error
+            raise PlatformError(f"wildtalk: cannot start Python for the model ({sys.executable!r}): {error}") from error
         config = {
             "path": str(self.key.path),
             "context_tokens": self.key.context_tokens,

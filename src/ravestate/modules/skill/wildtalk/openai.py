@@ -19,8 +19,6 @@ if TYPE_CHECKING:
     from httpx_sse import ServerSentEvent
     from pydantic import SecretStr
 
-__all__ = ["OpenAIBackend"]
-
 _BODY_LIMIT = (
     1 << 20
 )  # bytes of an answer without a stream, and characters of a line; of an error a thousandth is shown
@@ -256,9 +254,7 @@ class OpenAIBackend:
             raise PlatformError(f"wildtalk: {self._place} sent no JSON object: {self._safe(_short(payload))}")
         document = cast("dict[str, Any]", document)
         if document.get("error"):
-            raise PlatformError(
-                f"wildtalk: the server at {self._place} failed: {self._safe(_reason(payload))}"
-            )
+            raise PlatformError(f"wildtalk: the server at {self._place} failed: {self._safe(_reason(payload))}")
         return document
 
     def _text(self, document: dict[str, Any], field: str) -> str:
@@ -286,9 +282,7 @@ class OpenAIBackend:
         status, reason = answer.status_code, self._safe(_reason(body))
         if status in (401, 403):
             hint = (
-                "check wildtalk.api_key"
-                if self._key
-                else "it wants a key: set wildtalk.api_key, from the environment"
+                "check wildtalk.api_key" if self._key else "it wants a key: set wildtalk.api_key, from the environment"
             )
         elif status == 404:
             hint = (
@@ -341,9 +335,7 @@ def _error(body: str) -> Mapping[str, Any]:
         document: Any = json.loads(body)
     except ValueError:
         return {}
-    error: Any = (
-        cast("dict[str, Any]", document).get("error", document) if isinstance(document, dict) else document
-    )
+    error: Any = cast("dict[str, Any]", document).get("error", document) if isinstance(document, dict) else document
     return cast("dict[str, Any]", error) if isinstance(error, dict) else {"message": error}
 
 

@@ -7,8 +7,6 @@ import time
 from types import TracebackType
 from typing import Any, TextIO
 
-__all__ = ["ProgressBar"]
-
 
 class ProgressBar:
     """A progress bar that appears after `delay` seconds, and only for a person.

@@ -21,8 +21,6 @@ from ravestate.modules._loading import LOADING
 
 from .backend import Message, Progress
 
-__all__ = ["TransformersBackend", "cut", "transcript"]
-
 T = TypeVar("T")
 
 ANSWERS = "Agent:"
@@ -224,16 +222,12 @@ class _Model:
             def __call__(self, input_ids: Any, scores: Any, **_: Any) -> Any:
                 return torch.full((input_ids.shape[0],), left.is_set(), dtype=torch.bool)
 
-        tokens: Any = self.tokenizer(prompt, return_tensors="pt", add_special_tokens=False).to(
-            self.model.device
-        )
+        tokens: Any = self.tokenizer(prompt, return_tensors="pt", add_special_tokens=False).to(self.model.device)
         room = getattr(self.model.config, "max_position_embeddings", 0) or 0
         if room:  # for the prompt and the answer together
             max_tokens = min(max_tokens, room - 1)
             tokens = {key: value[:, max_tokens - room :] for key, value in tokens.items()}
-        sampling = (
-            {"do_sample": True, "temperature": temperature} if temperature > 0 else {"do_sample": False}
-        )
+        sampling = {"do_sample": True, "temperature": temperature} if temperature > 0 else {"do_sample": False}
         # One answer at a time: two would be no faster, and the library's random numbers belong to the whole process.
         with self._writing:
             if left.is_set():

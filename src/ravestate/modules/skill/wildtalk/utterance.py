@@ -7,8 +7,6 @@ import unicodedata
 
 from ravestate.modules._text import without_controls
 
-__all__ = ["Utterance"]
-
 # Signs that a model continues the conversation by itself, or shows the marks of its template.
 _ROLES = ("User", "Human", "Assistant", "System", "Bot", "AI")
 _MARKS = r"<\|[^|<>\n]{1,16}\|>|</?s>|\[/?INST\]|<(?:start|end)_of_turn>|^\#{2,4}\s"

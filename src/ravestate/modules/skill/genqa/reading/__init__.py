@@ -45,9 +45,7 @@ def read(path: Path, source: str) -> Iterator[Document]:
     """
     kind = kind_of(path)
     if kind is None:
-        raise Unreadable(
-            f"nothing reads files that end in {path.suffix!r}: it must be one of {', '.join(KINDS)}"
-        )
+        raise Unreadable(f"nothing reads files that end in {path.suffix!r}: it must be one of {', '.join(KINDS)}")
     reader: Callable[[Path, str], Iterator[Document]] = import_module(f"{__name__}.{kind}").read
     try:
         yield from reader(path, source)

@@ -13,8 +13,6 @@ from ..passages import passages_of
 from .text import LARGEST
 from .unreadable import Unreadable
 
-__all__ = ["documents_in", "read"]
-
 _UNSEEN = (
     "script", "style", "noscript", "template", "nav", "header", "footer", "aside", "form", "svg", "button", "iframe",
 )  # fmt: skip
@@ -50,9 +48,7 @@ def documents_in(content: bytes | str, title: str, source: str) -> Iterator[Docu
         import bs4
     except ImportError as error:
         raise Unreadable("genqa needs beautifulsoup4 to read HTML: pip install 'ravestate[genqa]'") from error
-    logging.getLogger("bs4.dammit").setLevel(
-        logging.ERROR
-    )  # it warns about characters, without naming the file
+    logging.getLogger("bs4.dammit").setLevel(logging.ERROR)  # it warns about characters, without naming the file
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # it warns about XML and about texts like file names
         page: Any = bs4.BeautifulSoup(content, "html.parser")

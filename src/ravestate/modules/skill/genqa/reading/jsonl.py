@@ -11,8 +11,6 @@ from ..document import Document
 from ..passages import passages_of
 from .unreadable import Unreadable
 
-__all__ = ["read"]
-
 
 def read(path: Path, source: str) -> Iterator[Document]:
     """Yield a document for each line; only ``text`` is required."""

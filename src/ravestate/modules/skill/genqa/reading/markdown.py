@@ -16,8 +16,6 @@ from .unreadable import Unreadable
 if TYPE_CHECKING:
     from markdown_it.token import Token
 
-__all__ = ["read"]
-
 # A tag is near its end: the limit keeps a file of opening brackets from taking for ever.
 _UNSEEN = re.compile(
     r"<!--.*?(?:-->|\Z)|<(script|style)\b.*?(?:</\1>|\Z)|</?\w[^<>]{0,300}>", re.DOTALL | re.IGNORECASE
@@ -34,9 +32,7 @@ def read(path: Path, source: str) -> Iterator[Document]:
     try:
         from markdown_it import MarkdownIt
     except ImportError as error:
-        raise Unreadable(
-            "genqa needs markdown-it-py to read Markdown: pip install 'ravestate[genqa]'"
-        ) from error
+        raise Unreadable("genqa needs markdown-it-py to read Markdown: pip install 'ravestate[genqa]'") from error
     parser = MarkdownIt("commonmark").enable("table").disable("code")  # indented text is mostly prose
     text = _FRONT_MATTER.sub("", decoded(path).replace("\r\n", "\n"), count=1)
     title, above = path.stem.replace("_", " "), list[str]()

@@ -10,8 +10,6 @@ from ..document import Document
 from ..passages import passages_of
 from .unreadable import Unreadable
 
-__all__ = ["decoded", "read"]
-
 LARGEST = 64 << 20
 """Bytes of a text file, which is held in memory."""
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-__all__ = ["Unreadable"]
-
 
 class Unreadable(Exception):
     """A file that cannot be read; the message says why."""

@@ -11,8 +11,6 @@ from ..document import Document
 from .html import documents_in
 from .unreadable import Unreadable
 
-__all__ = ["read"]
-
 
 def read(path: Path, source: str) -> Iterator[Document]:
     """Yield the documents of each article; redirections and pictures are passed over."""
