@@ -112,7 +112,7 @@ class Engine(Agenda):
             elif self._settle_flags():
                 pass
             elif (turn := self._loops.next()) is not None:
-                self._enqueue(turn)
+                self._complete(turn, late=True)
             else:
                 self._loops.rest()
                 break
@@ -252,7 +252,7 @@ class Engine(Agenda):
             self._retire(rule)
         if outcome == "failed":
             failure = exception or RuleError(f"rule {rule.name} failed")
-            self._fail(rule, failure, signal=not on_error, lineage=run.lineage)
+            self._fail(rule, failure, signal=not on_error, lineage=self._loops.lineage(run))
 
     def _slot(self, name: str) -> SlotPlan:
         slot = self.policy.slot_of.get(name)

@@ -135,14 +135,15 @@ class Holdings(State):
                 old = [need for need in self._of_spike(holder, spike) if spike.born + need.max_age <= time]
                 self._lose(holder, old, "age")
 
-    def _complete(self, activation: Activation) -> None:
-        """Make an activation ready: it is queued, unless its loop has had too many turns (L23)."""
-        activation.step(COMPLETE)
-        if self._loops.runs <= MANY or not self._loops.defer(activation):
-            self._enqueue(activation)
+    def _complete(self, activation: Activation, *, late: bool = False) -> None:
+        """Make an activation ready and queue it: a writer asks for consent, any other starts without.
 
-    def _enqueue(self, activation: Activation) -> None:
-        """Queue a ready activation: a writer asks for consent, any other starts without."""
+        If its loop has had too many turns (L23), only a second call queues it, a `late` one.
+        """
+        if not late:
+            activation.step(COMPLETE)
+            if self._loops.runs > MANY and self._loops.defer(activation):
+                return
         clause = activation.clause
         if clause.rule.slots and clause.firm_bits:
             self._asking[activation] = None
