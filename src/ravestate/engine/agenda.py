@@ -89,12 +89,10 @@ class Agenda(Slots):
         free = self._free
         self._free = []
         for activation in free:
-            if activation.state != READY:
+            clause = activation.clause
+            if activation.state is not READY or (clause.guards and not self._guarded(activation)):
                 continue
-            if not self._guarded(activation):
-                continue
-            rule = activation.clause.rule
-            if not rule.slots:
+            if not clause.rule.slots:
                 other = self._claimed(activation)
                 if other is not None:
                     self._refuse(activation, Refusal.by(other, activation))
@@ -113,7 +111,7 @@ class Agenda(Slots):
     def _guarded(self, activation: Activation) -> bool:
         """Return whether the predicates on slots hold; if not, the activation is ready no longer."""
         clause = activation.clause
-        if clause.guards and not all(self.holds(s, g, clause.rule) for s, g in clause.guards):
+        if not all(self.holds(s, g, clause.rule) for s, g in clause.guards):
             self._horizon = None
             self._unready(activation)
             self._update(activation)
@@ -146,9 +144,10 @@ class Agenda(Slots):
         while queue:
             entry = heapq.heappop(queue)
             activation = entry[4]
-            if activation.state not in ASKABLE or not self._guarded(activation):
+            clause = activation.clause
+            if activation.state not in ASKABLE or (clause.guards and not self._guarded(activation)):
                 continue
-            rule = activation.clause.rule
+            rule = clause.rule
             if rule.cooldown and (turn := self._turn(activation)) > entry[:4]:
                 heapq.heappush(queue, (*turn, activation))  # its rule has run meanwhile, and recovers
                 continue
@@ -315,12 +314,13 @@ class Agenda(Slots):
 
     def _settle_flags(self) -> bool:
         """Update ``core:activity`` and ``core:pressure`` (L22); return whether one has changed."""
-        pressure = any(not a.clause.reflexive for a in (*self.alternatives, *self.waiting))
-        if pressure != self.read(self._pressure.index):
+        kept = self.alternatives or self.waiting
+        pressure = bool(kept) and any(not a.clause.reflexive for a in (*self.alternatives, *self.waiting))
+        if pressure != self.values.get(self._pressure.index, False):
             self._set_flag(self._pressure, pressure)
             return True
         activity = self._busy > 0
-        if activity != self.read(self._activity.index):
+        if activity != self.values.get(self._activity.index, False):
             self._set_flag(self._activity, activity)
             return True
         return False

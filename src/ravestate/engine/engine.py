@@ -103,7 +103,7 @@ class Engine(Agenda):
                 error = self.policy.signal_of["core:error"]
                 failure, lineage = self._errors.pop(0)
                 self._birth(error, failure, (), self._new_group(), None, lineage)
-            elif self._busy and not self.read(self._activity.index):
+            elif self._busy and not self.values.get(self._activity.index):
                 self._set_flag(self._activity, True)
             elif self._free:
                 self._start_free()
@@ -111,7 +111,7 @@ class Engine(Agenda):
                 self._consent_round()
             elif self._settle_flags():
                 pass
-            elif (turn := self._loops.next()) is not None:
+            elif self._loops.deferred and (turn := self._loops.next()) is not None:
                 self._complete(turn, late=True)
             else:
                 self._loops.rest()

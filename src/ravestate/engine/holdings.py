@@ -166,7 +166,7 @@ class Holdings(State):
                 group.members.pop(activation, None)
             if group.interested:
                 self._dirty[group] = None
-        if all(other is not spike for other in activation.spikes):
+        if spike not in activation.spikes:
             spike.holders.pop(activation, None)
             if not spike.holders:
                 self._forget(spike)

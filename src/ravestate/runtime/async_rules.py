@@ -71,7 +71,7 @@ class AsyncRules:
             self._spare = None
             self._tasks[ctx] = task
             task.task.add_done_callback(functools.partial(self._done, ctx))
-        if task.spoilt and task is self._spare:
+        if task is self._spare and task.spoilt:
             task.close()
             self._spare = None
 

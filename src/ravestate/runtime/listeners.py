@@ -39,11 +39,11 @@ class Listeners:
     def tell(self, spiked: Spiked) -> None:
         """Call the signal's function, and wake the tasks that wait for the signal."""
         function = self._functions.get(spiked.signal)
-        if function is not None:
+        if function is None:
+            self._watched.pop(spiked.signal, None)
+        else:
             function(spiked.payload)
-        futures = self._futures.pop(spiked.signal, [])
-        self._forget(spiked.signal)
-        for future in futures:
+        for future in self._futures.pop(spiked.signal, ()):
             if not future.done():
                 future.set_result(spiked.payload)
 
