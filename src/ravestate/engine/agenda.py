@@ -287,8 +287,9 @@ class Agenda(Slots):
                     spike.claims = {}
                 spike.claims[rule.index] = activation
         self.running[activation.id] = activation
-        self._loops.runs += 1
-        if self._loops.runs > MANY and (loop := self._loops.trace(activation)):
+        loops = self._loops
+        loops.runs += 1
+        if loops.runs > MANY and (loop := loops.trace(activation)):
             self._fail(loop[0], RuleError(_endless(loop)), signal=True)
         if rule.timeout is not None:
             activation.deadline = self.now + rule.timeout
@@ -307,7 +308,8 @@ class Agenda(Slots):
 
     def _set_flag(self, flag: SlotPlan, value: bool) -> None:
         """Change a built-in flag, and signal the change only if something may hear it."""
-        if flag.heard or self.tracer is not None or self.watched or flag.index in self.policy.guarded:
+        heard = flag.heard or self.tracer is not None or (self.watched and self._watched(flag))
+        if heard or flag.index in self.policy.guarded:
             self._change(flag, value, (), None)
         else:
             self.values[flag.index] = value

@@ -67,7 +67,7 @@ class Engine(Agenda):
             if now != now:
                 raise EngineError("the time is not a number of seconds: it is NaN")
         elif now > self.now:
-            if self._deadlines.pending(now):
+            if self._deadlines.earliest <= now:
                 self.advance(now)
             self.now = now
         handler = HANDLERS.get(type(event))
@@ -97,7 +97,7 @@ class Engine(Agenda):
         """Return the effects to perform now. Ask again after performing them, until there are none."""
         # Reports (of spikes, ends, failures) do not end the loop: only work for the runtime does.
         while not self._acts:
-            if self._deadlines.pending(self.now):
+            if self._deadlines.earliest <= self.now:
                 self.advance(self.now)
             elif self._errors:
                 error = self.policy.signal_of["core:error"]
@@ -211,7 +211,8 @@ class Engine(Agenda):
         outcome, exception = event.kind, event.exception
         reason = event.reason
         if told == "timeout":
-            outcome, exception = "failed", RuleTimeout(_overdue(rule))
+            late = f"rule {rule.name} took longer than its timeout of {rule.timeout:g} s ({rule.rule.origin})"
+            outcome, exception = "failed", RuleTimeout(late)
         elif outcome == "resigned" and run.wrote:
             outcome = "failed"
             exception = RuleError(
@@ -379,10 +380,6 @@ class Engine(Agenda):
 def _roots(run: Activation) -> list[Group]:
     """Return the present groups of a run."""
     return list(dict.fromkeys(group.root() for group in run.groups))
-
-
-def _overdue(rule: RulePlan) -> str:
-    return f"rule {rule.name} took longer than its timeout of {rule.timeout:g} s ({rule.rule.origin})"
 
 
 HANDLERS: dict[type, Any] = {

@@ -256,7 +256,8 @@ class Holdings(State):
             activation.stands_on = activation.groups = ()
         if activation.pressed != NEVER:
             activation.pressed = NEVER
-        self.alternatives.pop(activation, None)
+        if self.alternatives:
+            self.alternatives.pop(activation, None)
         active = self.active[clause.rule.index]
         del active[activation]
         if not active:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Sequence
+from operator import attrgetter
 from typing import TYPE_CHECKING, NamedTuple
 
 from ravestate.engine.activation import READY
@@ -98,7 +99,7 @@ class Loops:
         lines = self._lines(run)
         if not lines:
             return ()  # `lineage` begins a loop if the run raises a spike
-        rule, loop = run.clause.rule, max((line.loop for line in lines), key=_turns)
+        rule, loop = run.clause.rule, max((line.loop for line in lines), key=attrgetter("turns"))
         rules = frozenset[int]().union(*(line.rules for line in lines))
         run.lineage = Lineage(rules | {rule.index}, loop)
         if rule.index not in rules:
@@ -109,16 +110,8 @@ class Loops:
         if not new:
             return ()
         self._named |= new
-        return sorted(loop.rules, key=_number)
+        return sorted(loop.rules, key=attrgetter("index"))
 
     def _lines(self, activation: Activation) -> list[Lineage]:
         lines = [spike.lineage for spike in activation.spikes if spike is not None and spike.lineage is not None]
         return [line for line in lines if line.loop.instant == self._instant] if lines else lines
-
-
-def _turns(loop: Loop) -> int:
-    return loop.turns
-
-
-def _number(rule: RulePlan) -> int:
-    return rule.index
