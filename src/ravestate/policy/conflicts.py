@@ -56,8 +56,6 @@ def find_conflicts(policy: Policy) -> tuple[Conflict, ...]:
 class Conflicts:
     """The conflicts of one policy, pair by pair."""
 
-    __slots__ = ("_names", "_roots", "policy")
-
     def __init__(self, policy: Policy) -> None:
         self.policy = policy
         self._roots: dict[Clause, int] = {}

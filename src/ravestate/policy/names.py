@@ -23,8 +23,6 @@ class Names:
         faults: The list for faults: names that occur twice, and unknown names.
     """
 
-    __slots__ = ("_modules", "_signal_of", "_slot_of", "faults", "signals", "slots")
-
     def __init__(self, modules: Sequence[Module], faults: list[DeclarationError]) -> None:
         self.faults = faults
         self.signals: list[SignalPlan] = []

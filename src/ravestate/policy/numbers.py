@@ -21,8 +21,6 @@ class Numbers:
         faults: The list for faults: numbers out of range, and missing settings.
     """
 
-    __slots__ = ("_modules", "_named", "_settings", "faults", "refers")
-
     def __init__(self, modules: Sequence[Module], settings: Mapping[str, Any], faults: list[DeclarationError]) -> None:
         self.faults = faults
         self.refers = False

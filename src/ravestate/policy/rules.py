@@ -30,8 +30,6 @@ class Rules:
         faults: The list for faults.
     """
 
-    __slots__ = ("_count", "_named", "faults", "names", "numbers", "plans")
-
     def __init__(self, names: Names, numbers: Numbers, faults: list[DeclarationError]) -> None:
         self.names = names
         self.numbers = numbers
