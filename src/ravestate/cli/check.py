@@ -28,12 +28,9 @@ def run(options: argparse.Namespace) -> int:
         chosen = agent.load_agent(options, announce=True)
         policy = compile_policy(*chosen.modules)
         policy = policy.with_settings(load_settings(policy.modules, chosen.settings))
-    except DeclarationErrors as faults:
-        for fault in faults.exceptions:
+    except (DeclarationErrors, DeclarationError) as error:
+        for fault in error.exceptions if isinstance(error, DeclarationErrors) else [error]:
             _print(f"fault: {fault}", error=True)
-        return 1
-    except DeclarationError as fault:
-        _print(f"fault: {fault}", error=True)
         return 1
     # A built-in module may offer signals and cooldowns that this agent does not need.
     findings = [

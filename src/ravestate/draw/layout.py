@@ -22,6 +22,7 @@ from ravestate.draw.coordinates import assign_coordinates
 from ravestate.draw.crossings import minimise_crossings
 from ravestate.draw.graph import Diagram, Edge, EdgeKind, NodeKind
 from ravestate.draw.layered import LayeredGraph, Link, proper_layering
+from ravestate.draw.notation import JUNCTIONS
 from ravestate.draw.ports import place_ports
 from ravestate.draw.routing import Point, route
 from ravestate.draw.simplex import network_simplex
@@ -42,15 +43,6 @@ _STRENGTH: dict[EdgeKind, int] = {
     "condition_detached": 2,
     "reads": 2,
 }
-_TIGHTNESS: dict[EdgeKind, int] = {
-    "writes": 2,
-    "emits": 2,
-    "condition": 2,
-    "emits_detached": 1,
-    "condition_detached": 1,
-    "reads": 1,
-}
-_JUNCTIONS: tuple[NodeKind, ...] = ("and", "or")
 
 
 @dataclass(frozen=True, slots=True)
@@ -202,11 +194,11 @@ def _extent(graph: LayeredGraph) -> Size:
 
 def _tightness(edge: Edge, kinds: Mapping[str, NodeKind]) -> int:
     """Return the cost of a longer edge: junctions stay next to their rule, signals next to their slot."""
-    if kinds[edge.source] in _JUNCTIONS:
+    if kinds[edge.source] in JUNCTIONS:
         return 8
     if edge.kind == "emits" and kinds[edge.source] == "slot":
         return 4
-    return _TIGHTNESS[edge.kind]
+    return 2 if _STRENGTH[edge.kind] >= STRONG else 1
 
 
 def _pack(sizes: Sequence[Size]) -> list[Point]:
