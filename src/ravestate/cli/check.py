@@ -12,7 +12,6 @@ from ravestate.cli import agent
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the options of the command."""
     agent.add_arguments(parser)
     parser.add_argument("--utilities", action="store_true", help="also list every rule with its utility in nats")
 

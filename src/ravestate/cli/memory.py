@@ -17,7 +17,6 @@ if TYPE_CHECKING:
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the command's options."""
     _add_place(parser)
     does = parser.add_subparsers(dest="does", metavar="WHAT", required=True)
     listing = does.add_parser("list", help="list all nodes")

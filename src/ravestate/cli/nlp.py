@@ -16,7 +16,6 @@ if TYPE_CHECKING:
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the options of the command."""
     parser.add_argument("text", nargs="*", metavar="TEXT", help="the text; each line of standard input by default")
     parser.add_argument("--json", action="store_true", help="print one line of JSON for each text")
     parser.add_argument(
@@ -35,7 +34,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Run the command."""
     from ravestate.modules._text import printable
     from ravestate.modules.meta.nlp import Settings
     from ravestate.modules.meta.nlp.analysis import analyse

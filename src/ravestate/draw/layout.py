@@ -26,6 +26,7 @@ from ravestate.draw.notation import JUNCTIONS
 from ravestate.draw.ports import place_ports
 from ravestate.draw.routing import Point, route
 from ravestate.draw.simplex import network_simplex
+from ravestate.policy.components import components
 
 Size = tuple[float, float]
 """Width and height in pixels."""
@@ -113,30 +114,19 @@ class _Component:
 
 def _components(diagram: Diagram) -> list[tuple[list[str], list[int]]]:
     """Return the nodes and edges of each connected component, in the order of first nodes."""
-    touching: dict[str, list[int]] = {node.id: [] for node in diagram.nodes}
-    for number, edge in enumerate(diagram.edges):
-        touching[edge.source].append(number)
-        touching[edge.target].append(number)
-    part: dict[str, int] = {}
-    count = 0
-    for node in diagram.nodes:
-        if node.id in part:
-            continue
-        part[node.id] = count
-        stack = [node.id]
-        while stack:
-            for number in touching[stack.pop()]:
-                for end in (diagram.edges[number].source, diagram.edges[number].target):
-                    if end not in part:
-                        part[end] = count
-                        stack.append(end)
-        count += 1
-    found: list[tuple[list[str], list[int]]] = [([], []) for _ in range(count)]
-    for node in diagram.nodes:
-        found[part[node.id]][0].append(node.id)
-    for number, edge in enumerate(diagram.edges):
-        found[part[edge.source]][1].append(number)
-    return found
+    index = {node.id: place for place, node in enumerate(diagram.nodes)}
+    ends = [(index[edge.source], index[edge.target]) for edge in diagram.edges]
+    near: list[list[int]] = [[] for _ in diagram.nodes]
+    for u, v in ends:
+        near[u].append(v)
+        near[v].append(u)
+    part = components(near).of
+    found: dict[int, tuple[list[str], list[int]]] = {}
+    for node, number in zip(diagram.nodes, part, strict=True):
+        found.setdefault(number, ([], []))[0].append(node.id)
+    for number, (u, _) in enumerate(ends):
+        found[part[u]][1].append(number)
+    return list(found.values())
 
 
 def _lay_out_component(

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Sequence
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple
 
 from ravestate.engine.activation import READY
@@ -24,6 +25,7 @@ TURNS = 500
 """Further turns of a loop that go ahead like any other run: with the runs before, 1,000."""
 
 
+@dataclass(slots=True, eq=False)
 class Loop:
     """All that one run has set off within an instant.
 
@@ -33,12 +35,9 @@ class Loop:
         rules: The rules of these runs.
     """
 
-    __slots__ = ("instant", "rules", "turns")
-
-    def __init__(self, instant: int) -> None:
-        self.instant = instant
-        self.turns = 0
-        self.rules: dict[RulePlan, None] = {}
+    instant: int
+    turns: int = 0
+    rules: dict[RulePlan, None] = field(default_factory=dict["RulePlan", None])
 
 
 class Lineage(NamedTuple):

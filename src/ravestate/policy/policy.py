@@ -180,17 +180,11 @@ class Policy:
         from ravestate.policy.compile import build
 
         if not isinstance(rule, Rule):  # pyright: ignore[reportUnnecessaryIsInstance]  # users may not type-check
-            raise DeclarationErrors(
-                [DeclarationError(f"{rule!r} is no rule: write @module.rule(when=...) above the function")]
-            )
+            fault = f"{rule!r} is no rule: write @module.rule(when=...) above the function"
+            raise DeclarationErrors([DeclarationError(fault)])
         if rule.name in self.rules:
-            raise DeclarationErrors(
-                [
-                    DeclarationError(
-                        f"rule {rule.name} ({rule.origin}) is in the policy already; give the new one another name=..."
-                    )
-                ]
-            )
+            fault = f"rule {rule.name} ({rule.origin}) is in the policy already; give the new one another name=..."
+            raise DeclarationErrors([DeclarationError(fault)])
         return build(self.modules, (*self.declared, rule), self.settings if settings is None else settings)
 
     def __repr__(self) -> str:
