@@ -19,8 +19,6 @@ class IdleShare:
         True
     """
 
-    __slots__ = ("_busy", "_kept", "_since")
-
     def __init__(self) -> None:
         self._since = perf_counter()
         self._busy = process_time()

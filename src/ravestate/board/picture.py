@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import astuple
 
-from ravestate.board.protocol import Drawing, DrawnEdge, DrawnNode
+from ravestate.board.protocol import Drawing, DrawnEdge, DrawnNode, fields_of
 from ravestate.draw.fold import fold
 from ravestate.draw.graph import Diagram
 from ravestate.draw.layout import lay_out
@@ -16,20 +17,9 @@ def draw(diagram: Diagram, unfolded: Sequence[str]) -> Drawing:
     folded = fold(diagram, frozenset(unfolded))
     sizes = {node.id: node_size(node) for node in folded.nodes}
     layout = lay_out(folded, sizes, [label_size(edge.label) for edge in folded.edges])
-    nodes = [
-        DrawnNode(node.id, node.kind, node.label, node.module, node.note, (box.x, box.y, box.width, box.height))
-        for node in folded.nodes
-        if (box := layout.boxes[node.id])
-    ]
+    nodes = [DrawnNode(**fields_of(node), box=astuple(layout.boxes[node.id])) for node in folded.nodes]
     edges = [
-        DrawnEdge(
-            edge.source,
-            edge.target,
-            edge.kind,
-            edge.label,
-            list(points),
-            None if box is None else (box.x, box.y, box.width, box.height),
-        )
+        DrawnEdge(**fields_of(edge), points=list(points), box=None if box is None else astuple(box))
         for edge, points, box in zip(folded.edges, layout.lines, layout.labels, strict=True)
     ]
     return Drawing(list(unfolded), layout.width, layout.height, nodes, edges)

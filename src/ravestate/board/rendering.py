@@ -62,15 +62,9 @@ def render(value: object, most: int = 2000) -> Rendered:
         key, item = cast("Entry", value)
         name = render(str(key), most).text
         return Rendered((name if item is None else f"{name}: {render(item, most).text}")[:most], False)
-    chunks: list[str] = []
-    size = 0
     try:
-        for chunk in _json(value, 0):
-            chunks.append(chunk)
-            size += len(chunk)
-            if size > most:
-                return Rendered("".join(chunks)[:most], False, True)
-        return Rendered("".join(chunks))
+        whole = _start(_json(value, 0), most)
+        return Rendered(whole) if len(whole) <= most else Rendered(whole[:most], False, True)
     except _Foreign:
         return _repr(value, most)
     except Exception as error:  # a user's container that fails during iteration
@@ -86,15 +80,21 @@ def not_json(value: object, most: int = 2000) -> bool:
     """
     if isinstance(value, (int, float)):
         return False
-    size = 0
     try:
-        for chunk in _json(value, 0):
-            size += len(chunk)
-            if size > most:
-                break
+        _start(_json(value, 0), most)
     except Exception:  # JSON cannot express it, or its own code fails
         return True
     return False
+
+
+def _start(chunks: Iterator[str], most: int) -> str:
+    """Join chunks until there are more than `most` characters."""
+    text = ""
+    for chunk in chunks:
+        text += chunk
+        if len(text) > most:
+            break
+    return text
 
 
 def _json(value: object, depth: int) -> Iterator[str]:
@@ -129,17 +129,10 @@ def _json(value: object, depth: int) -> Iterator[str]:
 
 
 def _repr(value: object, most: int) -> Rendered:
-    found: list[str] = []
-    size = 0
     try:
-        for chunk in repr_chunks(value):
-            found.append(chunk)
-            size += len(chunk)
-            if size > most:
-                break
+        text = well_formed(_start(repr_chunks(value), most)[: most + 1])
     except Exception as error:  # a container that changes, or a field that fails, meanwhile
         return Rendered(f"<{type(value).__name__} whose repr fails: {type(error).__name__}>", False)
-    text = well_formed("".join(found)[: most + 1])
     return Rendered(text[:most], False, len(text) > most)
 
 

@@ -22,7 +22,6 @@ if TYPE_CHECKING:
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the options of the command."""
     agents.add_arguments(parser)
     complete.add_arguments(parser)
     complete.explain_memory(parser)
@@ -41,7 +40,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Run the command."""
     from ravestate.modules import webio
 
     named = bool(options.modules or options.file)

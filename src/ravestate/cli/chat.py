@@ -8,7 +8,6 @@ from ravestate.cli import agent, complete
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the options of the command."""
     agent.add_arguments(parser)
     complete.add_arguments(parser)
     complete.explain_memory(parser)
@@ -19,7 +18,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Run the command."""
     from ravestate.runtime.run import run as run_modules
 
     chosen = agent.load_agent(options, ["conio", *complete.names(options)])

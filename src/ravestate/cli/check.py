@@ -12,7 +12,6 @@ from ravestate.cli import agent
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the options of the command."""
     agent.add_arguments(parser)
     parser.add_argument("--utilities", action="store_true", help="also list every rule with its utility in nats")
 
@@ -28,12 +27,9 @@ def run(options: argparse.Namespace) -> int:
         chosen = agent.load_agent(options, announce=True)
         policy = compile_policy(*chosen.modules)
         policy = policy.with_settings(load_settings(policy.modules, chosen.settings))
-    except DeclarationErrors as faults:
-        for fault in faults.exceptions:
+    except (DeclarationErrors, DeclarationError) as error:
+        for fault in error.exceptions if isinstance(error, DeclarationErrors) else [error]:
             _print(f"fault: {fault}", error=True)
-        return 1
-    except DeclarationError as fault:
-        _print(f"fault: {fault}", error=True)
         return 1
     # A built-in module may offer signals and cooldowns that this agent does not need.
     findings = [

@@ -19,7 +19,6 @@ if TYPE_CHECKING:
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the command's options."""
     _add_index(parser)
     actions = parser.add_subparsers(dest="action", metavar="ACTION", required=True)
     indexing = actions.add_parser(
@@ -50,7 +49,6 @@ def _add_index(parser: argparse.ArgumentParser, *, later: bool = False) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Run the command."""
     try:
         return _run(options)
     except PlatformError as error:  # its words are for an agent; here another option names the index

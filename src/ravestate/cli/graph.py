@@ -17,7 +17,6 @@ LARGE = 40
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the options of the command."""
     agent.add_arguments(parser)
     complete.add_arguments(parser)
     parser.description = (
@@ -47,7 +46,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Run the command."""
     from ravestate.draw import FORMATS
     from ravestate.draw.build import build
     from ravestate.draw.fold import fold

@@ -6,7 +6,6 @@ import argparse
 import json
 import sys
 from collections import Counter
-from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -18,7 +17,6 @@ if TYPE_CHECKING:
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the command's options."""
     _add_place(parser)
     does = parser.add_subparsers(dest="does", metavar="WHAT", required=True)
     listing = does.add_parser("list", help="list all nodes")
@@ -84,13 +82,7 @@ def run(options: argparse.Namespace) -> int:
                 "hidden here: name the file with --set ontology.types=[FILE]",
                 file=sys.stderr,
             )
-        does: dict[str, Callable[[Memory, argparse.Namespace], int]] = {
-            "list": _list,
-            "show": _show,
-            "export": _export,
-            "load": _load,
-            "forget": _forget,
-        }
+        does = {"list": _list, "show": _show, "export": _export, "load": _load, "forget": _forget}
         return does[options.does](memory, options)
     finally:
         memory.close().result()

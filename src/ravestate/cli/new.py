@@ -25,12 +25,10 @@ FILES = {
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the options of the command."""
     parser.add_argument("name", help="the name of the project and of its new folder, e.g. my-agent")
 
 
 def run(options: argparse.Namespace) -> int:
-    """Run the command."""
     folder = Path(options.name)
     name = folder.name
     package = name.replace("-", "_").lower()

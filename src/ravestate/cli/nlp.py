@@ -16,7 +16,6 @@ if TYPE_CHECKING:
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the options of the command."""
     parser.add_argument("text", nargs="*", metavar="TEXT", help="the text; each line of standard input by default")
     parser.add_argument("--json", action="store_true", help="print one line of JSON for each text")
     parser.add_argument(
@@ -35,7 +34,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Run the command."""
     from ravestate.modules._text import printable
     from ravestate.modules.meta.nlp import Settings
     from ravestate.modules.meta.nlp.analysis import analyse
@@ -63,11 +61,9 @@ def _lines() -> Iterator[str]:
 
 def _table(seen: Analysis) -> str:
     """Return the analysis for people: the words in columns, then the rest."""
-    words = [
-        (word.text, word.lemma, word.pos, word.tag, word.dep, seen.tree.head(word).text) for word in seen.tree.words
-    ]
-    rows = [("TOKEN", "LEMMA", "POS", "TAG", "DEP", "HEAD"), *words]
-    widths = [max(len(row[column]) for row in rows) for column in range(6)]
+    rows = [("TOKEN", "LEMMA", "POS", "TAG", "DEP", "HEAD")]
+    rows += [(w.text, w.lemma, w.pos, w.tag, w.dep, seen.tree.head(w).text) for w in seen.tree.words]
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     table = ["  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in rows]
     facts = [
         ("entities", ", ".join(f"{entity.text} ({entity.label})" for entity in seen.entities)),
@@ -89,14 +85,9 @@ def _answer(seen: Analysis) -> str:
 
 
 def _signals(seen: Analysis) -> list[str]:
-    raised = {
-        "is_question": seen.question is not None,
-        "about_agent": seen.about_agent,
-        "intent_play": seen.intent_play,
-        "intent_hi": seen.intent_hi,
-        "intent_bye": seen.intent_bye,
-    }
-    return [name for name, is_raised in raised.items() if is_raised]
+    flags = ("about_agent", "intent_play", "intent_hi", "intent_bye")
+    raised = [flag for flag in flags if getattr(seen, flag)]
+    return raised if seen.question is None else ["is_question", *raised]
 
 
 def _plain(text: str, seen: Analysis) -> dict[str, Any]:
@@ -108,15 +99,7 @@ def _plain(text: str, seen: Analysis) -> dict[str, Any]:
     return {
         "text": text,
         "tokens": [
-            {
-                "text": word.text,
-                "lemma": word.lemma,
-                "pos": word.pos,
-                "tag": word.tag,
-                "dep": word.dep,
-                "head": word.head,
-                "start": word.start,
-            }
+            {field: getattr(word, field) for field in ("text", "lemma", "pos", "tag", "dep", "head", "start")}
             for word in seen.tree.words
         ],
         "entities": [dataclasses.asdict(entity) for entity in seen.entities],

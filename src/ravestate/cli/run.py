@@ -9,14 +9,12 @@ from ravestate.cli.built_in import listing
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the options of the command."""
     agent.add_arguments(parser)
     parser.formatter_class = argparse.RawDescriptionHelpFormatter
     parser.epilog = listing()
 
 
 def run(options: argparse.Namespace) -> int:
-    """Run the command."""
     from ravestate.runtime.run import run as run_modules
 
     chosen = agent.load_agent(options)

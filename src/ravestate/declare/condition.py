@@ -115,23 +115,21 @@ class Holds(Condition):
 
 
 @dataclass(frozen=True, slots=True, repr=False)
-class AllOf(Condition):
+class Compound(Condition):
+    """A conjunction or a disjunction of conditions."""
+
+    parts: tuple[Condition, ...]
+
+    def __repr__(self) -> str:
+        return _written(self)
+
+
+class AllOf(Compound):
     """A conjunction."""
 
-    parts: tuple[Condition, ...]
 
-    def __repr__(self) -> str:
-        return _written(self)
-
-
-@dataclass(frozen=True, slots=True, repr=False)
-class AnyOf(Condition):
+class AnyOf(Compound):
     """A disjunction."""
-
-    parts: tuple[Condition, ...]
-
-    def __repr__(self) -> str:
-        return _written(self)
 
 
 def checked_predicate(predicate: object, what: str, of: str) -> Predicate:
@@ -188,7 +186,7 @@ def _written(condition: Condition) -> str:
     stack: list[Condition | str] = [condition]
     while stack:
         item = stack.pop()
-        if not isinstance(item, (AllOf, AnyOf)):
+        if not isinstance(item, Compound):
             words.append(str(item))
             continue
         inner: list[Condition | str] = []

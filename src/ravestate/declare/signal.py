@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import KW_ONLY, dataclass
 from typing import Generic, Literal, TypedDict, TypeVar
 
 from ravestate.declare.condition import Condition, Constraint, Predicate
@@ -31,6 +32,7 @@ class SignalOptions(TypedDict, total=False):
     limit: int
 
 
+@dataclass(slots=True, eq=False, repr=False)
 class Signal(Condition, Generic[T]):
     """A named kind of event; ``Signal[T]`` carries a payload of type T. Made by ``module.signal(...)``.
 
@@ -43,24 +45,13 @@ class Signal(Condition, Generic[T]):
         origin: The place of the declaration, ``file:line``.
     """
 
-    __slots__ = ("input", "keep", "limit", "name", "origin", "payload")
-
-    def __init__(
-        self,
-        name: str,
-        payload: object,
-        *,
-        origin: str,
-        input: bool = False,
-        keep: Keep = "all",
-        limit: int = DEFAULT_LIMIT,
-    ) -> None:
-        self.name = name
-        self.payload = payload
-        self.input = input
-        self.keep: Keep = keep
-        self.limit = limit
-        self.origin = origin
+    name: str
+    payload: object
+    _: KW_ONLY
+    origin: str
+    input: bool = False
+    keep: Keep = "all"
+    limit: int = DEFAULT_LIMIT
 
     def min_age(self, seconds: Number) -> Constraint:
         """Constrain the signal: see `Constraint.min_age`."""

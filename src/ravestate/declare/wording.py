@@ -40,6 +40,14 @@ def shown(value: object) -> str:
         return f"<{type(value).__name__} without a repr>"
 
 
+def said(exception: BaseException) -> str:
+    """Return the message of an exception. If its own code fails, return its type."""
+    try:
+        return str(exception)
+    except Exception:  # as above
+        return shown(exception)
+
+
 def cut(text: str, length: int = LENGTH) -> str:
     """Return a text cut to `length` characters; a text that was cut ends in three dots.
 

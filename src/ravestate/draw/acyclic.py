@@ -1,4 +1,4 @@
-"""Cycle removal: a small feedback arc set, whose edges the layout reverses.
+"""Acyclic graphs: their topological order, and a small feedback arc set, whose edges the layout reverses.
 
 The heuristic of Eades, Lin and Smyth (1993) runs within each strongly connected component. It orders the vertices from
 both ends at once; the edges that point backwards in this order are the set. Two refinements: weak edges go before strong
@@ -8,6 +8,7 @@ ones, and ties go by number, so that the result depends on the input alone.
 from __future__ import annotations
 
 import heapq
+from collections import Counter
 from collections.abc import Sequence
 
 from ravestate.policy.components import components
@@ -28,6 +29,26 @@ def feedback_arcs(count: int, edges: Sequence[tuple[int, int, int]]) -> list[boo
     for i in inner:
         found[i] = place[edges[i][0]] > place[edges[i][1]]
     return found
+
+
+def topological(after: Sequence[Sequence[int]]) -> list[int]:
+    """Return the vertices of a graph in topological order, without those on a cycle or behind one.
+
+    Args:
+        after: The vertices to which the arcs of each vertex lead.
+
+    Example:
+        >>> topological([[2], [0], []])
+        [1, 0, 2]
+    """
+    waiting = Counter(v for ahead in after for v in ahead)
+    order = [v for v in range(len(after)) if not waiting[v]]
+    for u in order:
+        for v in after[u]:
+            waiting[v] -= 1
+            if not waiting[v]:
+                order.append(v)
+    return order
 
 
 def _peel(count: int, edges: Sequence[tuple[int, int, int]]) -> list[int]:

@@ -7,8 +7,10 @@ A vertex that has just become ready goes first, so that a chain continues before
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Sequence
 
+from ravestate.draw.acyclic import topological
 from ravestate.draw.simplex import Arc
 
 Extent = tuple[float, float]
@@ -32,7 +34,7 @@ def fit_to_screen(ranks: Sequence[int], arcs: Sequence[Arc], extent: Callable[[S
     if height <= _SCREEN or width >= _TALLEST * height:
         return best
     nearest = _misfit(width, height)
-    largest = _largest(ranks)
+    largest = max(Counter(ranks).values())
     for splits in range(2, _SPLITS + 1):
         found = bounded_layers(ranks, arcs, -(-largest // splits))
         width, height = extent(found)
@@ -58,7 +60,7 @@ def bounded_layers(ranks: Sequence[int], arcs: Sequence[Arc], most: int) -> list
         after[u].append((v, length))
         waiting[v] += 1
     tail = [0] * count  # the longest path from the vertex, in layers
-    for u in reversed(_sorted(after, waiting)):
+    for u in reversed(topological([[v for v, _ in ahead] for ahead in after])):
         tail[u] = max((tail[v] + length for v, length in after[u]), default=0)
     found = list(ranks)
     layer = 0
@@ -77,25 +79,6 @@ def bounded_layers(ranks: Sequence[int], arcs: Sequence[Arc], most: int) -> list
         layer += 1
     first = min(found, default=0)
     return [layer - first for layer in found]
-
-
-def _sorted(after: Sequence[Sequence[tuple[int, int]]], waiting: Sequence[int]) -> list[int]:
-    """Return the vertices in topological order."""
-    left = list(waiting)
-    order = [v for v in range(len(left)) if not left[v]]
-    for u in order:
-        for v, _ in after[u]:
-            left[v] -= 1
-            if not left[v]:
-                order.append(v)
-    return order
-
-
-def _largest(ranks: Sequence[int]) -> int:
-    sizes: dict[int, int] = {}
-    for rank in ranks:
-        sizes[rank] = sizes.get(rank, 0) + 1
-    return max(sizes.values())
 
 
 def _misfit(width: float, height: float) -> float:

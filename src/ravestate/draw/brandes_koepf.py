@@ -10,7 +10,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from itertools import pairwise
 
-from ravestate.draw.layered import LayeredGraph
+from ravestate.draw.acyclic import topological
+from ravestate.draw.layered import LayeredGraph, places
 
 _GAPS = {(True, True): 16.0, (True, False): 12.0, (False, True): 12.0, (False, False): 9.0}
 """Least pixels between two neighbours of a layer; `False` stands for a dummy vertex."""
@@ -39,10 +40,7 @@ def brandes_koepf(graph: LayeredGraph) -> list[float]:
 
 def _forbidden(graph: LayeredGraph) -> set[int]:
     """Return the segments that cross an inner segment, between two dummies: type 1 conflicts, not to be aligned."""
-    place = [0] * len(graph.layer)
-    for layer in graph.order:
-        for i, v in enumerate(layer):
-            place[v] = i
+    place = places(graph.order)
     by_layer: list[list[tuple[int, int, int, bool]]] = [[] for _ in graph.order]
     for segment in range(len(graph.segments)):
         u, v = graph.ends(segment)
@@ -66,10 +64,7 @@ def _aligned(graph: LayeredGraph, crossed: set[int], from_left: bool, downwards:
     order = graph.order if from_left else graph.order[::-1]
     if not downwards:
         order = [layer[::-1] for layer in order]
-    place = [0] * count
-    for layer in order:
-        for i, v in enumerate(layer):
-            place[v] = i
+    place = places(order)
     # For each vertex: (place of the neighbour, neighbour, how far below the vertex an alignment puts it, segment).
     towards: list[list[tuple[int, int, float, int]]] = [[] for _ in range(count)]
     for segment, (low, high) in enumerate(graph.segments):
@@ -109,15 +104,10 @@ def _packed(
             gap = separation(graph, u, v) + shift[u] - shift[v]
             lower[root[u]].append((root[v], gap))
             upper[root[v]].append((root[u], gap))
-    waiting = [len(pairs) for pairs in upper]
-    sequence = [v for v in range(count) if root[v] == v and not waiting[v]]
+    sequence = topological([[v for v, _ in pairs] for pairs in lower])
     place = [0.0] * count
     for block in sequence:
         place[block] = max((place[u] + gap for u, gap in upper[block]), default=0.0)
-        for v, _ in lower[block]:
-            waiting[v] -= 1
-            if not waiting[v]:
-                sequence.append(v)
     for block in reversed(sequence):
         if lower[block]:
             place[block] = max(place[block], min(place[v] - gap for v, gap in lower[block]))

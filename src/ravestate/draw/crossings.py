@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from itertools import pairwise
 
-from ravestate.draw.layered import LayeredGraph
+from ravestate.draw.layered import LayeredGraph, places
 
 _WORK = 400_000  # segments x sweeps
 _PATIENCE = 4  # sweeps without improvement
@@ -102,10 +102,7 @@ def _dummies_centred(graph: LayeredGraph, vertices: Sequence[int]) -> list[int]:
 def _sweep(
     order: list[list[int]], before: Sequence[Sequence[int]], after: Sequence[Sequence[int]], sweeps: int
 ) -> tuple[list[list[int]], int]:
-    place = [0] * len(before)
-    for layer in order:
-        for i, v in enumerate(layer):
-            place[v] = i
+    place = places(order)
     best = [list(layer) for layer in order]
     least = count_crossings(order, after)
     idle = 0

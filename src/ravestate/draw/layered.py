@@ -7,6 +7,7 @@ share their dummies too: a hub shows one hyperedge with branches instead of a bu
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Literal
@@ -83,23 +84,27 @@ def proper_layering(ranks: Sequence[int], sizes: Sequence[tuple[float, float]], 
     builder = _Builder(graph)
     for rank, (width, height) in zip(ranks, sizes, strict=True):
         builder.vertex(rank, "node", width, height)
-    from_low: dict[tuple[object, ...], int] = {}
-    from_high: dict[tuple[object, ...], int] = {}
+    long = [link for link in links if ranks[link.high] - ranks[link.low] > 1]
+    from_low, from_high = Counter(map(_low, long)), Counter(map(_high, long))
     for link in links:
-        if ranks[link.high] - ranks[link.low] > 1:
-            for groups, key in ((from_low, _low(link)), (from_high, _high(link))):
-                groups[key] = groups.get(key, 0) + 1
-    for link in links:
-        share_low = from_low.get(_low(link), 0) >= from_high.get(_high(link), 0)
-        if link.label is not None:
-            share_low = not link.is_reversed  # the label is near the arrow's head, on its own line
-        elif link.kind not in _SOLID:
-            share_low = not link.is_reversed  # dashes keep step only from the start of the line
+        share_low = from_low[_low(link)] >= from_high[_high(link)]
+        if link.label is not None or link.kind not in _SOLID:
+            # The label is near the arrow's head, on its own line. Dashes keep step only from the start of the line.
+            share_low = not link.is_reversed
         builder.link(link, ranks[link.low], ranks[link.high], share_low)
     graph.order = [[] for _ in range(max(graph.layer, default=-1) + 1)]
     for vertex, layer in enumerate(graph.layer):
         graph.order[layer].append(vertex)
     return graph
+
+
+def places(order: Sequence[Sequence[int]]) -> list[int]:
+    """Return the place of each vertex within its layer, given the vertices of each layer."""
+    found = [0] * sum(map(len, order))
+    for layer in order:
+        for place, vertex in enumerate(layer):
+            found[vertex] = place
+    return found
 
 
 def _low(link: Link) -> tuple[object, ...]:

@@ -22,9 +22,11 @@ from ravestate.draw.coordinates import assign_coordinates
 from ravestate.draw.crossings import minimise_crossings
 from ravestate.draw.graph import Diagram, Edge, EdgeKind, NodeKind
 from ravestate.draw.layered import LayeredGraph, Link, proper_layering
+from ravestate.draw.notation import JUNCTIONS
 from ravestate.draw.ports import place_ports
 from ravestate.draw.routing import Point, route
 from ravestate.draw.simplex import network_simplex
+from ravestate.policy.components import components
 
 Size = tuple[float, float]
 """Width and height in pixels."""
@@ -42,15 +44,6 @@ _STRENGTH: dict[EdgeKind, int] = {
     "condition_detached": 2,
     "reads": 2,
 }
-_TIGHTNESS: dict[EdgeKind, int] = {
-    "writes": 2,
-    "emits": 2,
-    "condition": 2,
-    "emits_detached": 1,
-    "condition_detached": 1,
-    "reads": 1,
-}
-_JUNCTIONS: tuple[NodeKind, ...] = ("and", "or")
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,30 +114,19 @@ class _Component:
 
 def _components(diagram: Diagram) -> list[tuple[list[str], list[int]]]:
     """Return the nodes and edges of each connected component, in the order of first nodes."""
-    touching: dict[str, list[int]] = {node.id: [] for node in diagram.nodes}
-    for number, edge in enumerate(diagram.edges):
-        touching[edge.source].append(number)
-        touching[edge.target].append(number)
-    part: dict[str, int] = {}
-    count = 0
-    for node in diagram.nodes:
-        if node.id in part:
-            continue
-        part[node.id] = count
-        stack = [node.id]
-        while stack:
-            for number in touching[stack.pop()]:
-                for end in (diagram.edges[number].source, diagram.edges[number].target):
-                    if end not in part:
-                        part[end] = count
-                        stack.append(end)
-        count += 1
-    found: list[tuple[list[str], list[int]]] = [([], []) for _ in range(count)]
-    for node in diagram.nodes:
-        found[part[node.id]][0].append(node.id)
-    for number, edge in enumerate(diagram.edges):
-        found[part[edge.source]][1].append(number)
-    return found
+    index = {node.id: place for place, node in enumerate(diagram.nodes)}
+    ends = [(index[edge.source], index[edge.target]) for edge in diagram.edges]
+    near: list[list[int]] = [[] for _ in diagram.nodes]
+    for u, v in ends:
+        near[u].append(v)
+        near[v].append(u)
+    part = components(near).of
+    found: dict[int, tuple[list[str], list[int]]] = {}
+    for node, number in zip(diagram.nodes, part, strict=True):
+        found.setdefault(number, ([], []))[0].append(node.id)
+    for number, (u, _) in enumerate(ends):
+        found[part[u]][1].append(number)
+    return list(found.values())
 
 
 def _lay_out_component(
@@ -202,11 +184,11 @@ def _extent(graph: LayeredGraph) -> Size:
 
 def _tightness(edge: Edge, kinds: Mapping[str, NodeKind]) -> int:
     """Return the cost of a longer edge: junctions stay next to their rule, signals next to their slot."""
-    if kinds[edge.source] in _JUNCTIONS:
+    if kinds[edge.source] in JUNCTIONS:
         return 8
     if edge.kind == "emits" and kinds[edge.source] == "slot":
         return 4
-    return _TIGHTNESS[edge.kind]
+    return 2 if _STRENGTH[edge.kind] >= STRONG else 1
 
 
 def _pack(sizes: Sequence[Size]) -> list[Point]:

@@ -18,14 +18,7 @@ NARROWEST = 560.0
 
 _ROW = 26.0
 _GAP = 20.0
-_SAMPLE: dict[NodeKind, float] = {
-    "slot": 30.0,
-    "signal": 30.0,
-    "rule": 30.0,
-    "module": 30.0,
-    "and": 18.0,
-    "or": 18.0,
-}
+_SAMPLE: dict[NodeKind, float] = {kind: 18.0 if kind in JUNCTIONS else 30.0 for kind in NODES}
 _HIGH = 18.0
 _EDGE = 38.0
 _TEXT = 7.0

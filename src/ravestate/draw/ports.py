@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ravestate.draw.layered import LayeredGraph
+from ravestate.draw.layered import LayeredGraph, places
 
 _PITCH = 10.0  # pixels between ports of one side, where there is room
 _MARGIN = 10.0  # pixels from the first and last port to the corner, which is sometimes round
@@ -11,10 +11,7 @@ _LEAST = 3.0  # least pixels between ports; with less room they coincide, except
 
 def place_ports(graph: LayeredGraph) -> None:
     """Set the offset of each port. The layers of `graph` are in order."""
-    place = [0] * len(graph.layer)
-    for layer in graph.order:
-        for i, v in enumerate(layer):
-            place[v] = i
+    place = places(graph.order)
     leads: list[list[int]] = [[] for _ in graph.ports]
     for low, high in graph.segments:
         leads[low].append(place[graph.ports[high].vertex])

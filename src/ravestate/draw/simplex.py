@@ -10,6 +10,8 @@ from __future__ import annotations
 import heapq
 from collections.abc import Sequence
 
+from ravestate.draw.acyclic import topological
+
 Arc = tuple[int, int, int, int]
 """Tail, head, weight, and least length in layers."""
 
@@ -213,18 +215,13 @@ class _Simplex:
 
 def _longest_paths(count: int, arcs: Sequence[Arc]) -> list[int]:
     after: list[list[tuple[int, int]]] = [[] for _ in range(count)]
-    waiting = [0] * count
     for u, v, _, length in arcs:
         after[u].append((v, length))
-        waiting[v] += 1
     rank = [0] * count
-    ready = [v for v in range(count) if not waiting[v]]
-    for u in ready:
+    order = topological([[v for v, _ in ahead] for ahead in after])
+    for u in order:
         for v, length in after[u]:
             rank[v] = max(rank[v], rank[u] + length)
-            waiting[v] -= 1
-            if not waiting[v]:
-                ready.append(v)
-    if len(ready) < count:
+    if len(order) < count:
         raise ValueError("the graph has a cycle")
     return rank

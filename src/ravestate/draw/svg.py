@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import hashlib
 import html
+from collections import Counter
 
 from ravestate.draw.graph import Diagram, Edge, Node, NodeKind
 from ravestate.draw.layout import Box, lay_out
 from ravestate.draw.legend import NARROWEST, legend
-from ravestate.draw.notation import EDGES, JUNCTIONS, describe
+from ravestate.draw.notation import EDGES, JUNCTIONS, NODES, describe
 from ravestate.draw.shapes import heads, line, number, outline
 from ravestate.draw.sizes import LABEL, NAME, SMALL, label_size, node_size, shown
 from ravestate.draw.style import stylesheet
@@ -16,13 +17,6 @@ from ravestate.draw.text import clean
 
 _MARGIN = 24.0
 _SENTENCES = 60  # edges in the description
-
-_PLURALS: tuple[tuple[NodeKind, str, str], ...] = (
-    ("slot", "slot", "slots"),
-    ("signal", "signal", "signals"),
-    ("rule", "rule", "rules"),
-    ("module", "module", "modules"),
-)
 
 
 def svg(diagram: Diagram) -> str:
@@ -71,16 +65,13 @@ def _node(node: Node, box: Box) -> str:
     texts: list[str] = []
     if node.kind not in JUNCTIONS:
         y = box.y + 18.5
+        small = f'<text class="srs-small" text-anchor="middle" x="{middle}"'
         if node.module:
-            texts.append(
-                f'<text class="srs-small" text-anchor="middle" x="{middle}" y="{number(y - 4.0)}">{_text(shown(node.module, SMALL))}</text>'
-            )
+            texts.append(f'{small} y="{number(y - 4.0)}">{_text(shown(node.module, SMALL))}</text>')
             y += 11.0
         texts.append(f'<text text-anchor="middle" x="{middle}" y="{number(y)}">{_text(shown(node.label, NAME))}</text>')
         if node.note:
-            texts.append(
-                f'<text class="srs-small" text-anchor="middle" x="{middle}" y="{number(y + 13.0)}">{_text(shown(node.note, SMALL))}</text>'
-            )
+            texts.append(f'{small} y="{number(y + 13.0)}">{_text(shown(node.note, SMALL))}</text>')
     return f"<g><title>{_text(describe(node))}</title>{outline(node.kind, box)}{''.join(texts)}</g>"
 
 
@@ -110,12 +101,10 @@ def _name(node: Node) -> str:
 
 
 def _description(diagram: Diagram, nodes: dict[str, Node]) -> str:
-    counts = [(sum(node.kind == kind for node in diagram.nodes), one, many) for kind, one, many in _PLURALS]
-    words = ", ".join(f"{count} {one if count == 1 else many}" for count, one, many in counts if count)
-    sentences = [
-        f"{words or 'empty'}.",
-        *(f"{_sentence(edge, nodes)}." for edge in diagram.edges[:_SENTENCES]),
-    ]
+    counts = Counter(node.kind for node in diagram.nodes)
+    kinds: list[NodeKind] = [kind for kind in NODES if counts[kind] and kind not in JUNCTIONS]
+    words = ", ".join(f"{counts[kind]} {NODES[kind]}{'' if counts[kind] == 1 else 's'}" for kind in kinds)
+    sentences = [f"{words or 'empty'}.", *(f"{_sentence(edge, nodes)}." for edge in diagram.edges[:_SENTENCES])]
     if len(diagram.edges) > _SENTENCES:
         sentences.append(f"And {len(diagram.edges) - _SENTENCES} more.")
     return " ".join(sentences)

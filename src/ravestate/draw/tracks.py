@@ -7,10 +7,11 @@ verticals of other nets (weak).
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-from ravestate.draw.acyclic import STRONG, feedback_arcs
+from ravestate.draw.acyclic import STRONG, feedback_arcs, topological
 
 Segment = tuple[int, int, float, float]
 """The port on the left, the port on the right, and the y coordinates of both."""
@@ -64,17 +65,14 @@ def tracks(segments: Sequence[Segment]) -> Tracks:
                 wishes.append((b, a, first - second))
     slanted: set[int] = set()
     after: list[list[int]] = [[] for _ in nets]
-    waiting = [0] * len(nets)
     for (a, b, weight), is_reversed in zip(wishes, feedback_arcs(len(nets), wishes), strict=True):
         if is_reversed and weight >= STRONG:
             slanted |= _offending(nets[a], nets[b], segments, joined)
         u, v = (b, a) if is_reversed else (a, b)
         after[u].append(v)
-        waiting[v] += 1
     place = [-1] * len(nets)
     least = [0] * len(nets)
-    ready = [i for i in range(len(nets)) if not waiting[i]]
-    for i in ready:
+    for i in topological(after):
         turning = [segment for segment in nets[i].segments if segment not in slanted]
         if turning:
             used = {place[j] for j in overlaps[i]}
@@ -87,18 +85,12 @@ def tracks(segments: Sequence[Segment]) -> Tracks:
                 found.of[segment] = track
         for j in after[i]:
             least[j] = max(least[j], place[i] + 1)
-            waiting[j] -= 1
-            if not waiting[j]:
-                ready.append(j)
     return found
 
 
 def _nets(segments: Sequence[Segment]) -> list[_Net]:
-    leaving: dict[int, int] = {}
-    entering: dict[int, int] = {}
-    for p, q, _, _ in segments:
-        leaving[p] = leaving.get(p, 0) + 1
-        entering[q] = entering.get(q, 0) + 1
+    leaving = Counter(p for p, _, _, _ in segments)
+    entering = Counter(q for _, q, _, _ in segments)
     nets: dict[tuple[bool, int], _Net] = {}
     for number, (p, q, y, z) in enumerate(segments):
         key = (False, p) if leaving[p] >= entering[q] else (True, q)

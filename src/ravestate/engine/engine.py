@@ -12,13 +12,13 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any, get_args
 
+from ravestate.declare.wording import said
 from ravestate.engine import events, trace
 from ravestate.engine.activation import GATHERING, NEVER, RUNNING, WAITING, Activation
 from ravestate.engine.agenda import Agenda
 from ravestate.engine.deadlines import EXPIRE, PATIENCE, RECHECK, RIPEN, STANDBY, TIMEOUT, WATCH, Entry
 from ravestate.engine.effects import Effect, Ended
 from ravestate.engine.events import Event
-from ravestate.engine.foreign import said
 from ravestate.engine.group import Group
 from ravestate.engine.horizon import FIRM, Horizon
 from ravestate.engine.slots import ABSENT, equal

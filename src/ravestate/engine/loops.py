@@ -9,7 +9,11 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Sequence
+<<<<<<< HEAD
 from operator import attrgetter
+=======
+from dataclasses import dataclass, field
+>>>>>>> lean-core
 from typing import TYPE_CHECKING, NamedTuple
 
 from ravestate.engine.activation import READY
@@ -25,6 +29,7 @@ TURNS = 500
 """Further turns of a loop that go ahead like any other run: with the runs before, 1,000."""
 
 
+@dataclass(slots=True, eq=False)
 class Loop:
     """All that one run has set off within an instant.
 
@@ -34,12 +39,9 @@ class Loop:
         rules: The rules of these runs.
     """
 
-    __slots__ = ("instant", "rules", "turns")
-
-    def __init__(self, instant: int) -> None:
-        self.instant = instant
-        self.turns = 0
-        self.rules: dict[RulePlan, None] = {}
+    instant: int
+    turns: int = 0
+    rules: dict[RulePlan, None] = field(default_factory=dict["RulePlan", None])
 
 
 class Lineage(NamedTuple):

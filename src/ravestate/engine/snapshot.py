@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, cast
 
+from ravestate.declare.wording import shown
 from ravestate.engine.explain import explain
-from ravestate.engine.foreign import shown
 
 if TYPE_CHECKING:
     from ravestate.engine.engine import Engine

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from ravestate.policy.model import SignalPlan
@@ -12,10 +14,12 @@ if TYPE_CHECKING:
     from ravestate.engine.loops import Lineage
 
 
+@dataclass(slots=True, eq=False, repr=False)
 class Spike:
     """An occurrence: payload, time of birth (seconds), parents, causal group, and holders.
 
     Attributes:
+        rule: The number of the rule that raised it; -1 from outside, and for a detached rule.
         before: The number of the last activation that is older than the spike.
         source: The number of the run that raised it; 0 from outside.
         holders: The activations that hold it, in the order of taking.
@@ -25,49 +29,20 @@ class Spike:
         lineage: The rules that led to it, when an instant has many runs (L23).
     """
 
-    __slots__ = (
-        "before",
-        "born",
-        "claims",
-        "expiring",
-        "group",
-        "holders",
-        "id",
-        "lineage",
-        "parents",
-        "payload",
-        "refused",
-        "rule",
-        "signal",
-        "source",
-    )
-
-    def __init__(
-        self,
-        id: int,
-        signal: SignalPlan,
-        payload: Any,
-        born: float,
-        group: Group,
-        parents: tuple[Spike, ...],
-        source: int,
-        rule: int,
-        before: int,
-    ) -> None:
-        self.id = id
-        self.signal = signal
-        self.payload = payload
-        self.born = born
-        self.group = group
-        self.parents = parents
-        self.source = source
-        self.rule = rule  # index of the rule that raised it, -1 from outside
-        self.before = before
-        self.lineage: Lineage | None = None
-        self.holders: dict[Activation, None] = {}
-        self.expiring: tuple[float, ...] = ()
-        self.refused: set[int] | None = None
-        self.claims: dict[int, Activation | None] | None = None
+    id: int
+    signal: SignalPlan
+    payload: Any
+    born: float
+    group: Group
+    parents: tuple[Spike, ...]
+    source: int
+    rule: int
+    before: int
+    lineage: Lineage | None = field(init=False, default=None)
+    holders: dict[Activation, None] = field(init=False, default_factory=dict[Any, None])
+    expiring: tuple[float, ...] = field(init=False, default=())
+    refused: set[int] | None = field(init=False, default=None)
+    claims: dict[int, Activation | None] | None = field(init=False, default=None)
 
     def refuse(self, rule: int) -> None:
         """Note that a rule gives the spike up for good."""
@@ -77,31 +52,23 @@ class Spike:
 
     def descends_from(self, rule: int) -> bool:
         """Return whether a run of the rule is among its causes: cycles are cut there, so that loops end (L19)."""
-        stack: list[Spike] = [self]
-        seen: set[int] = set()
-        while stack:
-            spike = stack.pop()
-            if spike.rule == rule:
-                return True
-            for parent in spike.parents:
-                if parent.id not in seen:
-                    seen.add(parent.id)
-                    stack.append(parent)
-        return False
+        return any(spike.rule == rule for spike in self._lineage())
 
     def comes_from(self, signal: str) -> bool:
         """Return whether it is a spike of the signal, or descends from one."""
+        return any(spike.signal.name == signal for spike in self._lineage())
+
+    def _lineage(self) -> Iterator[Spike]:
+        """Yield the spike and all its ancestors, each once."""
         stack: list[Spike] = [self]
         seen: set[int] = set()
         while stack:
             spike = stack.pop()
-            if spike.signal.name == signal:
-                return True
+            yield spike
             for parent in spike.parents:
                 if parent.id not in seen:
                     seen.add(parent.id)
                     stack.append(parent)
-        return False
 
     def __repr__(self) -> str:
         return f"{self.signal.name}#{self.id}"

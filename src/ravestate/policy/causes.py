@@ -10,6 +10,7 @@ takes no time.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from functools import cached_property
 
 from ravestate.policy.components import components
 from ravestate.policy.model import Clause, Need, RulePlan, SignalPlan
@@ -43,7 +44,6 @@ class Causes:
         self.direct = [tuple(found) for found in direct]
         self.components = components(self.direct)
         self._roots = self._find_roots()
-        self._closures: dict[int, int] = {}
         self._ancestors: dict[int, frozenset[int]] = {}
         self._wide: dict[int, frozenset[int]] = {}
         self._downstream: dict[int, tuple[Clause, ...]] = {}
@@ -74,27 +74,22 @@ class Causes:
 
     def closure(self, signal: int) -> int:
         """Return the signal and all signals that lead to it without detachment, as bits: the content of its pathways."""
-        of, members = self.components.of, self.components.members
-        wanted = of[signal]
-        if wanted not in self._closures:
-            pending = {wanted}
-            stack = [wanted]
-            while stack:
-                for member in members[stack.pop()]:
-                    for cause in self.direct[member]:
-                        number = of[cause]
-                        if number not in pending and number not in self._closures:
-                            pending.add(number)
-                            stack.append(number)
-            for number in sorted(pending):  # causes first
-                bits = 0
-                for member in members[number]:
-                    bits |= 1 << member
-                    for cause in self.direct[member]:
-                        if of[cause] != number:
-                            bits |= self._closures[of[cause]]
-                self._closures[number] = bits
-        return self._closures[wanted]
+        return self._closures[self.components.of[signal]]
+
+    @cached_property
+    def _closures(self) -> list[int]:
+        """The closure of each component."""
+        of = self.components.of
+        found: list[int] = []
+        for number, members in enumerate(self.components.members):  # causes first
+            bits = 0
+            for member in members:
+                bits |= 1 << member
+                for cause in self.direct[member]:
+                    if of[cause] != number:
+                        bits |= found[of[cause]]
+            found.append(bits)
+        return found
 
     def ancestors(self, signal: int) -> frozenset[int]:
         """Return the rules from which a chain of non-detached effects leads to the signal."""

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, cast
 
-from ravestate.declare.condition import AllOf, AnyOf, Condition, Constraint, Holds
+from ravestate.declare.condition import AllOf, AnyOf, Compound, Condition, Constraint, Holds
 from ravestate.declare.signal import Signal
 from ravestate.errors import DeclarationError
 
@@ -65,7 +65,7 @@ def _inner_first(condition: Condition) -> Iterator[Condition]:
         elif id(part) not in seen:
             seen.add(id(part))
             stack.append((part, True))
-            if isinstance(part, (AllOf, AnyOf)):
+            if isinstance(part, Compound):
                 stack.extend((inner, False) for inner in part.parts)
 
 
@@ -74,7 +74,7 @@ def _check(condition: Condition, parts: list[Condition]) -> None:
     counts: dict[int, int] = {}
     for part in parts:
         key = id(part)
-        if isinstance(part, (AllOf, AnyOf)):
+        if isinstance(part, Compound):
             of_parts = [counts[id(inner)] for inner in part.parts]
             count = sum(of_parts) if isinstance(part, AnyOf) else math.prod(of_parts)
             if count > MAX_CLAUSES:

@@ -38,13 +38,13 @@ def compile_policy(*modules: Module | ModuleType) -> Policy:
         >>> rs.compile(hello).rules
         mappingproxy({})
     """
-    faults: list[DeclarationError] = []
+    faults: list[str] = []
     given: list[Module] = []
     for value in modules:
         try:
             given.append(as_module(value))
         except DeclarationError as fault:
-            faults.append(fault)
+            faults.append(str(fault))
     ordered = in_order(given, faults)
     rules = [rule for module in ordered for rule in module.rules]
     return build(tuple(ordered), rules, {}, faults)
@@ -54,7 +54,7 @@ def build(
     modules: Sequence[Module],
     rules: Sequence[Rule[Any, Any]],
     settings: Mapping[str, Any],
-    faults: Sequence[DeclarationError] = (),
+    faults: Sequence[str] = (),
 ) -> Policy:
     """Number all signals, slots and rules, and make the policy.
 
@@ -77,7 +77,7 @@ def build(
     causes = Causes(names.signals, numbered.plans)
     check_reachable(causes, found)
     if found:
-        raise DeclarationErrors(found)
+        raise DeclarationErrors([DeclarationError(fault) for fault in found])
     find_kin(numbered.plans, causes)
     completion = assign_utilities(names.signals, numbered.plans, causes)
     find_contests(names.signals)

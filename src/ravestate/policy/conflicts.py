@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from ravestate.policy.completion import each
 from ravestate.policy.model import Clause, RulePlan
 from ravestate.policy.policy import Policy
 
@@ -39,24 +40,25 @@ class Conflict:
 def find_conflicts(policy: Policy) -> tuple[Conflict, ...]:
     """Return all conflicts in the order of declaration: of the first rule, then of the second."""
     conflicts = Conflicts(policy)
-    writers: dict[int, list[RulePlan]] = {}
-    found: list[Conflict] = []
+    writing = writers(policy)
+    found: list[Conflict | None] = []
+    for first in policy.rule_plans:
+        others = {r.index: r for slot in first.slots for r in writing[slot] if r.index > first.index}
+        found += [conflicts.between(first, others[index]) for index in sorted(others)]
+    return tuple(conflict for conflict in found if conflict is not None)
+
+
+def writers(policy: Policy) -> dict[int, list[RulePlan]]:
+    """Return the rules that write each slot, by its number."""
+    found: dict[int, list[RulePlan]] = {}
     for rule in policy.rule_plans:
         for slot in rule.slots:
-            writers.setdefault(slot, []).append(rule)
-    for first in policy.rule_plans:
-        others = {r.index: r for slot in first.slots for r in writers[slot] if r.index > first.index}
-        for index in sorted(others):
-            conflict = conflicts.between(first, others[index])
-            if conflict is not None:
-                found.append(conflict)
-    return tuple(found)
+            found.setdefault(slot, []).append(rule)
+    return found
 
 
 class Conflicts:
     """The conflicts of one policy, pair by pair."""
-
-    __slots__ = ("_names", "_roots", "policy")
 
     def __init__(self, policy: Policy) -> None:
         self.policy = policy
@@ -119,11 +121,6 @@ class Conflicts:
     def _named(self, signals: int) -> tuple[str, ...]:
         found = self._names.get(signals)
         if found is None:
-            names: list[str] = []
-            bits = signals
-            while bits:
-                lowest = bits & -bits
-                names.append(self.policy.signal_plans[lowest.bit_length() - 1].name)
-                bits ^= lowest
-            found = self._names[signals] = tuple(names)
+            names = [self.policy.signal_plans[index].name for index in each(signals)]
+            found = self._names[signals] = tuple(reversed(names))
         return found

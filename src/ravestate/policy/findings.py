@@ -8,7 +8,7 @@ from itertools import islice
 
 from ravestate.declare.core import startup
 from ravestate.policy.completion import each
-from ravestate.policy.conflicts import Conflicts
+from ravestate.policy.conflicts import Conflicts, writers
 from ravestate.policy.loops import endless_loops
 from ravestate.policy.model import Clause, RulePlan
 from ravestate.policy.policy import Policy
@@ -244,13 +244,10 @@ def _apart(first: RulePlan, second: RulePlan) -> bool:
 
 def _cooldowns(policy: Policy) -> Iterator[Finding]:
     conflicts = Conflicts(policy)
-    writers: dict[int, list[RulePlan]] = {}
-    for rule in policy.rule_plans:
-        for slot in rule.slots:
-            writers.setdefault(slot, []).append(rule)
+    writing = writers(policy)
     for rule in policy.rule_plans:
         if rule.cooldown and not any(
-            len(writers[slot]) > MAX_PEERS or any(o is not rule and conflicts.best(rule, o) for o in writers[slot])
+            len(writing[slot]) > MAX_PEERS or any(o is not rule and conflicts.best(rule, o) for o in writing[slot])
             for slot in rule.slots
         ):
             yield Finding(

@@ -31,8 +31,6 @@ FREE = 100
 class Least:
     """The least pathways of a policy; those of single signals are found first, causes before effects."""
 
-    __slots__ = ("_effort", "_known", "_masks", "_open", "_price", "_reach", "_whole", "completion")
-
     def __init__(self, completion: Completion) -> None:
         self.completion = completion
         self._effort = EFFORT

@@ -10,7 +10,7 @@ from typing import Any
 from ravestate.declare.module import Module
 from ravestate.declare.signal import Signal
 from ravestate.declare.slot import Slot
-from ravestate.errors import DeclarationError, nearest
+from ravestate.errors import nearest
 from ravestate.policy.model import SignalPlan, SlotPlan
 
 
@@ -23,9 +23,7 @@ class Names:
         faults: The list for faults: names that occur twice, and unknown names.
     """
 
-    __slots__ = ("_modules", "_signal_of", "_slot_of", "faults", "signals", "slots")
-
-    def __init__(self, modules: Sequence[Module], faults: list[DeclarationError]) -> None:
+    def __init__(self, modules: Sequence[Module], faults: list[str]) -> None:
         self.faults = faults
         self.signals: list[SignalPlan] = []
         self.slots: list[SlotPlan] = []
@@ -49,10 +47,8 @@ class Names:
                         copy.deepcopy(slot.default)
                 except Exception as error:  # a value's own code may raise anything
                     self.faults.append(
-                        DeclarationError(
-                            f"slot {slot.name} ({slot.origin}) has a default that a context cannot copy ({error}): "
-                            "write default=None, and set the slot in a rule on rs.startup"
-                        )
+                        f"slot {slot.name} ({slot.origin}) has a default that a context cannot copy ({error}): "
+                        "write default=None, and set the slot in a rule on rs.startup"
                     )
                 self._slot_of[slot.name] = plan
 
@@ -70,7 +66,7 @@ class Names:
     def twice(self, what: str, name: str, first: str, second: str) -> None:
         """Add the fault that two signals, slots or rules (`what`) have one name, with the places of both."""
         if self._modules[name.split(":")[0]] < 2:  # else the fault is the name of the modules
-            self.faults.append(DeclarationError(f"two {what}s are named {name!r}: {first} and {second}; rename one"))
+            self.faults.append(f"two {what}s are named {name!r}: {first} and {second}; rename one")
 
     def signal(self, signal: Signal[Any], where: str) -> SignalPlan | None:
         """Return the record of a signal that a declaration (`where`) names. For an unknown signal, add a fault and return None."""
@@ -96,4 +92,4 @@ class Names:
             hint = f"module {module} has no such {what}{nearest(name, names)}"
         else:
             hint = f"write requires=[{module}] in the module of the rule, or compile module {module} as well"
-        self.faults.append(DeclarationError(f"{where}: unknown {what} {name} (declared at {origin}): {hint}"))
+        self.faults.append(f"{where}: unknown {what} {name} (declared at {origin}): {hint}")

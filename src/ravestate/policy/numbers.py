@@ -10,7 +10,7 @@ from ravestate.declare.module import Module
 from ravestate.declare.rule import Rule
 from ravestate.declare.settings import Number, SettingRef
 from ravestate.declare.wording import short
-from ravestate.errors import DeclarationError, nearest
+from ravestate.errors import nearest
 
 
 class Numbers:
@@ -21,9 +21,7 @@ class Numbers:
         faults: The list for faults: numbers out of range, and missing settings.
     """
 
-    __slots__ = ("_modules", "_named", "_settings", "faults", "refers")
-
-    def __init__(self, modules: Sequence[Module], settings: Mapping[str, Any], faults: list[DeclarationError]) -> None:
+    def __init__(self, modules: Sequence[Module], settings: Mapping[str, Any], faults: list[str]) -> None:
         self.faults = faults
         self.refers = False
         self._modules = modules
@@ -52,7 +50,7 @@ class Numbers:
             source = f"{number!r} = {found!r}"
             number = found
         if math.isnan(number) or math.isinf(number) or not valid(number):
-            self.faults.append(DeclarationError(f"{where}={source} must be {wanted}"))
+            self.faults.append(f"{where}={source} must be {wanted}")
             return 1.0
         return float(number)
 
@@ -64,10 +62,8 @@ class Numbers:
             module = next((m for m in self._modules if m.settings is ref.owner), own)
         if module is None or module.settings is None:
             self.faults.append(
-                DeclarationError(
-                    f"{where}={ref!r}: module {rule.name.split(':')[0]} has no settings: write "
-                    f"rs.Module({rule.name.split(':')[0]!r}, settings=Settings) with a field {ref.name}"
-                )
+                f"{where}={ref!r}: module {rule.name.split(':')[0]} has no settings: write "
+                f"rs.Module({rule.name.split(':')[0]!r}, settings=Settings) with a field {ref.name}"
             )
             return None
         values = self._settings.get(module.name)
@@ -75,10 +71,8 @@ class Numbers:
             fields: Mapping[str, Any] = getattr(module.settings, "model_fields", {})
             if ref.name not in fields:
                 self.faults.append(
-                    DeclarationError(
-                        f"{where}={ref!r}: settings of module {module.name} have no field {ref.name!r}"
-                        f"{nearest(ref.name, fields)}"
-                    )
+                    f"{where}={ref!r}: settings of module {module.name} have no field {ref.name!r}"
+                    f"{nearest(ref.name, fields)}"
                 )
                 return None
             value = fields[ref.name].get_default(call_default_factory=True)
@@ -86,9 +80,7 @@ class Numbers:
             value = getattr(values, ref.name, None)
         if isinstance(value, bool) or not isinstance(value, (int, float)):
             self.faults.append(
-                DeclarationError(
-                    f"{where}={ref!r}: the setting is {short(value)}, not a number; give it a number as its default"
-                )
+                f"{where}={ref!r}: the setting is {short(value)}, not a number; give it a number as its default"
             )
             return None
         return float(value)

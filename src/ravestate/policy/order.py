@@ -6,10 +6,9 @@ from collections.abc import Iterable
 
 from ravestate.declare.core import core
 from ravestate.declare.module import Module
-from ravestate.errors import DeclarationError
 
 
-def in_order(given: Iterable[Module], faults: list[DeclarationError]) -> list[Module]:
+def in_order(given: Iterable[Module], faults: list[str]) -> list[Module]:
     """Return the given modules and all that they require, in order.
 
     Args:
@@ -27,10 +26,8 @@ def in_order(given: Iterable[Module], faults: list[DeclarationError]) -> list[Mo
                 members = list(way)
                 cycle = [*members[members.index(required) :], required]
                 faults.append(
-                    DeclarationError(
-                        f"modules require each other in a cycle: {' -> '.join(m.name for m in cycle)}; remove one `requires`, "
-                        "or move the common names to a module of their own"
-                    )
+                    f"modules require each other in a cycle: {' -> '.join(m.name for m in cycle)}; remove one `requires`, "
+                    "or move the common names to a module of their own"
                 )
             elif required is not None:
                 if required not in ordered:
@@ -42,9 +39,7 @@ def in_order(given: Iterable[Module], faults: list[DeclarationError]) -> list[Mo
                 other = names.setdefault(module.name, module)
                 if other is not module:
                     faults.append(
-                        DeclarationError(
-                            f"two modules are named {module.name!r}: {other.origin} and {module.origin}; rename one"
-                        )
+                        f"two modules are named {module.name!r}: {other.origin} and {module.origin}; rename one"
                     )
                 ordered[module] = None
     return list(ordered)

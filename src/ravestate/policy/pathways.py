@@ -36,8 +36,6 @@ class _Entangled(Exception):
 class Pathways:
     """The pathways of a policy, with a cache."""
 
-    __slots__ = ("_known", "_of_clauses", "_unions", "_within", "completion")
-
     def __init__(self, completion: Completion) -> None:
         self.completion = completion
         self._of_clauses: dict[Clause, tuple[frozenset[Signal[Any]], ...]] = {}

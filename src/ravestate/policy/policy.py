@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import InitVar, dataclass
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     from ravestate.policy.source import Source
 
 
+@dataclass(kw_only=True, eq=False, repr=False)
 class Policy:
     """A set of compiled modules, made by ``rs.compile``.
 
@@ -32,37 +34,27 @@ class Policy:
         slots: The slots by qualified name.
     """
 
-    def __init__(
-        self,
-        *,
-        modules: tuple[Module, ...],
-        declared: tuple[Rule[Any, Any], ...],
-        signal_plans: tuple[SignalPlan, ...],
-        slot_plans: tuple[SlotPlan, ...],
-        rule_plans: tuple[RulePlan, ...],
-        causes: Causes,
-        completion: Completion,
-        refers: bool,
-        settings: Mapping[str, Any],
-    ) -> None:
-        self.modules = modules
-        self.declared = declared
-        self.signal_plans = signal_plans
-        self.slot_plans = slot_plans
-        self.rule_plans = rule_plans
-        self.causes = causes
+    modules: tuple[Module, ...]
+    declared: tuple[Rule[Any, Any], ...]
+    signal_plans: tuple[SignalPlan, ...]
+    slot_plans: tuple[SlotPlan, ...]
+    rule_plans: tuple[RulePlan, ...]
+    causes: Causes
+    completion: InitVar[Completion]
+    refers: bool
+    settings: Mapping[str, Any]
+
+    def __post_init__(self, completion: Completion) -> None:
         self.pathways = Pathways(completion)
-        self.refers = refers
-        self.settings = settings
-        clauses = [clause for rule in rule_plans for clause in (*rule.clauses, *rule.until)]
+        clauses = [clause for rule in self.rule_plans for clause in (*rule.clauses, *rule.until)]
         self.clause_plans = {clause.index: clause for clause in clauses}
         self.guarded = frozenset(slot.index for clause in clauses for slot, _ in clause.guards)
-        self.plan_of = {plan.name: plan for plan in rule_plans}
-        self.signal_of = {plan.name: plan for plan in signal_plans}
-        self.slot_of = {plan.name: plan for plan in slot_plans}
-        self.rules: Mapping[str, Rule[Any, Any]] = MappingProxyType({rule.name: rule for rule in declared})
-        self.signals: Mapping[str, Signal[Any]] = MappingProxyType({p.name: p.signal for p in signal_plans})
-        self.slots: Mapping[str, Slot[Any]] = MappingProxyType({p.name: p.slot for p in slot_plans})
+        self.plan_of = {plan.name: plan for plan in self.rule_plans}
+        self.signal_of = {plan.name: plan for plan in self.signal_plans}
+        self.slot_of = {plan.name: plan for plan in self.slot_plans}
+        self.rules: Mapping[str, Rule[Any, Any]] = MappingProxyType({rule.name: rule for rule in self.declared})
+        self.signals: Mapping[str, Signal[Any]] = MappingProxyType({p.name: p.signal for p in self.signal_plans})
+        self.slots: Mapping[str, Slot[Any]] = MappingProxyType({p.name: p.slot for p in self.slot_plans})
 
     def rule_plan(self, rule: str | Rule[Any, Any]) -> RulePlan:
         """Return the record of a rule.
@@ -188,17 +180,11 @@ class Policy:
         from ravestate.policy.compile import build
 
         if not isinstance(rule, Rule):  # pyright: ignore[reportUnnecessaryIsInstance]  # users may not type-check
-            raise DeclarationErrors(
-                [DeclarationError(f"{rule!r} is no rule: write @module.rule(when=...) above the function")]
-            )
+            fault = f"{rule!r} is no rule: write @module.rule(when=...) above the function"
+            raise DeclarationErrors([DeclarationError(fault)])
         if rule.name in self.rules:
-            raise DeclarationErrors(
-                [
-                    DeclarationError(
-                        f"rule {rule.name} ({rule.origin}) is in the policy already; give the new one another name=..."
-                    )
-                ]
-            )
+            fault = f"rule {rule.name} ({rule.origin}) is in the policy already; give the new one another name=..."
+            raise DeclarationErrors([DeclarationError(fault)])
         return build(self.modules, (*self.declared, rule), self.settings if settings is None else settings)
 
     def __repr__(self) -> str:

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from ravestate.errors import DeclarationError
 from ravestate.policy.causes import Causes
 from ravestate.policy.wording import few
 
 
-def check_reachable(causes: Causes, faults: list[DeclarationError]) -> None:
+def check_reachable(causes: Causes, faults: list[str]) -> None:
     """Refuse rules that wait for their own effects, directly or not, with no way in from outside.
 
     Slots, which code outside may write, and detached effects, which make loops on purpose, lead to findings instead.
@@ -23,9 +22,7 @@ def check_reachable(causes: Causes, faults: list[DeclarationError]) -> None:
             continue
         raisers = few(r.name for s in lacking for r in causes.all_causes[s.index])
         faults.append(
-            DeclarationError(
-                f"rule {rule.name} ({rule.rule.origin}) is unreachable: it waits for {few(s.name for s in lacking)}; "
-                f"only {raisers} may raise it, and they wait for each other; if it comes from outside, declare it "
-                "with input=True"
-            )
+            f"rule {rule.name} ({rule.rule.origin}) is unreachable: it waits for {few(s.name for s in lacking)}; "
+            f"only {raisers} may raise it, and they wait for each other; if it comes from outside, declare it "
+            "with input=True"
         )

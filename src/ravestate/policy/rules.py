@@ -30,9 +30,7 @@ class Rules:
         faults: The list for faults.
     """
 
-    __slots__ = ("_count", "_named", "faults", "names", "numbers", "plans")
-
-    def __init__(self, names: Names, numbers: Numbers, faults: list[DeclarationError]) -> None:
+    def __init__(self, names: Names, numbers: Numbers, faults: list[str]) -> None:
         self.names = names
         self.numbers = numbers
         self.faults = faults
@@ -77,7 +75,7 @@ class Rules:
         try:
             conjunctions = normal_form(condition)
         except DeclarationError as fault:
-            self.faults.append(DeclarationError(f"{where}: {what}: {fault}"))
+            self.faults.append(f"{where}: {what}: {fault}")
             return ()
         return tuple(
             self._clause(plan, number, conjunction, f"{where}: {what}")
@@ -95,10 +93,8 @@ class Rules:
                 needs.append(self._need(clause, len(needs), constraint, signal, plan.rule, where))
         if not conjunction.constraints:
             self.faults.append(
-                DeclarationError(
-                    f"{where}: {source!r} waits for no signal, and a predicate on a slot only gates: write "
-                    f"{conjunction.guards[0].slot.name.split(':')[-1]}.changed & ..."
-                )
+                f"{where}: {source!r} waits for no signal, and a predicate on a slot only gates: write "
+                f"{conjunction.guards[0].slot.name.split(':')[-1]}.changed & ..."
             )
         guards = [(self.names.slot(guard.slot, where), guard) for guard in conjunction.guards]
         clause.needs = tuple(needs)
@@ -133,10 +129,8 @@ class Rules:
             )
         if low > high:
             self.faults.append(
-                DeclarationError(
-                    f"{where}: {constraint.signal} can never be at least {low:g} s and at most {high:g} s old: write "
-                    f".min_age({low:g}).max_age(None)"
-                    + (" (max_age is 5 s by default)" if constraint.max_age_ == 5.0 else "")
-                )
+                f"{where}: {constraint.signal} can never be at least {low:g} s and at most {high:g} s old: write "
+                f".min_age({low:g}).max_age(None)"
+                + (" (max_age is 5 s by default)" if constraint.max_age_ == 5.0 else "")
             )
         return Need(clause, index, signal, low, high, constraint.is_detached, constraint.predicates)

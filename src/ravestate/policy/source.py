@@ -112,10 +112,11 @@ class _Reader:
             ):
                 if getattr(self._resolved(slot), "kind", "") == "collection":
                     self._enter(slot, Slot, acts.writes)
-            case ast.Call(func=ast.Attribute(value=ast.Name(id=self._context), attr="emit"), args=[signal, *_]):
-                self._enter(signal, Signal, acts.emits)
-            case ast.Call(func=ast.Attribute(value=ast.Name(id=self._context), attr="payload"), args=[signal, *_]):
-                self._enter(signal, Signal, acts.payloads)
+            case ast.Call(
+                func=ast.Attribute(value=ast.Name(id=self._context), attr="emit" | "payload" as method),
+                args=[signal, *_],
+            ):
+                self._enter(signal, Signal, acts.emits if method == "emit" else acts.payloads)
             case ast.Expr(
                 value=ast.Call(func=ast.Attribute(value=ast.Name(id=self._context), attr="sleep" | "quiet" as method))
             ):
@@ -146,19 +147,11 @@ class _Reader:
 def _bound(node: ast.AST) -> Iterator[str]:
     """Yield the names that a node binds within a function."""
     match node:
-        case ast.Name(id=name, ctx=ast.Store() | ast.Del()) | ast.arg(arg=name):
+        case ast.Name(id=name, ctx=ast.Store() | ast.Del()) | ast.arg(arg=name) | ast.MatchMapping(rest=str(name)):
             yield name
         case ast.alias(name=name, asname=other):
             yield other or name.partition(".")[0]
-        case (
-            ast.FunctionDef(name=str(name))
-            | ast.AsyncFunctionDef(name=str(name))
-            | ast.ClassDef(name=str(name))
-            | ast.ExceptHandler(name=str(name))
-            | ast.MatchAs(name=str(name))
-            | ast.MatchStar(name=str(name))
-            | ast.MatchMapping(rest=str(name))
-        ):
-            yield name
-        case _:
-            pass
+        case _:  # functions, classes, handlers and patterns
+            name = getattr(node, "name", None)
+            if isinstance(name, str):
+                yield name

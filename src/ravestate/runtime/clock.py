@@ -12,8 +12,6 @@ class Clock:
         loop: The loop whose time the clock follows.
     """
 
-    __slots__ = ("_halted", "_loop", "_origin", "_sleepers")
-
     def __init__(self, loop: asyncio.AbstractEventLoop) -> None:
         self._loop = loop
         self._origin = loop.time()

@@ -13,11 +13,10 @@ from time import perf_counter
 from typing import Any
 
 from ravestate.declare.rule import Rule
-from ravestate.declare.wording import short
+from ravestate.declare.wording import said, short
 from ravestate.engine.effects import Cancel, Effect, Ended, Failed, Run, Spiked
 from ravestate.engine.engine import Engine
 from ravestate.engine.events import AddRule, Event, Finish
-from ravestate.engine.foreign import said
 from ravestate.engine.trace import Record
 from ravestate.errors import EngineError, PlatformError, RavestateError, RunEnded
 from ravestate.policy.policy import Policy

@@ -14,6 +14,7 @@ import os
 import threading
 from collections import deque
 from collections.abc import Callable
+from dataclasses import dataclass, field
 from time import monotonic
 
 LAST_GRACE = 5.0
@@ -29,6 +30,7 @@ IDLE = 30.0
 """Seconds after which a thread with nothing to do ends."""
 
 
+@dataclass(slots=True, eq=False)
 class Job:
     """A function to call in a worker thread; it must not raise.
 
@@ -42,14 +44,11 @@ class Job:
         began: When a thread took it (likewise); None before.
     """
 
-    __slots__ = ("began", "call", "made", "name", "queue")
-
-    def __init__(self, queue: JobQueue, call: Callable[[], None], name: str) -> None:
-        self.queue = queue
-        self.call = call
-        self.name = name
-        self.made = monotonic()
-        self.began: float | None = None
+    queue: JobQueue
+    call: Callable[[], None]
+    name: str
+    made: float = field(init=False, default_factory=lambda: monotonic())
+    began: float | None = field(init=False, default=None)
 
 
 class ThreadPool:
