@@ -89,9 +89,7 @@ class Agenda(Slots):
         free = self._free
         self._free = []
         for activation in free:
-            if activation.state != READY:
-                continue
-            if not self._guarded(activation):
+            if activation.state != READY or self._defers(activation) or not self._guarded(activation):
                 continue
             rule = activation.clause.rule
             if not rule.slots:
@@ -100,6 +98,10 @@ class Agenda(Slots):
                     self._refuse(activation, Refusal.by(other, activation))
                     continue
             self._start(activation)
+
+    def _defers(self, activation: Activation) -> bool:
+        """Return whether a ready activation is put off as one turn too many of a loop (L23)."""
+        return self._loops.runs > MANY and activation.state is READY and self._loops.defer(activation)
 
     def _claimed(self, activation: Activation) -> Activation | None:
         """Return a run of the same rule on one of the same spikes: it alone excludes a rule without slots (L10)."""
@@ -146,7 +148,7 @@ class Agenda(Slots):
         while queue:
             entry = heapq.heappop(queue)
             activation = entry[4]
-            if activation.state not in ASKABLE or not self._guarded(activation):
+            if activation.state not in ASKABLE or self._defers(activation) or not self._guarded(activation):
                 continue
             rule = activation.clause.rule
             if rule.cooldown and (turn := self._turn(activation)) > entry[:4]:
