@@ -221,7 +221,7 @@ class Simulation:
 
     def _running(self) -> VirtualLoop:
         if self._loop is None:
-            raise EngineError("the simulation has not begun: write `with simulate(...) as sim:`")
+            raise EngineError("the simulation has not started: write `with simulate(...) as sim:`")
         return self._loop
 
 
