@@ -18,7 +18,7 @@ PICTURES = {
 
 module = rs.Module("museum", requires=[rawio])
 
-pointed = module.signal("pointed", payload=str)
+pointed = module.signal("pointed", payload=str, input=True)
 """The picture at which a visitor points; a camera raises this."""
 
 gaze = module.slot("gaze", "the visitor")

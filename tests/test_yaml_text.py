@@ -54,7 +54,9 @@ def test_hostile_texts_end_at_once(read: Callable[[str, str], Any], text: str, m
         ("a: *b", "file.yaml:1: not valid YAML (found undefined alias 'b')"),
         ("a: !!python/name:os.system", "file.yaml:1: not valid YAML (could not determine a constructor"),
         ("a: 2023-02-30", "file.yaml: not valid YAML (day "),
-        (f"a: {'1' * 5_000}", "file.yaml: not valid YAML (Exceeds the limit"),
+        (f"a: {'1' * 5_000}", "file.yaml:1: not valid YAML (a number of more than 300 digits)"),
+        (f"a: {':'.join(['59'] * 200_000)}", "file.yaml:1: not valid YAML (a number of more than 300 digits)"),
+        (f"a: {':'.join(['59'] * 1_000)}.5", "file.yaml:1: not valid YAML (a number of more than 300 digits)"),
     ],
 )
 def test_a_text_that_is_not_valid_is_refused_with_its_line(text: str, message: str) -> None:

@@ -16,6 +16,9 @@ from ravestate.errors import DeclarationError
 DEEPEST = 50
 """Levels of nesting that a text may have."""
 
+DIGITS = 300
+"""Characters that a number may have."""
+
 LARGEST = 100_000
 """Values that a text may have, each alias counted with all that it stands for."""
 
@@ -85,7 +88,18 @@ class _Bounded(Composer):
 
 
 class _SafeLoader(_Bounded, yaml.SafeLoader):
-    pass
+    def construct_number(self, node: yaml.ScalarNode) -> Any:
+        """Construct a number; a long one to the base 60 (``59:59:...``) would take minutes, or overflow."""
+        if len(node.value) > DIGITS:
+            raise yaml.constructor.ConstructorError(
+                None, None, f"a number of more than {DIGITS} digits", node.start_mark
+            )
+        kind = str(node.tag).rpartition(":")[2]
+        return getattr(self, f"construct_yaml_{kind}")(node)
+
+
+for _tag in ("tag:yaml.org,2002:int", "tag:yaml.org,2002:float"):
+    _SafeLoader.add_constructor(_tag, _SafeLoader.construct_number)
 
 
 class _TextLoader(_Bounded, yaml.BaseLoader):

@@ -253,3 +253,45 @@ def test_inputs_from_outside_are_answered_while_a_loop_has_no_end() -> None:
 
     assert asyncio.run(talk()) == ["answer"] * 2
     assert 1_000 < turns.total() < 9_000  # the loop still turns at the last answer
+
+
+def test_a_loop_that_branches_lets_the_rest_have_its_turn(play: Any) -> None:
+    m = rs.Module("m")
+    a, b, out = m.signal("a"), m.signal("b"), output(m)
+    turns, answered = Counter[str](), list[int]()
+
+    @m.rule(when=a, emits=a, detached=True)
+    async def branch(ctx: Any) -> None:
+        turns["branch"] += 1
+        if not answered and turns.total() < 20_000:
+            ctx.emit(a)
+            ctx.emit(a)
+
+    @m.rule(when=b, writes=out)
+    async def answer(ctx: Any) -> None:
+        answered.append(turns.total())
+
+    emitter(m, "classify", a.where(lambda payload: payload == "input"), b)
+    with play(m, trace=False) as sim:
+        sim.emit(a, "input")
+        assert 1_000 <= answered[0] <= 1_600
+
+
+def test_many_short_chains_in_one_instant_are_no_loop_without_an_end(play: Any) -> None:
+    m = rs.Module("m")
+    a, step = m.signal("a"), m.signal("step", payload=int)
+
+    @m.rule(when=a, emits=step, detached=True)
+    async def spread(ctx: Any) -> None:
+        for _ in range(12_000):
+            ctx.emit(step, 1)
+
+    @m.rule(when=step, emits=step, detached=True)
+    async def count_down(ctx: Any) -> None:
+        if ctx.payload(step):
+            ctx.emit(step, ctx.payload(step) - 1)
+
+    with play(m, trace=False) as sim:
+        sim.emit(a)
+        assert not sim.failures
+        assert sim.fired.count("m:count_down") == 24_000

@@ -1,6 +1,7 @@
 """Findings: declarations that compile, but are probably a mistake."""
 
 import inspect
+import queue
 from typing import Any
 
 import pytest
@@ -240,7 +241,7 @@ def test_detached_rules_that_set_each_other_off(scene: Scene) -> None:
     found = scene.findings()
     assert list(found) == [("loop", "m:ping")]
     assert found["loop", "m:ping"] == (
-        "loop: rules m:ping, m:pong set each other off by m:other, m:one, without end and without time passing (L23): "
+        "loop: rules m:ping, m:pong set each other off by m:other, m:one without time passing, and may never end (L23): "
         "write .min_age(seconds) behind one of these signals"
     )
 
@@ -249,7 +250,7 @@ def test_a_detached_constraint_makes_a_loop_too(scene: Scene) -> None:
     tick = scene.module.signal("tick")
     scene.rule("again", tick.detached() | scene.heard, emits=tick)
     text = scene.findings()["loop", "m:again"]
-    assert text.startswith("loop: rule m:again sets itself off by m:tick, without end")
+    assert text.startswith("loop: rule m:again sets itself off by m:tick without time passing, and may never end")
 
 
 @pytest.mark.parametrize("end", ["group", "min_age", "input", "where", "holds"])
@@ -283,6 +284,27 @@ def test_a_rule_of_a_loop_that_awaits_takes_time(scene: Scene, kind: str) -> Non
     function: Any = wait if kind == "async" else work
     scene.module.rule(when=scene.heard | tick, emits=tick, detached=True)(function)
     assert scene.findings() == {}
+
+
+def test_a_plain_function_that_may_wait_for_the_world_takes_time(scene: Scene) -> None:
+    tick, frames = scene.module.signal("tick"), queue.Queue[str]()
+
+    def watch(ctx: Any) -> None:
+        ctx[scene.out] = frames.get()
+        ctx.emit(tick)
+
+    scene.module.rule(when=rs.startup | tick, writes=scene.out, emits=tick, detached=True)(watch)
+    assert not [key for key in scene.findings() if key[0] == "loop"]
+
+
+def test_a_plain_function_that_acts_on_its_context_alone_makes_a_loop(scene: Scene) -> None:
+    tick = scene.module.signal("tick")
+
+    def work(ctx: Any) -> None:
+        ctx.emit(tick)
+
+    scene.module.rule(when=scene.heard | tick, emits=tick, detached=True)(work)
+    assert ("loop", "m:work") in scene.findings()
 
 
 # ---------------------------------------------------------------------------------------- source

@@ -127,3 +127,39 @@ def test_a_closure_without_its_value_yet_raises_no_alarm() -> None:
 
     assert acts(work) == (Acts(), [])
     later = 1
+
+
+def test_a_branch_that_an_enclosing_function_decides_raises_no_alarm() -> None:
+    def make(quiet: bool) -> Any:
+        async def say(ctx: Any) -> None:
+            if quiet:
+                ctx[mood] = "calm"
+            else:
+                ctx[face] = "smile"
+            ctx.emit(done)
+            if quiet:
+                return
+            ctx[people].add("ada", 1)
+
+        return say
+
+    found, faults = acts(make(quiet=True), writes=mood)
+    assert (found.writes, list(found.emits)) == ({}, [done])
+    assert len(faults) == 1 and faults[0].startswith("emits demo:done")
+
+
+def test_a_branch_that_a_slot_of_an_enclosing_function_decides_is_examined() -> None:
+    feeling = mood
+
+    async def say(ctx: Any) -> None:
+        if ctx[feeling] == "calm":
+            ctx.emit(done)
+
+    assert list(acts(say)[0].emits) == [done]
+
+
+def test_the_advice_names_built_in_signals_as_they_are_imported() -> None:
+    async def look(ctx: Any) -> None:
+        ctx[rs.pressure]
+
+    assert acts(look)[1][0].endswith("write reads=rs.pressure")

@@ -15,10 +15,12 @@ def spelt(name: str, home: str = "") -> str:
     """Return a qualified name as code of the module `home` spells it; there, its own names are variables.
 
     Example:
-        >>> spelt("rawio:input:changed", "guide"), spelt("guide:face", "guide")
-        ('rawio.input.changed', 'face')
+        >>> spelt("rawio:input:changed", "guide"), spelt("guide:face", "guide"), spelt("core:error", "guide")
+        ('rawio.input.changed', 'face', 'rs.error')
     """
     parts = name.split(":")
+    if parts[0] == "core":
+        parts[0] = "rs"
     return ".".join(parts[1:] if parts[0] == home else parts).replace("-", "_")
 
 

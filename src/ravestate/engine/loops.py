@@ -1,19 +1,19 @@
 """Loops without an end (L23): rules that set each other off without time passing.
 
 An instant lasts until the engine has nothing left to do. After `MANY` runs in one instant the engine notes, for each
-new spike, which rules led to it. A run whose own rule led to it is a further turn of a loop. After `TURNS` of them,
-each further turn of that loop waits until nothing else is ready.
+new spike, which rules led to it. A run whose own rule led to it is a further turn of a loop. After `TURNS` of them in
+all, each further turn waits until nothing else is ready. A loop is named once it has had so many turns of its own.
+
+A rule that sets off two runs of itself makes one loop into thousands. So the turns of all loops count together. A turn
+is judged when it becomes ready, and again when it is to start: thousands may be ready by then.
 """
 
 from __future__ import annotations
 
 from collections import deque
 from collections.abc import Sequence
-<<<<<<< HEAD
-from operator import attrgetter
-=======
 from dataclasses import dataclass, field
->>>>>>> lean-core
+from operator import attrgetter
 from typing import TYPE_CHECKING, NamedTuple
 
 from ravestate.engine.activation import READY
@@ -26,7 +26,7 @@ MANY = 500
 """Runs in one instant that are not traced; most instants have fewer, so tracing costs them nothing."""
 
 TURNS = 500
-"""Further turns of a loop that go ahead like any other run: with the runs before, 1,000."""
+"""Further turns in one instant that go ahead like any other run: with the runs before, 1,000."""
 
 
 @dataclass(slots=True, eq=False)
@@ -56,27 +56,31 @@ class Loops:
 
     Attributes:
         runs: How many runs there have been in this instant.
-        late: How many of them had been deferred.
+        late: How many of them had been deferred as turns of a loop that has been named.
         deferred: The activations that wait until nothing else is ready, oldest first.
     """
 
-    __slots__ = ("_instant", "_named", "deferred", "late", "runs")
+    __slots__ = ("_instant", "_named", "_next", "_turns", "deferred", "late", "runs")
 
     def __init__(self) -> None:
-        self.runs = self.late = 0
+        self.runs = self.late = self._turns = 0
+        self._next: Activation | None = None
         self.deferred: deque[Activation] = deque()
         self._instant = 0
         self._named: set[int] = set()
 
     def rest(self) -> None:
         """End the instant: nothing is left to do."""
-        self.runs = self.late = 0
+        self.runs = self.late = self._turns = 0
+        self._next = None
         self._instant += 1
 
     def defer(self, activation: Activation) -> bool:
         """Put a ready activation off if it is one turn too many; return whether it is."""
+        if self._turns < TURNS or activation is self._next:
+            return False
         rule = activation.clause.rule.index
-        over = any(rule in line.rules and line.loop.turns >= TURNS for line in self._lines(activation))
+        over = any(rule in line.rules for line in self._lines(activation))
         if over:
             self.deferred.append(activation)
         return over
@@ -86,7 +90,8 @@ class Loops:
         while self.deferred:
             activation = self.deferred.popleft()
             if activation.state is READY:
-                self.late += 1
+                self.late += any(line.loop.turns >= TURNS for line in self._lines(activation))
+                self._next = activation
                 return activation
         return None
 
@@ -106,6 +111,7 @@ class Loops:
         run.lineage = Lineage(rules | {rule.index}, loop)
         if rule.index not in rules:
             return ()
+        self._turns += 1
         loop.turns += 1
         loop.rules[rule] = None
         new = loop.turns == TURNS and {one.index for one in loop.rules} - self._named

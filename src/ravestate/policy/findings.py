@@ -95,7 +95,7 @@ def _loops(policy: Policy) -> Iterator[Finding]:
         yield Finding(
             "loop",
             rules[0].name,
-            f"{subject} off by {few(signals)}, without end and without time passing (L23): write .min_age(seconds) behind "
+            f"{subject} off by {few(signals)} without time passing, and may never end (L23): write .min_age(seconds) behind "
             "one of these signals",
         )
 

@@ -2,18 +2,30 @@
 
 In a loop, each rule has a clause whose signals come from rules of the loop, and at least one rule or constraint is
 detached. Without detachment the causal group ends the loop (L19). A clause with a ``min_age``, a predicate or a gate
-is no part of a loop here, because it may end one. Neither is a rule that awaits something, because it takes time.
+is no part of a loop here, because it may end one. Neither is a rule that awaits something, or a plain function that
+calls code outside of its context, because it takes time.
 """
 
 from __future__ import annotations
 
 import dis
+from collections import Counter
 from collections.abc import Iterator
-from types import CodeType
+from types import CellType, FunctionType, ModuleType, NoneType
 
+from ravestate.declare.condition import Condition
+from ravestate.declare.module import Module
+from ravestate.declare.signal import Signal
+from ravestate.declare.slot import Slot
 from ravestate.policy.components import components
 from ravestate.policy.model import Clause, Need, RulePlan
 from ravestate.policy.policy import Policy
+
+QUICK = (Signal, Slot, Module, Condition, str, int, float, tuple, NoneType)
+"""Types of values that take no time to use."""
+
+HOME = "ravestate"
+"""The start of the names of Python modules that hold such values."""
 
 
 def endless_loops(policy: Policy) -> Iterator[tuple[list[RulePlan], list[str]]]:
@@ -24,12 +36,7 @@ def endless_loops(policy: Policy) -> Iterator[tuple[list[RulePlan], list[str]]]:
         for clause in rule.clauses
         if not (clause.guards or _takes_time(rule) or any(n.predicates or n.min_age for n in _wanted(clause)))
     ]
-    while True:  # until the clauses that are left get all their signals from each other
-        raised = {signal for clause in clauses for signal in _raised(policy, clause.rule)}
-        left = [clause for clause in clauses if all(n.signal.index in raised for n in _wanted(clause))]
-        if len(left) == len(clauses):
-            break
-        clauses = left
+    clauses = _fed(policy, clauses)
     wanted: dict[int, list[Need]] = {}
     for clause in clauses:
         for need in _wanted(clause):
@@ -53,6 +60,26 @@ def endless_loops(policy: Policy) -> Iterator[tuple[list[RulePlan], list[str]]]:
             yield [policy.rule_plans[member] for member in sorted(members)], list(names)
 
 
+def _fed(policy: Policy, clauses: list[Clause]) -> list[Clause]:
+    """Return the clauses that get all their signals from each other's rules."""
+    hearers: dict[int, list[Clause]] = {}
+    raisers = Counter[int]()
+    for clause in clauses:
+        raisers.update(_raised(policy, clause.rule))
+        for need in _wanted(clause):
+            hearers.setdefault(need.signal.index, []).append(clause)
+    left = dict.fromkeys(clauses)
+    silent = [signal for signal in hearers if not raisers[signal]]
+    while silent:
+        for clause in hearers.get(silent.pop(), ()):
+            if clause in left:
+                del left[clause]
+                raised = _raised(policy, clause.rule)
+                raisers.subtract(raised)
+                silent += [signal for signal in raised if not raisers[signal]]
+    return list(left)
+
+
 def _wanted(clause: Clause) -> list[Need]:
     """Return the needs that take a new spike for each run; a detached need beside them may look at an old one."""
     return [need for need in clause.needs if not need.detached] or list(clause.needs)
@@ -65,7 +92,27 @@ def _raised(policy: Policy, rule: RulePlan) -> list[int]:
 
 
 def _takes_time(rule: RulePlan) -> bool:
-    code: CodeType | None = getattr(rule.rule.function, "__code__", None)
-    return (
-        code is None or "sleep" in code.co_names or any(i.opname == "GET_AWAITABLE" for i in dis.get_instructions(code))
-    )
+    function = rule.rule.function
+    if not isinstance(function, FunctionType) or "sleep" in function.__code__.co_names:
+        return True
+    steps = list(dis.get_instructions(function))
+    if rule.rule.is_async:
+        return any(step.opname == "GET_AWAITABLE" for step in steps)
+    cells = dict(zip(function.__code__.co_freevars, function.__closure__ or (), strict=True))
+    for step in steps:  # a thread may wait for whatever else it uses: a camera, a queue, a server
+        if step.opname == "LOAD_DEREF" and step.argval in cells:
+            used = next(iter(_content(cells[step.argval])), None)
+        elif step.opname in ("LOAD_GLOBAL", "LOAD_NAME"):
+            used = function.__globals__.get(step.argval, open if step.argval in ("input", "open") else None)
+        else:
+            continue
+        if not isinstance(used, QUICK) and not (isinstance(used, ModuleType) and used.__name__.startswith(HOME)):
+            return True
+    return False
+
+
+def _content(cell: CellType) -> list[object]:
+    try:
+        return [cell.cell_contents]
+    except ValueError:  # it is still empty
+        return []

@@ -1,7 +1,8 @@
 """The source of a rule's function: reads, writes and emits that its declaration lacks, and a forgotten ``await``.
 
 A name in the source counts only if the function's globals or its closure hold a slot or a signal by that name.
-Names that the function binds itself, and everything else, are left to the run (L3).
+Names that the function binds itself, and everything else, are left to the run (L3). So is a branch that a variable
+of an enclosing function decides: that function may make several rules with different declarations.
 """
 
 from __future__ import annotations
@@ -10,10 +11,10 @@ import ast
 import contextlib
 import inspect
 import textwrap
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator
 from dataclasses import dataclass, field
 from types import FunctionType, ModuleType
-from typing import Any
+from typing import Any, cast
 
 from ravestate.declare.signal import Signal
 from ravestate.declare.slot import Slot
@@ -52,7 +53,8 @@ def acts_of(rule: RulePlan, source: Source) -> Acts:
         return acts
     reader = _Reader(function, tree.body[0])
     for node in sorted(
-        ast.walk(tree.body[0]), key=lambda node: (getattr(node, "lineno", 0), getattr(node, "col_offset", 0))
+        _own(tree.body[0], reader.variables),
+        key=lambda node: (getattr(node, "lineno", 0), getattr(node, "col_offset", 0)),
     ):
         reader.note(node, acts)
     return acts
@@ -92,6 +94,12 @@ class _Reader:
             with contextlib.suppress(ValueError):  # a cell that is still empty
                 self._names[name] = cell.cell_contents
         self._context = arguments[0].arg if arguments else ""
+        self.variables = {
+            name
+            for name in function.__code__.co_freevars
+            if not isinstance(self._names.get(name), (Slot, Signal, ModuleType))
+        }
+        """The variables of enclosing functions, but for slots and signals."""
         for node in ast.walk(tree):
             for name in _bound(node):
                 if name == self._context and node is not arguments[0]:
@@ -142,6 +150,31 @@ class _Reader:
                 return None
             case _:
                 return None
+
+
+def _own(root: ast.AST, variables: Collection[str]) -> Iterator[ast.AST]:
+    """Yield a node and all nodes in it, but for those that one of some variables decides."""
+    stack = [root]
+    while stack:
+        node = stack.pop()
+        yield node
+        decided = _is_decided(node, variables)
+        for name, value in ast.iter_fields(node):
+            if decided and name in ("body", "orelse", "cases"):
+                continue
+            for inner in cast("list[object]", value if isinstance(value, list) else [value]):
+                if isinstance(inner, ast.AST):
+                    stack.append(inner)
+                    ends = isinstance(inner, ast.If) and isinstance(inner.body[-1], (ast.Return, ast.Raise))
+                    if ends and _is_decided(inner, variables):
+                        break  # it decides what follows, too
+
+
+def _is_decided(node: ast.AST, variables: Collection[str]) -> bool:
+    test = getattr(node, "subject" if isinstance(node, ast.Match) else "test", None)
+    return isinstance(test, ast.AST) and any(
+        isinstance(part, ast.Name) and part.id in variables for part in ast.walk(test)
+    )
 
 
 def _bound(node: ast.AST) -> Iterator[str]:
