@@ -265,7 +265,10 @@ async def test_the_first_screen_offers_three_things_to_say(stage: Stage) -> None
 async def test_suggestions_may_be_equal_or_long(stage: Stage) -> None:
     offered = ("Hello!", "Hello!", *("w" * 79 + str(number) for number in range(4)))
     small = {"viewport": {"width": 320, "height": 480}}
-    async with stage.serve(host, title="Elske", suggestions=offered) as served, stage.open(served.address, **small) as page:
+    async with (
+        stage.serve(host, title="Elske", suggestions=offered) as served,
+        stage.open(served.address, **small) as page,
+    ):
         await expect(page.get_by_role("list", name="Things to say").get_by_role("button")).to_have_count(6)
         await expect(page.get_by_role("button", name="Hello!")).to_have_count(2)
         assert await page.evaluate("document.documentElement.scrollWidth") == 320
