@@ -12,7 +12,8 @@ from hypothesis import strategies as st
 import ravestate as rs
 from board.looking import in_virtual_time, passing
 from ravestate.board.recorder import BATCH, Gap, Recorder, Recorders, _fair  # pyright: ignore[reportPrivateUsage]
-from ravestate.engine.trace import Born, Merged
+from ravestate.board.rendering import Rendered
+from ravestate.engine.trace import Born, Merged, Settled
 
 
 def ticking() -> tuple[rs.Context, rs.Signal[None]]:
@@ -113,6 +114,26 @@ async def test_a_recorder_goes_with_its_context() -> None:
     await passing(1)
     gc.collect()
     assert [known() for known in gone] == [None] * 4
+
+
+@in_virtual_time
+async def test_the_records_of_a_failure_keep_no_exception_and_with_it_the_variables_of_the_rule() -> None:
+    module = rs.Module("failing")
+    tick = module.signal("tick")
+
+    @module.rule(when=tick)
+    async def fail(ctx: rs.RuleContext) -> None:
+        raise ValueError("too dark")
+
+    context = rs.Context(module)
+    recorder = Recorder(context)
+    async with context:
+        context.emit(tick)
+        await passing(1)
+    [error] = [record.error for record in recorder.records if isinstance(record, Settled)]
+    assert isinstance(error, str) and 'raise ValueError("too dark")' in error
+    [payload] = [one.payload for one in recorder.records if isinstance(one, Born) and one.signal == "core:error"]
+    assert isinstance(payload, Rendered) and "too dark" in payload.text
 
 
 @in_virtual_time

@@ -161,6 +161,23 @@ def test_reset_removes_all_files_and_names_them(
     assert code == 1 and f"there is no memory at {file.resolve()}" in errors
 
 
+def test_files_of_a_deleted_memory_are_named(file: Path, folder: Path, capsys: Capture) -> None:
+    file.unlink()
+    (folder / "memory.lbug.wal").write_bytes(b"Ada")
+    code, _, errors = call(capsys, "memory", "--path", str(file), "list")
+    assert code == 1 and f"there is no memory yet: {file.resolve()} does not exist" in errors
+    assert "has left memory.lbug.sum, memory.lbug.wal, which may still have names in them" in errors
+    assert f"ravestate memory reset --path {file.resolve()} removes them" in errors
+
+
+def test_an_export_is_the_users_alone_whatever_was_left_before(file: Path, folder: Path, capsys: Capture) -> None:
+    left = folder / "all.json.new"
+    left.touch()
+    left.chmod(0o644)
+    assert call(capsys, "memory", "--path", str(file), "export", "all.json")[0] == 0
+    assert stat.S_IMODE((folder / "all.json").stat().st_mode) == 0o600
+
+
 def test_reset_mends_a_broken_memory(file: Path, capsys: Capture) -> None:
     file.write_bytes(b"no database at all " * 300)
     code, _, errors = call(capsys, "memory", "--path", str(file), "list")

@@ -262,6 +262,22 @@ async def test_the_first_screen_offers_three_things_to_say(stage: Stage) -> None
 
 
 @on_stage
+async def test_suggestions_may_be_equal_or_long(stage: Stage) -> None:
+    offered = ("Hello!", "Hello!", *("w" * 79 + str(number) for number in range(4)))
+    small = {"viewport": {"width": 320, "height": 480}}
+    async with (
+        stage.serve(host, title="Elske", suggestions=offered) as served,
+        stage.open(served.address, **small) as page,
+    ):
+        await expect(page.get_by_role("list", name="Things to say").get_by_role("button")).to_have_count(6)
+        await expect(page.get_by_role("button", name="Hello!")).to_have_count(2)
+        assert await page.evaluate("document.documentElement.scrollWidth") == 320
+        assert (await log(page).bounding_box())["height"] > 100
+        await page.get_by_role("button", name="Hello!").first.click()
+        await said(page, "Good evening.", "> Hello!", "You said: Hello!")
+
+
+@on_stage
 async def test_a_paused_agent_does_not_look_present(stage: Stage) -> None:
     async with stage.serve(host, title="Elske") as served, stage.open(served.address) as page:
         status = page.locator(".status")

@@ -13,6 +13,7 @@ All recorders of an agent share one limit. Beyond it, the longest ones are short
 from __future__ import annotations
 
 import asyncio
+import dataclasses
 from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -20,7 +21,9 @@ from itertools import islice
 from weakref import WeakKeyDictionary, ref
 
 from ravestate.board.idle_share import IdleShare
-from ravestate.engine.trace import Born, Record
+from ravestate.board.rendering import render, traceback_of
+from ravestate.declare.core import RuleFailure
+from ravestate.engine.trace import Born, Record, Settled
 from ravestate.runtime.context import Context
 
 KEPT = 100_000
@@ -127,9 +130,14 @@ class Recorder:
         self._leave = self._context.observe(self._take if self._gap is None else self._take_after_gap)
 
     def _take(self, record: Record) -> None:
-        self._keep(record)
         if type(record) is Born:
             self._spike = record.spike
+            if type(record.payload) is RuleFailure:
+                record = dataclasses.replace(record, payload=render(record.payload))
+        elif type(record) is Settled and isinstance(record.error, BaseException):
+            # The traceback of an exception holds all variables of the rule.
+            record = dataclasses.replace(record, error=traceback_of(record.error))
+        self._keep(record)
         self._left -= 1
         if self._left <= 0:
             self._rest()

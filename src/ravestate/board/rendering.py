@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import json
 import math
+import traceback
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import cast
@@ -16,6 +17,9 @@ from ravestate.declare.slot import Entry
 
 DEEPEST = 6
 """The most nested containers."""
+
+TRACEBACK = 8000
+"""The most characters of a traceback; its end is kept."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -144,3 +148,8 @@ def well_formed(text: str) -> str:
         '?x'
     """
     return text if text.isascii() else text.encode("utf-8", "replace").decode("utf-8")
+
+
+def traceback_of(error: BaseException) -> str:
+    """Return the end of an exception's traceback as text."""
+    return well_formed("".join(traceback.format_exception(error)))[-TRACEBACK:]

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import dataclasses
 import json
-import traceback
 from collections.abc import Callable
 from operator import attrgetter
 from typing import TYPE_CHECKING, Annotated, Any, Literal, NotRequired, Union, cast, get_args, get_type_hints
@@ -16,7 +15,7 @@ import pydantic
 import typing_extensions
 
 from ravestate.board.recorder import Gap
-from ravestate.board.rendering import Rendered, render, well_formed
+from ravestate.board.rendering import Rendered, render, traceback_of
 from ravestate.engine.trace import Record
 
 VERSION = 1
@@ -30,9 +29,6 @@ VALUE = 2000
 
 KINDS: dict[str, type[Any]] = {kind.__name__.lower(): kind for kind in (*get_args(Record), Gap)}
 """Each kind of record."""
-
-TRACEBACK = 8000
-"""The most characters of a traceback; its end is kept."""
 
 RENDERED = {"payload": PAYLOAD, "value": VALUE}
 
@@ -117,10 +113,6 @@ def _quickly(value: Any) -> dict[str, Any] | None:
     return None
 
 
-def _traceback(error: BaseException) -> str:
-    return well_formed("".join(traceback.format_exception(error)))[-TRACEBACK:]
-
-
 def _writer(name: str, kind: type[Any]) -> Callable[[Any], dict[str, Any]]:
     fields = [field.name for field in dataclasses.fields(kind)]
     keys = ("kind", *(field.rstrip("_") for field in fields))
@@ -134,7 +126,7 @@ def _writer(name: str, kind: type[Any]) -> Callable[[Any], dict[str, Any]]:
         if bounded and data["until"] is not None:
             data["until"] = round(cast("float", data["until"]), 6)
         if fails and (error := data.pop("error")) is not None:
-            data["error"] = error if isinstance(error, str) else _traceback(error)
+            data["error"] = error if isinstance(error, str) else traceback_of(error)
         if rendered is not None:
             value = data[rendered]
             data[rendered] = _quickly(value) or rendered_data(

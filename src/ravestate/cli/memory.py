@@ -70,7 +70,7 @@ def run(options: argparse.Namespace) -> int:
     if path is not None and not path.exists() and options.does != "load":
         raise RavestateError(
             f"there is no memory yet: {path} does not exist; name another with --path FILE, or an agent's settings "
-            "with -f agent.yaml"
+            f"with -f agent.yaml{_leftover(path)}"
         )
     memory = open_memory(settings)
     try:
@@ -86,6 +86,17 @@ def run(options: argparse.Namespace) -> int:
         return does[options.does](memory, options)
     finally:
         memory.close().result()
+
+
+def _leftover(path: Path) -> str:
+    """Return a hint at the files of a memory that was deleted without them; empty if there are none."""
+    from ravestate.modules.meta.ontology.files import MemoryFiles
+
+    names = ", ".join(file.name for file in MemoryFiles(path).present())
+    return names and (
+        f". An earlier memory has left {names}, which may still have names in them: ravestate memory reset --path {path} "
+        "removes them"
+    )
 
 
 def _settings(options: argparse.Namespace) -> Settings:
@@ -142,6 +153,7 @@ def _export(memory: Memory, options: argparse.Namespace) -> int:
     target = Path(options.to)
     new = target.with_name(target.name + ".new")
     try:
+        new.unlink(missing_ok=True)  # others may read one that is left from before
         new.touch(mode=0o600)  # the document is about people
         new.write_text(text, encoding="utf-8")
         new.replace(target)

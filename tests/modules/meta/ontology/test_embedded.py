@@ -213,6 +213,15 @@ def test_a_broken_file_is_refused_and_left_alone(file: Path, content: bytes | No
     assert file.read_bytes() == broken
 
 
+def test_a_file_that_lost_all_of_its_tables_is_broken_and_left_alone(file: Path) -> None:
+    content = file.read_bytes()
+    zeroed = content[:4096] + bytes(len(content) - 4096)  # with an intact header it opens as an empty database
+    file.write_bytes(zeroed)
+    said = failure(path=file)
+    assert f"memory {file} is broken, or no file of memory (it has no tables)" in said and "Nothing was changed" in said
+    assert file.read_bytes() == zeroed
+
+
 @pytest.mark.parametrize("damage", ["torn", "zeros", "rubbish"])
 def test_a_damaged_log_is_read_up_to_the_damage_and_kept(
     tmp_path: Path,

@@ -10,6 +10,7 @@ import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import httpx
 import pytest
@@ -218,6 +219,23 @@ def test_it_can_be_mounted_in_an_application() -> None:
             assert [visit.receive_json()["text"] for _ in range(2)] == ["Bye!", "you left"]
             assert visit.receive()["type"] == "websocket.close"
     assert len(chat.state.sessions) == 0
+
+
+@pytest.mark.parametrize(("path", "host"), [("/else", b"localhost"), ("/ws", b"evil.example")])
+def test_a_websocket_is_refused_on_a_server_without_denial_responses(path: str, host: bytes) -> None:
+    """As under daphne, which has no such ASGI extension."""
+    chat = webio.app(Agent(parrot, webio))
+    sent: list[Any] = []
+
+    async def receive() -> dict[str, str]:
+        return {"type": "websocket.connect"}
+
+    async def send(message: Any) -> None:
+        sent.append(message)
+
+    scope = {"type": "websocket", "path": path, "root_path": "", "headers": [(b"host", host)], "subprotocols": []}
+    asyncio.run(chat(scope, receive, send))
+    assert [message["type"] for message in sent] == ["websocket.close"]
 
 
 def test_others_may_add_routes_behind_the_same_checks() -> None:

@@ -140,3 +140,38 @@ def test_the_users_next_words_take_the_place_of_the_answer() -> None:
         sim.say("0")
         sim.advance(100.0)
         assert sim.said[1:] == ["thought"]
+
+
+def test_words_soon_after_a_filler_are_not_left_in_silence() -> None:
+    with simulate(fillers, model) as sim:
+        sim.say("1000")
+        sim.advance(2.1)
+        assert len(sim.said) == 1
+        sim.say("999")
+        sim.advance(100.0)
+        assert len(sim.said) == 2
+        assert sim.said[1] in SORRY
+
+
+def test_words_soon_after_a_filler_whose_answer_comes_are_not_lost() -> None:
+    with simulate(fillers, model) as sim:
+        sim.say("1000")
+        sim.advance(2.1)
+        sim.say("4")
+        sim.advance(100.0)
+        assert sim.said[1:] == ["thought"]
+
+
+def test_an_empty_answer_is_none() -> None:
+    mute = rs.Module("mute", requires=[rawio])
+
+    @mute.rule(when=rawio.input.changed, writes=rawio.output)
+    async def say_nothing(ctx: rs.RuleContext) -> None:
+        await ctx.sleep(4.0)
+        ctx[rawio.output] = " "
+
+    with simulate(fillers, mute) as sim:
+        sim.say("Hm?")
+        sim.advance(100.0)
+        assert sim.said[1] == " "
+        assert sim.said[2] in SORRY

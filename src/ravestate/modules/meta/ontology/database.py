@@ -11,6 +11,9 @@ from typing import Any
 BUFFER = 256 * 2**20
 """Bytes of memory that pages of the file may take at most."""
 
+EMPTY = 4 * 4096
+"""The most bytes of a database that never had a table."""
+
 LARGEST = 2**36
 """Bytes of address space for the file, which cannot grow beyond."""
 
@@ -26,10 +29,12 @@ def connect(path: Path, *, whole_log: bool = True) -> tuple[Any, Any]:
         whole_log: False to read a damaged log up to the damage, and to cut off the rest.
 
     Raises:
-        Exception: Ladybug raises RuntimeError, and any other exception for a damaged file.
+        Exception: RuntimeError if the file has lost all of its tables. Ladybug raises it as well, and any other exception
+            for a damaged file.
     """
     import ladybug
 
+    size = path.stat().st_size if path.exists() else 0
     database = ladybug.Database(
         str(path),
         buffer_pool_size=BUFFER,
@@ -40,6 +45,11 @@ def connect(path: Path, *, whole_log: bool = True) -> tuple[Any, Any]:
     )
     connection = ladybug.Connection(database, num_threads=1)
     connection.execute("CALL force_checkpoint_on_close=false")
+    found: Any = connection.execute("CALL show_tables() RETURN name") if size > EMPTY else None
+    if found is not None and not found.get_all():  # pages of zeros count as an empty catalog
+        connection.close()
+        database.close()
+        raise RuntimeError("it has no tables")
     return database, connection
 
 

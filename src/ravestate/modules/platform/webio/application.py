@@ -20,7 +20,7 @@ from ravestate.errors import PlatformError
 
 from .access import Access
 from .connection import Connection
-from .pages import Pages
+from .pages import Pages, refuse
 from .sessions import Sessions
 
 if TYPE_CHECKING:
@@ -107,7 +107,7 @@ class AccessMiddleware:
         refusal = access.refusal_of_board(headers) if self._inside else access.refusal(headers)
         if scope["type"] == "websocket":
             if refusal is not None:
-                await WebSocket(scope, receive, send).send_denial_response(PlainTextResponse(refusal, 403))
+                await refuse(WebSocket(scope, receive, send), PlainTextResponse(refusal, 403))
             else:
                 await self._app(scope, receive, send)
             return

@@ -24,6 +24,14 @@ COMPRESSED = {".woff2"}
 """Types that are compressed already."""
 
 
+async def refuse(socket: WebSocket, answer: Response) -> None:
+    """Answer a WebSocket's handshake with a response. Servers without that ASGI extension answer with 403."""
+    if "websocket.http.response" in (socket.scope.get("extensions") or {}):
+        await socket.send_denial_response(answer)
+    else:
+        await socket.close()
+
+
 @dataclass(frozen=True, slots=True)
 class _File:
     data: bytes
@@ -51,8 +59,7 @@ class Pages:
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Answer a request; a WebSocket has no page here."""
         if scope["type"] == "websocket":
-            refusal = PlainTextResponse("there is no such WebSocket", 404)
-            await WebSocket(scope, receive, send).send_denial_response(refusal)
+            await refuse(WebSocket(scope, receive, send), PlainTextResponse("there is no such WebSocket", 404))
         else:
             await self._answer(scope)(scope, receive, send)
 

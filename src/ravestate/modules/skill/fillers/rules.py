@@ -14,6 +14,8 @@ ENOUGH = 5.0
 
 @module.rule(
     when=rawio.input.changed.detached(),
+    reads=filled,
+    writes=promised,
     emits=idle.impatient,
     until=rawio.input.changed | rawio.output.changed | rawio.speaking.true | rs.activity.false | idle.impatient,
     detached=True,
@@ -22,6 +24,9 @@ ENOUGH = 5.0
 async def notice_no_answer(ctx: rs.RuleContext) -> None:
     """Raise `impatient` when a rule runs long without output. (`idle` notices rules that wait.)"""
     await ctx.sleep(ctx.settings.unanswered_after)
+    last = ctx[filled]
+    if last is not None and ctx.now - last < ENOUGH:
+        ctx[promised] = True  # no filler follows so soon, but the user still waits
     ctx.emit(idle.impatient)
 
 
@@ -59,6 +64,8 @@ async def notice_answer(ctx: rs.RuleContext) -> rs.Resign | None:
     said = ctx.payload(rawio.output.changed)
     if said is not None and said == ctx[verbaliser.last].get("filler"):
         return rs.Resign("this is the filler")
+    if said is not None and not said.strip():
+        return rs.Resign("nobody hears an empty answer")
     ctx[promised] = False
     return None
 
