@@ -25,9 +25,9 @@ def test_an_empty_file_has_no_node(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("content", "message"),
     [
-        (b"a: b: c", r"a\.yaml:1: this is no YAML .*\. Ask for help"),
-        (b"a: 1\nb: \x07", r"a\.yaml:2: this is no YAML \(a control character\)"),
-        (b"a: \xff", r"a\.yaml: this is no text in UTF-8 .* at byte 3"),
+        (b"a: b: c", r"a\.yaml:1: this is not YAML .*\. Ask for help"),
+        (b"a: 1\nb: \x07", r"a\.yaml:2: this is not YAML \(a control character\)"),
+        (b"a: \xff", r"a\.yaml: this is not UTF-8 text .* at byte 3"),
         (b"[" * 5000, r"a\.yaml: the nesting is too deep for a file of tests"),
     ],
 )

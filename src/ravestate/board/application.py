@@ -100,7 +100,7 @@ def routes(
             async with reading:
                 recording = await asyncio.to_thread(read_apart, bytes(data))
         except ValueError as error:
-            return PlainTextResponse(f"this is no trace: {error}", 422)
+            return PlainTextResponse(f"this is not a trace: {error}", 422)
         return JSONResponse({"recording": recordings.put(recording)}, 201)
 
     async def redirect(request: Request) -> Response:

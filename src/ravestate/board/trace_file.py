@@ -92,21 +92,21 @@ def open_trace(path: Path) -> Recording:
     """Read a trace from a file.
 
     Raises:
-        PlatformError: The file cannot be read, or is no trace.
+        PlatformError: The file cannot be read, or is not a trace.
     """
     try:
         return read_trace(path.read_bytes())
     except OSError as error:
         raise PlatformError(f"cannot read {path}: {error.strerror}") from None
     except ValueError as error:
-        raise PlatformError(f"{path} is no trace: {error}") from None
+        raise PlatformError(f"{path} is not a trace: {error}") from None
 
 
 def read_trace(text: str | bytes) -> Recording:
     """Read a trace. Lone surrogates in its texts are replaced.
 
     Raises:
-        ValueError: The text is no trace; the message names the place of the fault.
+        ValueError: The text is not a trace; the message names the place of the fault.
     """
     data = text if isinstance(text, bytes) else text.encode("utf-8", "surrogatepass")
     if sum(map(data.count, (b",", b"[", b"{"))) > MOST_VALUES:
@@ -128,7 +128,7 @@ def read_apart(data: bytes) -> Recording:
     """Read a trace in a process of its own, so that other threads of this one run on.
 
     Raises:
-        ValueError: The data is no trace, or reading takes too long.
+        ValueError: The data is not a trace, or reading takes too long.
     """
     command = [sys.executable, "-m", __name__]
     paths = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}

@@ -80,7 +80,7 @@ def record_of(data: Any) -> Record | Gap:
     """Return the record that data stands for. Its values stay rendered.
 
     Raises:
-        ValueError: The data is no record.
+        ValueError: The data is not a record.
     """
     return checked_record(_RECORD.validate_python(data))
 

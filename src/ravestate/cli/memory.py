@@ -167,7 +167,7 @@ def _load(memory: Memory, options: argparse.Namespace) -> int:
     except OSError as error:
         raise UsageError(f"cannot read {options.document}: {error.strerror}") from None
     except ValueError as error:
-        raise UsageError(f"{options.document} is no JSON: {error}") from None
+        raise UsageError(f"{options.document} is not JSON: {error}") from None
     print(f"loaded {memory.load(document).result()}")
     return 0
 

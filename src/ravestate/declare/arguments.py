@@ -48,10 +48,10 @@ def keywords(*options: str) -> Callable[[Callable[P, R]], Callable[P, R]]:
 
 
 def check_name(name: object, what: str) -> None:
-    """Refuse a name that is no word; `what` names the declaration in the message."""
+    """Refuse a name that is not a word; `what` names the declaration in the message."""
     if not isinstance(name, str) or not name.replace("-", "_").isidentifier():
         raise DeclarationError(
-            f"{what}: {name!r} is no name: use letters, digits, '_' and '-', beginning with a letter"
+            f"{what}: {name!r} is not a name: use letters, digits, '_' and '-', beginning with a letter"
         )
 
 
@@ -105,14 +105,14 @@ def condition(value: object, what: str, where: str, home: str) -> Condition:
         slot = cast("Slot[Any]", value)
         raise DeclarationError(f"{where}: {what}={slot!r} is a slot: write {what}={spelt(slot.name, home)}.changed")
     if not isinstance(value, Condition):
-        raise DeclarationError(f"{where}: {what}={value!r} is no condition: combine signals with & and |")
+        raise DeclarationError(f"{where}: {what}={value!r} is not a condition: combine signals with & and |")
     return value
 
 
 def number(value: object, what: str, where: str) -> Number:
     """Return a number as a float, or a setting as it is; refuse any other value."""
     if isinstance(value, bool) or not isinstance(value, type_of_number):
-        raise DeclarationError(f"{where}: {what}={value!r} is no number; write {what}=1.0 or a setting")
+        raise DeclarationError(f"{where}: {what}={value!r} is not a number; write {what}=1.0 or a setting")
     return value if isinstance(value, SettingRef) else float(value)
 
 
@@ -132,5 +132,5 @@ def several(values: Any, kind: type[T], what: str, where: str, home: str) -> tup
             elif isinstance(value, Slot):
                 name = cast("Slot[Any]", value).name
                 hint = f": a write raises its signals; write writes={spelt(name, home)}"
-            raise DeclarationError(f"{where}: {what}={value!r} is no {kind.__name__.lower()}{hint}")
+            raise DeclarationError(f"{where}: {what}={value!r} is not a {kind.__name__.lower()}{hint}")
     return tuple(dict.fromkeys(found))

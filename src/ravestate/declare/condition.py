@@ -83,7 +83,7 @@ class Constraint(Condition):
             predicate: A plain, quick function. The loop calls it for each spike that it offers to the rule.
 
         Raises:
-            DeclarationError: The predicate is no function, or an asynchronous one.
+            DeclarationError: The predicate is not a function, or an asynchronous one.
 
         Example:
             >>> import ravestate as rs
@@ -140,7 +140,7 @@ def checked_predicate(predicate: object, what: str, of: str) -> Predicate:
     A call of an asynchronous function or a generator only makes an object, which is always true.
 
     Raises:
-        DeclarationError: The predicate is no function, an asynchronous one, or a generator.
+        DeclarationError: The predicate is not a function, an asynchronous one, or a generator.
     """
     if not callable(predicate):
         raise DeclarationError(f"{what}({predicate!r}): expected a function of the {of}")
@@ -167,7 +167,7 @@ def _checked(condition: Condition, other: object, operator: str) -> Condition:
         hint = ""
         if hasattr(other, "changed"):
             home = str(condition).lstrip("(").partition(":")[0]
-            hint = f"; a slot is no signal: write {operator} {spelt(getattr(other, 'name', 'slot'), home)}.changed"
+            hint = f"; a slot is not a signal: write {operator} {spelt(getattr(other, 'name', 'slot'), home)}.changed"
         raise DeclarationError(
             f"cannot combine condition {condition} with {other!r} by {operator} ({place_of_call()}){hint}"
         )

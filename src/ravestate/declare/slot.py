@@ -106,7 +106,7 @@ class Slot(Generic[T]):
 
     def __and__(self, other: object) -> NoReturn:
         raise DeclarationError(
-            f"slot {self.name} ({place_of_call()}) is no condition: write .changed (its signal) or .holds(predicate)"
+            f"slot {self.name} ({place_of_call()}) is not a condition: write .changed (its signal) or .holds(predicate)"
         )
 
     __or__ = __rand__ = __ror__ = __and__

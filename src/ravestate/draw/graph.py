@@ -67,6 +67,6 @@ class Diagram:
         for edge in self.edges:
             for end in (edge.source, edge.target):
                 if end not in ids:
-                    raise ValueError(f"{edge} ends at {end!r}, which is no node of the diagram")
+                    raise ValueError(f"{edge} ends at {end!r}, which is not a node of the diagram")
             if edge.source == edge.target:
                 raise ValueError(f"{edge} ends where it began")

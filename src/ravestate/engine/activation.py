@@ -1,7 +1,7 @@
 """The life of an activation (L12, L14, L17, L18).
 
 An activation is a clause plus the spikes that it has acquired; once it has consent, it is the run of the rule.
-Every clause always has one more, in stand-by, that holds nothing. It has no state, so it is no object: an
+Every clause always has one more, in stand-by, that holds nothing. It has no state, so it is not an object: an
 activation is made for the first spike that it takes.
 
 - `GATHERING`: it holds some of its spikes, or some are too young.

@@ -72,7 +72,7 @@ class Engine(Agenda):
             self.now = now
         handler = HANDLERS.get(type(event))
         if handler is None:
-            raise EngineError(f"{event!r} is no event: see ravestate.engine.events")
+            raise EngineError(f"{event!r} is not an event: see ravestate.engine.events")
         handler(self, event)
 
     def advance(self, now: float) -> None:
@@ -263,7 +263,7 @@ class Engine(Agenda):
     def _collection(self, name: str) -> SlotPlan:
         slot = self._slot(name)
         if not slot.is_collection:
-            raise EngineError(f"{name} is no collection: use Write({name!r}, value)")
+            raise EngineError(f"{name} is not a collection: use Write({name!r}, value)")
         return slot
 
     def _run(self, number: int | None) -> Activation | None:

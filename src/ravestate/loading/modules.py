@@ -35,7 +35,7 @@ def load_module(name: str, folder: Path = Path()) -> Module:
         with _loading(f"entry point {name!r} ({installed[name].value}) fails"):
             return _as_module(name, installed[name].load())
     if "/" in name or name.startswith(".") or not name:
-        raise UsageError(f"{name!r} is no module: name a file (./hello.py), or a dotted path (pkg.mod)")
+        raise UsageError(f"{name!r} is not a module: name a file (./hello.py), or a dotted path (pkg.mod)")
     if str(Path.cwd()) not in sys.path:  # a command does not look there by itself
         sys.path.insert(0, str(Path.cwd()))
     if "." in name or ":" in name or (name.isidentifier() and importlib.util.find_spec(name) is not None):
@@ -68,7 +68,7 @@ def _from_file(name: str, path: Path) -> Module:
         return _as_module(name, known)  # a test imported it: its slots are these slots
     spec = importlib.util.spec_from_file_location(path.stem, path)
     if spec is None or spec.loader is None:
-        raise UsageError(f"{name} is no Python file")
+        raise UsageError(f"{name} is not a Python file")
     if str(path.parent) not in sys.path:  # the file may import its neighbours
         sys.path.insert(0, str(path.parent))
     module = importlib.util.module_from_spec(spec)

@@ -156,7 +156,7 @@ def _never_wins(policy: Policy) -> Iterator[Finding]:
                 "never-wins",
                 rule.name,
                 f"rule {rule.name} runs only when {few(w.rule.name for w in losers if w is not None)} resigns: the same "
-                f"signals trigger both, and its utility is no greater; {advice}",
+                f"signals trigger both, and its utility is not greater; {advice}",
             )
 
 

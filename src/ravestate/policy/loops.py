@@ -2,7 +2,7 @@
 
 In a loop, each rule has a clause whose signals come from rules of the loop, and at least one rule or constraint is
 detached. Without detachment the causal group ends the loop (L19). A clause with a ``min_age``, a predicate or a gate
-is no part of a loop here, because it may end one. Neither is a rule that awaits something, because it takes time.
+is not part of a loop here, because it may end one. Neither is a rule that awaits something, because it takes time.
 """
 
 from __future__ import annotations

@@ -26,7 +26,7 @@ Costs = dict[int, int]
 """Sets of signals, with the information of each."""
 
 Search = Generator["Search", Costs, Costs]
-"""A computation that yields others and receives their results, so that a depth of causes is no depth of calls."""
+"""A computation that yields others and receives their results, so that a depth of causes is not a depth of calls."""
 
 
 class _Entangled(Exception):

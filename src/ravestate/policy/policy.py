@@ -189,7 +189,7 @@ class Policy:
 
         if not isinstance(rule, Rule):  # pyright: ignore[reportUnnecessaryIsInstance]  # users may not type-check
             raise DeclarationErrors(
-                [DeclarationError(f"{rule!r} is no rule: write @module.rule(when=...) above the function")]
+                [DeclarationError(f"{rule!r} is not a rule: write @module.rule(when=...) above the function")]
             )
         if rule.name in self.rules:
             raise DeclarationErrors(

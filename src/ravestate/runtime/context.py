@@ -47,7 +47,7 @@ class Context:
 
     Raises:
         DeclarationErrors: The modules, or the settings, do not fit.
-        DeclarationError: The patience is no number of seconds.
+        DeclarationError: The patience is not a number of seconds.
 
     Example:
         >>> import asyncio, ravestate as rs

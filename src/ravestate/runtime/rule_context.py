@@ -224,7 +224,7 @@ class RuleContext:
             )
         if what != "emits" and not isinstance(value, Slot):
             raise UndeclaredError(
-                f"rule {self.rule.name} ({self.rule.origin}) {did} {name}, which is no slot: write ctx[slot]"
+                f"rule {self.rule.name} ({self.rule.origin}) {did} {name}, which is not a slot: write ctx[slot]"
             )
         own = getattr(self.rule, what)
         line = self._spelt(value)

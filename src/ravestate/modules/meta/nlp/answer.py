@@ -15,7 +15,7 @@ from .word_set import word_set
 
 @dataclass(frozen=True, slots=True)
 class YesNo:
-    """The meaning of a text as an answer. All three are None for a text that is no answer.
+    """The meaning of a text as an answer. All three are None for a text that is not an answer.
 
     Example:
         >>> yesno_of("probably not")

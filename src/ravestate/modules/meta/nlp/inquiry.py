@@ -52,7 +52,7 @@ _OPENINGS = [
 _OPENINGS.sort(key=len, reverse=True)
 
 _PERFORMED = word_set("joke story tale poem riddle secret lie fairytale anecdote goodnight")
-"""Things to perform, such as jokes: a request for one is no question."""
+"""Things to perform, such as jokes: a request for one is not a question."""
 
 
 def question_of(tree: Tree) -> QuestionWord | None:

@@ -150,7 +150,7 @@ class Graph:
         if not self._types.is_a(keep.type, duplicate.type):
             hint = " the other way round" if self._types.is_a(duplicate.type, keep.type) else ""
             raise RuleError(
-                f"{keep.id} cannot take over what {duplicate.id} has: a {keep.type} is no {duplicate.type}"
+                f"{keep.id} cannot take over what {duplicate.id} has: a {keep.type} is not a {duplicate.type}"
                 + (f"; merge them{hint}" if hint else "")
             )
         with self._store.transaction():

@@ -112,7 +112,7 @@ class _Reader:
         for child, (parent, place) in self._parents.items():
             if parent not in self._has:
                 raise DeclarationError(
-                    f"{place}: {child} is a {parent!r}, which is no type{nearest(parent, self._has)}"
+                    f"{place}: {child} is a {parent!r}, which is not a type{nearest(parent, self._has)}"
                 )
         for child, (_, place) in self._parents.items():
             line = [child]
@@ -124,7 +124,7 @@ class _Reader:
             for (_, target), place in ends.items():
                 if target not in self._has:
                     raise DeclarationError(
-                        f"{place}: {name} goes to {target!r}, which is no type{nearest(target, self._has)}"
+                        f"{place}: {name} goes to {target!r}, which is not a type{nearest(target, self._has)}"
                     )
         return Types(
             {
@@ -177,7 +177,7 @@ class _Reader:
                 raise fault(
                     file,
                     value,
-                    f"{owner}.{name}: {kind!r} is no kind{nearest(kind, KINDS)} (kinds: {', '.join(KINDS)})",
+                    f"{owner}.{name}: {kind!r} is not a kind{nearest(kind, KINDS)} (kinds: {', '.join(KINDS)})",
                 )
             spelt, known, where = self._kinds.setdefault((relation, name.lower()), (name, found, line_of(file, key)))
             if (spelt, known) != (name, found):
@@ -212,7 +212,7 @@ def _entries(file: str, node: yaml.Node, meaning: str) -> Iterator[tuple[yaml.No
         raise fault(
             file,
             node,
-            f"{meaning}, and this is no mapping: write for example\nBoat:\n  has: {{length: number}}",
+            f"{meaning}, and this is not a mapping: write for example\nBoat:\n  has: {{length: number}}",
         )
     seen: set[str] = set()
     for key, value in node.value:

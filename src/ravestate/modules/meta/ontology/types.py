@@ -255,5 +255,5 @@ def _as_loaded(what: str, kind: Kind, value: Any) -> Value:
         if kind == "number":
             return float(value)
     except (TypeError, ValueError):
-        raise RuleError(f"memory has {what} = {value!r}, which is no {kind}: set it again") from None
+        raise RuleError(f"memory has {what} = {value!r}, which is not a valid {kind}: set it again") from None
     return value

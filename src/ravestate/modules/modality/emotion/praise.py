@@ -21,7 +21,7 @@ NO_PRAISE = re.compile(
     "play|rich|party|dear|merry|pleased|calm|relaxed|satisfied|friends|friend|love|wanted|winning|help|"
     "helping|hoping|agreed|respected|sharing"
 )
-"""Words that VADER calls positive and that are no compliment after "you are"."""
+"""Words that VADER calls positive and that are not compliments after "you are"."""
 
 PRAISE_TOO = re.compile(
     "polite|patient|witty|genius|star|legend|gem|hero|pro|champion|expert|clever|smart|wise|quick|"
@@ -35,7 +35,7 @@ AFTER_PRETTY = {"", "and", "today", "tonight", "in", "with", "when", "robot", "g
 """The words after a "pretty" that does not mean "quite"."""
 
 NO_GOOD = {"to", "for", "enough", "luck"}
-"""The words after a "good" that is no praise: "you are good to go"."""
+"""The words after a "good" that is not praise: "you are good to go"."""
 
 WINDOW = 7
 """The number of words that may hold the praise."""

@@ -333,8 +333,8 @@ def parse(text: str | bytes, frames: TypeAdapter[F]) -> F:
         frames: The frames that may come: `CLIENT` or `SERVER`.
 
     Raises:
-        ProtocolError: The text is no such frame. The code is ``version`` for another version, that of `heard_text` for a
-            refused `Say`, else ``malformed``.
+        ProtocolError: The text is not such a frame. The code is ``version`` for another version, that of `heard_text` for
+            a refused `Say`, else ``malformed``.
     """
     if not isinstance(text, str):
         raise _malformed("a frame is a text message, not a binary one")
@@ -344,7 +344,7 @@ def parse(text: str | bytes, frames: TypeAdapter[F]) -> F:
     except (ValueError, RecursionError):
         raise _malformed(f"not JSON: {_short(text)}; a frame is an object: {example}") from None
     if not isinstance(found, dict):
-        raise _malformed(f"{_short(found)} is no object: write {example}")
+        raise _malformed(f"{_short(found)} is not an object: write {example}")
     fields = {key: value for key, value in cast("dict[str, Any]", found).items() if value is not None}
     try:
         return frames.validate_python(fields)

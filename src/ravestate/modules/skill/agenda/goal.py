@@ -211,7 +211,7 @@ def _expression(goal: str, what: str, event: Condition | str | None) -> re.Patte
         return re.compile(rf"(?<!\w)(?:{event})(?!\w)", re.IGNORECASE)
     except re.error as error:
         raise rs.DeclarationError(
-            f"goal {goal}: {what}={event!r} is no regular expression ({error}): write for example {what}='yes|sure'"
+            f"goal {goal}: {what}={event!r} is not a regular expression ({error}): write for example {what}='yes|sure'"
         ) from None
 
 

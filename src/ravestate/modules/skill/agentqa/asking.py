@@ -92,13 +92,13 @@ def statements(utterance: str, names: Collection[str] = ()) -> list[str]:
 
 
 def _unfit(words: list[str], asks: bool, known: Collection[str]) -> str:
-    """Return why a sentence is no question about the agent; an empty string if it may be one."""
+    """Return why a sentence is not a question about the agent; an empty string if it may be one."""
     if not words:
         return "nothing is said"
     if len(words) > WORDS:
         return f"it is longer than {WORDS} words"
     if not asks and words[0] not in _FIRST and not (words[0] in ("your", "and") and len(words) <= 3):
-        return "it is no question"
+        return "it is not a question"
     if not _USER.isdisjoint(_ABOUT_BOTH.sub(" ", " ".join(words)).split()):
         return "it is about the user"
     if not _SOMEBODY.isdisjoint(words):

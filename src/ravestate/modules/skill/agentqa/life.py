@@ -24,7 +24,7 @@ class Topic:
     named: tuple[tuple[str, tuple[str, ...]], ...] = ()
     """By fact: answers to a question that names one of its values, ``{it}``; ``{that}`` is the other text of a pair."""
     unnamed: tuple[str, ...] = ()
-    """Answers to a question about something particular (*can you dance*) that is no value of a fact."""
+    """Answers to a question about something particular (*can you dance*) that is not a value of a fact."""
     remarks: tuple[str, ...] = ()
     """Regular expressions of whole words, for remarks that no other module should answer."""
     asides: tuple[str, ...] = ()

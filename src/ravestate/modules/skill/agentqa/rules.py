@@ -89,12 +89,12 @@ async def understand(ctx: rs.RuleContext) -> rs.Resign | None:
 
 @module.rule(when=rawio.input.changed, reads=(life, idle.asked), emits=remarked)
 async def heed(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Notice a remark that is no small talk."""
+    """Notice a remark that is not small talk."""
     told = ctx[life]
     said = ctx.payload(rawio.input.changed)
     found = None if told is None else remark_in(said, told, asked=bool(ctx[idle.asked]))
     if found is None:
-        return rs.Resign("it is no such remark")
+        return rs.Resign("it is not such a remark")
     ctx.emit(remarked, found)
     return None
 

@@ -84,7 +84,7 @@ class Index:
             timeout: Seconds to wait for another process that writes.
 
         Raises:
-            PlatformError: It cannot be opened, has a newer version, or is no index.
+            PlatformError: It cannot be opened, has a newer version, or is not an index.
         """
         self.path = path
         self._lock = threading.RLock()
@@ -285,7 +285,7 @@ class Index:
             elif code.startswith("SQLITE_CANTOPEN"):
                 why = f"it cannot be opened: {_OTHER}"
             elif code.startswith(("SQLITE_NOTADB", "SQLITE_CORRUPT")):
-                why = f"it is no index, or damaged: remove it and index anew, or {_OTHER}"
+                why = f"it is not an index, or damaged: remove it and index anew, or {_OTHER}"
             else:
                 why = str(error)
             raise PlatformError(f"genqa: the index {self.path}: {why}") from error

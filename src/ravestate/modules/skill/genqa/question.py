@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from ravestate.modules._text import printable
 
 LONGEST = 2000
-"""Characters of an utterance; a longer one is no question about the world."""
+"""Characters of an utterance; a longer one is not a question about the world."""
 
 _FRONT = re.compile(
     r"^(?:(?:so|and|but|well|ok|okay|oh|hey|hi|hello|hm+|um|uh|please|now|then|actually|by the way|tell me|excuse me|"

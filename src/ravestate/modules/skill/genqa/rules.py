@@ -56,7 +56,7 @@ def find(ctx: rs.RuleContext) -> rs.Resign | None:
     settings: Settings = ctx.settings
     short = ctx.payload(nlp.question.changed) is None
     if short and not asks_in_short(ctx.payload(nlp.text.changed)):
-        return rs.Resign("it is no question")
+        return rs.Resign("it is not a question")
     last = ctx[before]
     if last is not None and ctx.now - last.at > REMEMBERED:
         last = None

@@ -52,7 +52,7 @@ _OWN = re.compile(r"(?:(?:what|where|who|when|how old|everything|anything|all) )
 
 
 def to_forget(text: str, known: Mapping[str, tuple[str, ...]]) -> list[Fact] | None:
-    """Return the known facts that the user wants forgotten; None if the text is no such request.
+    """Return the known facts that the user wants forgotten; None if the text is not such a request.
 
     Args:
         text: The result of `phrase.plain`.

@@ -150,7 +150,7 @@ def may_stand_alone(heard: Heard) -> bool:
     if heard.pos and not _TELLING & set(heard.pos):
         return False
     if len(heard.tokens) < 3:
-        return True  # Bill Gates is no sentence, although a parser may make one of it
+        return True  # Bill Gates is not a sentence, although a parser may make one of it
     for triple in heard.triples:
         subject = str(triple.subject).lower()
         if subject == "you" and triple.predicate.split()[0] not in VERBS:

@@ -187,7 +187,7 @@ def checked_model(path: Path | str | None = None) -> Path:
     if magic != b"GGUF":
         begins = "is empty" if not magic else f"begins with {magic!r}"
         raise PlatformError(
-            f"{named} is no GGUF file (it {begins}): fetch the model in GGUF format (often in a "
+            f"{named} is not a GGUF file (it {begins}): fetch the model in GGUF format (often in a "
             f"repository whose name ends in -GGUF) and write {_OWN_MODEL}"
         )
     return file

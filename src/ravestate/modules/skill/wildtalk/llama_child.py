@@ -23,7 +23,7 @@ def _main() -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the parent, who closes this process in order
     config: dict[str, Any] = json.loads(sys.stdin.readline())
     out = os.fdopen(os.dup(1), "w", encoding="utf-8")
-    os.dup2(2, 1)  # the prints of llama.cpp are no messages to the parent
+    os.dup2(2, 1)  # llama.cpp's own prints are not messages to the parent
 
     def say(**message: object) -> None:
         out.write(json.dumps(message) + "\n")

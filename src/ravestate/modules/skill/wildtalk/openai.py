@@ -57,7 +57,7 @@ class OpenAIBackend:
             extra: More fields of the request, for a particular server.
 
         Raises:
-            PlatformError: `base_url` is no web address.
+            PlatformError: `base_url` is not a web address.
         """
         self._base_url = _checked(base_url)
         self._model = model
@@ -145,7 +145,7 @@ class OpenAIBackend:
             ) from error
         except httpx.InvalidURL as error:
             raise PlatformError(
-                f"wildtalk: base_url {self._place!r} is no web address ({error}): write for example "
+                f"wildtalk: base_url {self._place!r} is not a web address ({error}): write for example "
                 f"wildtalk.base_url=http://localhost:11434/v1"
             ) from error
 
@@ -196,7 +196,7 @@ class OpenAIBackend:
             return
         if kind not in ("text/event-stream", ""):
             raise PlatformError(
-                f"wildtalk: {self._place} answers with {kind!r}, not with a stream of events: it is no "
+                f"wildtalk: {self._place} answers with {kind!r}, not with a stream of events: it is not an "
                 f"OpenAI-compatible API. Such an address mostly ends in /v1"
             )
         finished = False
@@ -205,7 +205,7 @@ class OpenAIBackend:
                 try:
                     async with asyncio.timeout(
                         self._read_timeout
-                    ):  # a comment that only keeps the connection open is no event
+                    ):  # a comment that only keeps the connection open is not an event
                         event = await anext(events, None)
                 except TimeoutError as error:
                     raise self._stalled() from error
@@ -239,7 +239,7 @@ class OpenAIBackend:
             length = len(rest) + (0 if ended else length)
             if length > _BODY_LIMIT:
                 raise PlatformError(
-                    f"wildtalk: {self._place} sent a line of more than {_BODY_LIMIT} characters: it is no "
+                    f"wildtalk: {self._place} sent a line of more than {_BODY_LIMIT} characters: it is not an "
                     f"OpenAI-compatible API"
                 )
             yield text
@@ -304,7 +304,7 @@ def _checked(base_url: str) -> str:
     address = base_url.strip().rstrip("/")
     if not address.startswith(("http://", "https://")) or not address.partition("://")[2]:
         raise PlatformError(
-            f"wildtalk: base_url {base_url!r} is no web address: write for example "
+            f"wildtalk: base_url {base_url!r} is not a web address: write for example "
             f"wildtalk.base_url=http://localhost:11434/v1"
         )
     return address.removesuffix("/chat/completions")
