@@ -105,7 +105,7 @@ def nearest(name: str, names: Iterable[str]) -> str:
 
 
 ALIKE = 0.6
-"""The least likeness of a name to its nearest: the share of letters that both have in the same order."""
+"""The minimum likeness of a name to its nearest: the share of letters that both have in the same order."""
 
 
 def _is_a_slip(one: str, other: str) -> bool:

@@ -50,7 +50,7 @@ def compose_yaml(text: str, name: str) -> yaml.Node | None:
         name: The name of its file, for messages.
 
     Raises:
-        DeclarationError: As for `load_yaml`.
+        DeclarationError: See `load_yaml`.
     """
     try:
         return yaml.compose(text, Loader=_TextLoader)

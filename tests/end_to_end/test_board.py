@@ -22,7 +22,7 @@ from ravestate.modules.platform.webio.server import Server
 from ravestate.modules.platform.webio.session import Ending
 
 SCRIPT = 300_000
-"""The most bytes of compressed script on the page."""
+"""The maximum number of bytes of compressed script on the page."""
 
 keeper = rs.Module("keeper", requires=(rawio,))
 question = keeper.signal("question", payload=str)

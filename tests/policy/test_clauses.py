@@ -1,4 +1,4 @@
-"""Disjunctive normal form (L5): in declaration order, without doubles, bounded."""
+"""Disjunctive normal form (L5): in declaration order, without duplicates, bounded."""
 
 import pytest
 

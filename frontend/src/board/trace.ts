@@ -83,7 +83,7 @@ export class Trace {
   #bars = new Map<number, Bar>();
   #into = new Map<number, number>();
 
-  /** @param kept the least number of records to keep; the oldest go first */
+  /** @param kept the minimum number of records to keep; the oldest go first */
   constructor(private readonly kept = 100_000) {}
 
   add(records: TraceRecord[]): void {

@@ -29,13 +29,14 @@ INSIDE = "board/"
 """The board's address, relative to the chat page."""
 
 LARGEST = 64 * 1024 * 1024
-"""The most bytes of an uploaded recording: twice the page's largest export, some 125,000 records of 270 bytes."""
+"""The maximum number of bytes of an uploaded recording: twice the page's largest export, some 125,000 records of 270
+bytes."""
 
 AT_ONCE = 4
-"""The most uploads at once."""
+"""The maximum number of uploads at once."""
 
 LONGEST = 300.0
-"""The most seconds for an upload."""
+"""The maximum number of seconds for an upload."""
 
 
 class RecordedAgent(Agent):

@@ -35,13 +35,13 @@ OF_SPARE = 0.5
 """The share of the process's idle time that an inspector may use as well."""
 
 MOST = 800
-"""The most records in a frame; more would delay the agent."""
+"""The maximum number of records in a frame; more would delay the agent."""
 
 BACKLOG = 20_000
-"""The most past records that a new inspector gets."""
+"""The maximum number of past records that a new inspector gets."""
 
 LAG = 25_000
-"""The most records that an inspector may lag behind. Beyond it, the server skips to the present."""
+"""The maximum number of records that an inspector may lag behind. Beyond it, the server skips to the present."""
 
 BURST, SPEED = 60, 30.0
 """The rate limit: commands at once, and commands a second after that."""
@@ -50,13 +50,13 @@ LISTED = 1.0
 """Seconds between two checks of the list of conversations."""
 
 LIST = 100
-"""The most conversations in the list: the newest, and the shown one."""
+"""The maximum number of conversations in the list: the newest, and the shown one."""
 
 WORDS = 48
-"""The most characters of a visitor's last words in the list."""
+"""The maximum number of characters of a visitor's last words in the list."""
 
 REPLIES = 64
-"""The most answers in the queue for a client."""
+"""The maximum number of answers in the queue for a client."""
 
 HELLO = f'{{"type": "hello", "v": {protocol.VERSION}}}'
 

@@ -24,16 +24,16 @@ from ravestate.engine.trace import Born, Record
 from ravestate.runtime.context import Context
 
 KEPT = 100_000
-"""The most records of one context."""
+"""The maximum number of records of one context."""
 
 IN_ALL = 500_000
-"""The most records of all contexts together, at some 136 bytes each, and their payloads."""
+"""The maximum number of records of all contexts together, at some 136 bytes each, and their payloads."""
 
 BATCH = 100
 """The number of records between two reports of growth."""
 
 BURST = 20_000
-"""The most records at once."""
+"""The maximum number of records at once."""
 
 RATE = 2_000
 """Records a second after a burst, from an agent that is always busy."""
@@ -63,8 +63,8 @@ class Recorder:
 
     Args:
         context: A context, running or not.
-        kept: The most records to keep.
-        burst: The most records at once.
+        kept: The maximum number of records to keep.
+        burst: The maximum number of records at once.
         rate: Records a second after a burst.
         spare: Further records a second, times the idle share of the process.
         whole: Whether the context has not started yet, so that the records are complete.
@@ -179,7 +179,8 @@ class Recorders:
     """The recorders of an agent's contexts. Each lives as long as its context.
 
     Args:
-        in_all: The most records of all contexts together. The limit may be exceeded by a fiftieth and a batch of each.
+        in_all: The maximum number of records of all contexts together. The limit may be exceeded by a fiftieth and a
+            batch of each.
     """
 
     def __init__(self, in_all: int = IN_ALL) -> None:

@@ -15,7 +15,7 @@ from ravestate.board.repr_chunks import repr_chunks
 from ravestate.declare.slot import Entry
 
 DEEPEST = 6
-"""The most nested containers."""
+"""The maximum number of nested containers."""
 
 
 @dataclass(frozen=True, slots=True)

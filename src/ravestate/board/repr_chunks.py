@@ -11,10 +11,10 @@ from types import MappingProxyType
 from typing import Any, NamedTuple, cast
 
 DEEPEST = 30
-"""The most nested containers."""
+"""The maximum number of nested containers."""
 
 LONGEST = 100_000
-"""The most characters, or bytes, of one text."""
+"""The maximum number of characters, or bytes, of one text."""
 
 TEXTS: dict[Any, Any] = {kind.__repr__: kind for kind in (str, bytes, bytearray)}
 

@@ -28,10 +28,11 @@ from ravestate.policy.policy import Policy
 FORMAT = "ravestate-trace"
 
 MOST_VALUES = 6_000_000
-"""The most commas and brackets in a file: more would fill the memory. 64 MB of records have some four million."""
+"""The maximum number of commas and brackets in a file: more would fill the memory. 64 MB of records have some four
+million."""
 
 LONGEST = 120
-"""The most seconds for reading a file."""
+"""The maximum number of seconds for reading a file."""
 
 CHUNK = 1000
 """Records that pass between processes at once. While they are unpacked, no other thread runs."""

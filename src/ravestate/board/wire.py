@@ -23,16 +23,16 @@ VERSION = 1
 """The version of the protocol and of trace files. A new frame, record or field keeps it; any other change raises it."""
 
 PAYLOAD = 400
-"""The most characters of a payload."""
+"""The maximum number of characters of a payload."""
 
 VALUE = 2000
-"""The most characters of a slot's value."""
+"""The maximum number of characters of a slot's value."""
 
 KINDS: dict[str, type[Any]] = {kind.__name__.lower(): kind for kind in (*get_args(Record), Gap)}
 """Each kind of record."""
 
 TRACEBACK = 8000
-"""The most characters of a traceback; its end is kept."""
+"""The maximum number of characters of a traceback; its end is kept."""
 
 RENDERED = {"payload": PAYLOAD, "value": VALUE}
 

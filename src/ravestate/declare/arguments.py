@@ -117,7 +117,8 @@ def number(value: object, what: str, where: str) -> Number:
 
 
 def several(values: Any, kind: type[T], what: str, where: str, home: str) -> tuple[T, ...]:
-    """Return one slot or signal, or an iterable of them, as a tuple without doubles; arguments as for `condition`."""
+    """Return one slot or signal, or an iterable of them, as a tuple without duplicates; the arguments are those of
+    `condition`."""
     if isinstance(values, kind):
         return (values,)
     try:

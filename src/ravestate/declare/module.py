@@ -130,14 +130,16 @@ class Module:
 
     @keywords(*SlotOptions.__annotations__)
     def flag(self, name: str, default: bool = False, **options: Unpack[SlotOptions]) -> Flag:
-        """Declare a boolean slot; its signals are ``.changed``, ``.true``, ``.false``. Arguments as for `slot`."""
+        """Declare a boolean slot; its signals are ``.changed``, ``.true``, ``.false``. The arguments are those of
+        `slot`."""
         flag = Flag(self._qualified("flag", name, options), default, origin=place_of_call(), **options)
         self.slots.append(flag)
         return flag
 
     @keywords(*SignalOptions.__annotations__)
     def collection(self, name: str, **options: Unpack[SignalOptions]) -> Collection[Any]:
-        """Declare keyed items; the signals are ``.added``, ``.removed``, ``.changed``. Arguments as for `slot`."""
+        """Declare keyed items; the signals are ``.added``, ``.removed``, ``.changed``. The arguments are those of
+        `slot`."""
         qualified = self._qualified("collection", name, options)
         collection: Collection[Any] = Collection(qualified, origin=place_of_call(), **options)
         self.slots.append(collection)

@@ -16,7 +16,7 @@ Segment = tuple[int, int, float, float]
 """The port on the left, the port on the right, and the y coordinates of both."""
 
 _NEAR = 5.0  # pixels: closer stubs look like one line
-_APART = 7.0  # pixels: least distance of two verticals on one track
+_APART = 7.0  # pixels: minimum distance of two verticals on one track
 _LEVEL = 0.01
 _TOUCHING = 4 * STRONG  # far above the sum of all crossings
 

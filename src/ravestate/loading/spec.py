@@ -50,7 +50,7 @@ class AgentSpec:
         """Read an agent file and load its modules.
 
         Raises:
-            UsageError: The file or something in it is wrong. The message has all mistakes.
+            UsageError: The file or something in it is wrong. The message lists all mistakes.
         """
         spec = cls()
         spec.load(spec.read(path))

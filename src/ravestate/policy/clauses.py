@@ -12,7 +12,7 @@ from ravestate.declare.signal import Signal
 from ravestate.errors import DeclarationError
 
 MAX_CLAUSES = 256
-"""The greatest number of conjunctions of a condition; more are surely a mistake of the designer."""
+"""The maximum number of conjunctions of a condition; more are surely a mistake of the designer."""
 
 Atoms = tuple[Constraint | Holds, ...]
 
@@ -26,7 +26,7 @@ class Conjunction:
 
 
 def normal_form(condition: Condition) -> tuple[Conjunction, ...]:
-    """Bring a condition of any depth into disjunctive normal form, in declaration order, without doubles.
+    """Bring a condition of any depth into disjunctive normal form, in declaration order, without duplicates.
 
     Raises:
         DeclarationError: The condition has more than `MAX_CLAUSES` conjunctions, or a part that is not a condition.

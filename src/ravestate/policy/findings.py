@@ -16,7 +16,7 @@ from ravestate.policy.source import Source, acts_of, undeclared
 from ravestate.policy.wording import few
 
 MAX_PEERS = 64
-"""The greatest number of other rules that the search for ties compares with a rule: the first declared.
+"""The maximum number of other rules that the search for ties compares with a rule: the first declared.
 
 Without a limit the time would grow with the square of the number of rules; ``policy.conflicts()`` compares them all.
 """

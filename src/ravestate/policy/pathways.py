@@ -17,10 +17,10 @@ from ravestate.policy.completion import Completion
 from ravestate.policy.model import Clause, Need
 
 MAX_PATHWAYS = 256
-"""The greatest number of pathways of a clause, and of a signal: the cheapest. There may be exponentially many."""
+"""The maximum number of pathways of a clause, and of a signal: the cheapest. There may be exponentially many."""
 
 MAX_UNIONS = 200_000
-"""The greatest number of unions for one clause. A clause that needs more shows its least pathway alone."""
+"""The maximum number of unions for one clause. A clause that needs more shows its least pathway alone."""
 
 Costs = dict[int, int]
 """Sets of signals, with the information of each."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 SHOWN = 8
-"""The greatest number of names in a list."""
+"""The maximum number of names in a list."""
 
 
 def few(names: Iterable[str]) -> str:

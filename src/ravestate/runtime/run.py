@@ -19,7 +19,7 @@ from ravestate.runtime.context import Context
 log = logging.getLogger("ravestate")
 
 INPUT = "rawio:input"
-"""The slot of the user's words. An agent that has it is mostly meant to be talked with."""
+"""The slot of the user's words. An agent that has it is usually meant to be talked with."""
 
 UNABLE = (NotImplementedError, RuntimeError, ValueError)
 """Errors of `add_signal_handler` on platforms that lack it, and outside of the main thread."""
@@ -33,8 +33,8 @@ def run(*modules: Module | ModuleType | Policy, **options: Any) -> None:
     A warning is logged if the modules use `rawio`, but no platform among them lets a user talk.
 
     Args:
-        modules: As for `Context`.
-        options: As for `Context`.
+        modules: See `Context`.
+        options: See `Context`.
 
     Raises:
         DeclarationErrors: The modules, or the settings, do not fit.

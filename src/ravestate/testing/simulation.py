@@ -36,12 +36,12 @@ class Simulation:
     """Modules in virtual time: no real waiting, the same result every time. Use it as a context manager.
 
     Args:
-        modules: As for `Context`.
-        settings: As for `Context`.
+        modules: See `Context`.
+        settings: See `Context`.
         seed: The seed of random choices; fixed, so that tests repeat.
-        patience: As for `Context` (seconds).
+        patience: See `Context` (seconds).
         trace: Whether to keep every decision.
-        journal: As for `Context`.
+        journal: See `Context`.
 
     Attributes:
         context: The context, with everything that has no shortcut here.
@@ -98,11 +98,11 @@ class Simulation:
             path: The agent file. Its modules are relative to its folder.
             settings: Settings by module, before the environment's and the file's.
             seed: The seed of random choices; by default the file's, else 0.
-            patience: As for `Context` (seconds); by default the file's.
+            patience: See `Context` (seconds); by default the file's.
             trace: Whether to keep every decision.
 
         Raises:
-            UsageError: The file or something in it is wrong. The message has all mistakes.
+            UsageError: The file or something in it is wrong. The message lists all mistakes.
         """
         spec = AgentSpec.from_file(Path(path))
         platforms = {name for name, folder in BUILT_IN.items() if folder == "platform"}

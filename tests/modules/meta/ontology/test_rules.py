@@ -125,7 +125,7 @@ def test_without_the_package_everything_else_goes_on(
     [warned] = [record for record in caplog.records if record.name == "ravestate.ontology.open_up"]
     assert warned.levelname == "WARNING"
     assert warned.getMessage() == (
-        "there is no long-term memory in this talk: ontology needs ladybug: pip install 'ravestate[ontology]'"
+        "there is no long-term memory in this conversation: ontology needs ladybug: pip install 'ravestate[ontology]'"
     )
 
 

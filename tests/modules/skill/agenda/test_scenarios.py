@@ -224,7 +224,7 @@ def test_while_the_talk_has_a_topic_nothing_is_pursued() -> None:
         sim.put(agenda.topics, {"quiz": "a quiz"})
         sim.advance(60.0)
         assert sim.said == []
-        assert "the talk is about quiz" in str(sim.explain("agenda:take_initiative"))
+        assert "the conversation is about quiz" in str(sim.explain("agenda:take_initiative"))
         sim.put(agenda.topics, {})
         sim.advance(6.0)
         assert sim.said == ["A game?"]

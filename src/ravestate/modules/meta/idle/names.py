@@ -22,7 +22,8 @@ class Settings(rs.Settings):
     writing_time: Seconds = 20.0
     """Seconds of silence after the last key of an unsent line."""
     remarks: Annotated[int, Field(ge=0)] = 2
-    """The most remarks in a row that the agent makes out of boredom without a word or a key from the user."""
+    """The maximum number of remarks in a row that the agent makes out of boredom without a word or a key from the
+    user."""
     impatient_after: Seconds = 1.0
     """Seconds that a ready rule waits before the agent is impatient."""
 

@@ -189,7 +189,7 @@ class EmbeddedStore:
         return ""
 
     def _open_in_part(self) -> str:
-        """Open with a damaged log, of which a power failure has mostly torn the end; return why that failed.
+        """Open with a damaged log, of which a power failure has usually torn the end; return why that failed.
 
         The log is read up to the damage, or not at all if that is not possible. A copy of it is kept.
         """

@@ -18,14 +18,14 @@ async def open_up(ctx: rs.RuleContext) -> None:
     ctx[memory] = opening
 
     def let_go() -> None:
-        ctx[memory] = None  # the talk goes on without memory
+        ctx[memory] = None  # the conversation goes on without memory
         opening.close()
 
     try:
         await opening.opened()
     except PlatformError as error:  # no rule is at fault
         let_go()
-        ctx.log.warning("there is no long-term memory in this talk: %s", error)
+        ctx.log.warning("there is no long-term memory in this conversation: %s", error)
     except BaseException:
         let_go()
         raise

@@ -21,7 +21,7 @@ class Intent:
     parameters: Mapping[str, object] = field(default_factory=dict[str, object])
     """Values for the parameters of phrases; None counts as missing."""
     package: str | None = None
-    """The package with the file ``phrases.yaml``, mostly the rule's ``__package__``."""
+    """The package with the file ``phrases.yaml``, usually the rule's ``__package__``."""
     file: Path | None = None
     """A file with the phrases, for a rule outside of packages."""
     phrases: Mapping[str, Sequence[str]] | None = None

@@ -10,7 +10,7 @@ from .sentiment import polarity, valence
 from .utterance import is_denied
 
 KIND = 1.5
-"""The least valence of a word of praise."""
+"""The minimum valence of a word of praise."""
 
 SPOILT = -0.1
 """The polarity that spoils a compliment: "nice and stupid"."""

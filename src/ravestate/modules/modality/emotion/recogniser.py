@@ -26,7 +26,7 @@ from .sentiment import polarity
 from .utterance import LONGEST, Sentence, is_denied, sentences
 
 DELIGHT = 0.5
-"""The least polarity of a joyful exclamation or sentence about oneself."""
+"""The minimum polarity of a joyful exclamation or sentence about oneself."""
 
 SAD = -0.5
 """The polarity that spoils joy: "I got my results, and I failed"."""

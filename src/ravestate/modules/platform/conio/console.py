@@ -169,7 +169,7 @@ class Console:
             return
         try:
             write()
-        except (OSError, ValueError) as error:  # mostly a broken pipe, a closed file
+        except (OSError, ValueError) as error:  # usually a broken pipe, a closed file
             self.ending = "closed"
             if isinstance(error, OSError) and error.errno in _FULL:
                 self.failure = PlatformError(f"conio: the agent's words cannot be written: {error.strerror}")

@@ -35,7 +35,7 @@ CONSOLES = ("conio",)
 """Platforms for a single user; each visitor's context would have one."""
 
 MOST_LOGGED = 100
-"""The most sites that the log names, each once, so that strangers cannot fill it."""
+"""The maximum number of sites that the log names, each once, so that strangers cannot fill it."""
 
 log = logging.getLogger("ravestate.webio")
 

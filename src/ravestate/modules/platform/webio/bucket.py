@@ -7,7 +7,7 @@ class Bucket:
     """A rate limit: a burst, then so many a second.
 
     Args:
-        burst: The most events at once.
+        burst: The maximum number of events at once.
         rate: Events per second after that.
         now: The time (seconds).
 

@@ -12,7 +12,8 @@ from starlette.websockets import WebSocket, WebSocketDisconnect
 from .protocol import CLOSING_CODES, Error, ProtocolError, serialise
 
 LONGEST = 128 * 1024
-"""The most bytes of a frame: the longest text has 10,000 characters, and JSON may need twelve bytes for each."""
+"""The maximum number of bytes of a frame: the longest text has 10,000 characters, and JSON may need twelve bytes for
+each."""
 
 SILENT = 10.0
 """Seconds that a client has for its hello."""
@@ -23,7 +24,8 @@ class Channel:
 
     Args:
         socket: A WebSocket that nobody has accepted yet.
-        replies: The most replies that may wait for the client. A client that asks on without reading is dropped.
+        replies: The maximum number of replies that may wait for the client. A client that asks on without reading is
+            dropped.
     """
 
     def __init__(self, socket: WebSocket, replies: int) -> None:

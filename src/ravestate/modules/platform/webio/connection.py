@@ -42,7 +42,7 @@ BURST, RATE = 20, 5.0
 `Writing` has a limit of its own with the same numbers; the server ignores the rest."""
 
 REPLIES = 32
-"""The most replies that may wait for a client."""
+"""The maximum number of replies that may wait for a client."""
 
 HELLO = f'{{"type": "hello", "v": {VERSION}}}'
 

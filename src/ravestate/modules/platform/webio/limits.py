@@ -46,8 +46,8 @@ class LimitedHTTP(H11Protocol):
     """HTTP with a limit on connections, in total and per address, and with time limits.
 
     Args:
-        per_address: The most connections from one address, including WebSockets.
-        most: The most connections in total.
+        per_address: The maximum number of connections from one address, including WebSockets.
+        most: The maximum number of connections in total.
     """
 
     def __init__(self, *args: Any, per_address: int, most: int, **kwargs: Any) -> None:

@@ -32,10 +32,10 @@ VERSION = 1
 """The version of the protocol. A new frame or field keeps it; any other change raises it."""
 
 LONGEST_NAME = 80
-"""The most characters of a name."""
+"""The maximum number of characters of a name."""
 
 LONGEST_TEXT = 10_000
-"""The most characters that a visitor may say at once."""
+"""The maximum number of characters that a visitor may say at once."""
 
 GREATEST = 2**53 - 1
 """The greatest whole number that every JSON reader can hold."""

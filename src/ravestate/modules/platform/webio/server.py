@@ -48,7 +48,7 @@ class Server:
 
     Args:
         agent: An agent with ``webio`` among its modules; the settings say where to listen.
-        routes, inside: As for `webio.app`.
+        routes, inside: See `webio.app`.
 
     Raises:
         PlatformError: Others can reach the address, and there is no token; or see `make_app`.

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from ravestate.runtime.agent import Agent
 
 ONLOOKERS = 8
-"""The most windows of one conversation at a time."""
+"""The maximum number of windows of one conversation at a time."""
 
 
 class Sessions:
@@ -21,7 +21,8 @@ class Sessions:
 
     Args:
         agent: The agent; it makes a context for each conversation.
-        limit: The most conversations. Beyond it, one without a window ends first; then new ones are refused.
+        limit: The maximum number of conversations. Beyond it, one without a window ends first; then new ones are
+            refused.
         keep: Seconds for which a conversation without a window is kept.
     """
 

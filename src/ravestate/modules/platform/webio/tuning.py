@@ -13,8 +13,8 @@ SWITCH = 0.0005
 default, each turn would wait 5 ms while a thread analyses a sentence."""
 
 COLLECT = (10_000, 10, 10)
-"""The thresholds of the cyclic garbage collector. With Python's default (700, 10, 10) it scans all objects of some hundred
-conversations every few seconds, and no answer is sent meanwhile."""
+"""The thresholds of the cyclic garbage collector. With Python's default (700, 10, 10) it scans all objects of several
+hundred conversations every few seconds, and no answer is sent meanwhile."""
 
 
 @dataclass(slots=True)

@@ -31,5 +31,5 @@ goals: rs.Collection[GoalState] = module.collection("goals")
 """The state of each goal that was pursued, reached or dropped, by the name of its rule."""
 
 topics: rs.Collection[str] = module.collection("topics", input=True)
-"""The topics of the talk. While there is one, no goal is pursued. A skill adds a name when it begins something, and
-removes it at the end."""
+"""The topics of the conversation. While there is one, no goal is pursued. A skill adds a name when it begins something,
+and removes it at the end."""

@@ -13,9 +13,9 @@ from dataclasses import dataclass
 LONGEST = 2000
 """Characters of an utterance that are read."""
 WORDS = 20
-"""The greatest number of words in a question about the agent."""
+"""The maximum number of words in a question about the agent."""
 SENTENCES = 4
-"""The greatest number of sentences that are considered."""
+"""The maximum number of sentences that are considered."""
 
 
 @dataclass(frozen=True, slots=True)

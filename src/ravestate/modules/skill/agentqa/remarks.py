@@ -11,7 +11,7 @@ from .asking import statements
 from .life import Life
 
 ASIDE = 80
-"""The greatest number of characters in an aside."""
+"""The maximum number of characters in an aside."""
 
 
 @dataclass(frozen=True, slots=True)

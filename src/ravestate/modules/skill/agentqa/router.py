@@ -34,7 +34,7 @@ RIDGE = 0.1
 LEAST = 0.3
 """A question with a lower score is like none of the examples."""
 UNADDRESSED = 0.9
-"""The least similarity (cosine) of a question without *you* to an example without it: *how is it going*."""
+"""The minimum similarity (cosine) of a question without *you* to an example without it: *how is it going*."""
 OTHERS = ""
 
 

@@ -59,7 +59,7 @@ async def remember(ctx: rs.RuleContext) -> rs.Resign | None:
     try:
         await settle(told, memory)
     except RuleError as error:
-        return rs.Resign(str(error))  # it was closed meanwhile: the talk is over
+        return rs.Resign(str(error))  # it was closed meanwhile: the conversation is over
     except RavestateError as error:
         ctx.log.warning("the agent's facts in memory may be out of date: %s", error)
     return None

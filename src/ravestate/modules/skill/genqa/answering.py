@@ -26,15 +26,15 @@ READ = (1, 1, 2, 4)
 GOOD, VERY_GOOD, HOPELESS = 7.5, 9.0, -4.0
 """Scores that end the reading: `GOOD` an answer among several, `VERY_GOOD` an answer alone, `HOPELESS` the first few."""
 ENOUGH = 0.4
-"""The least share of the question's words (0 to 1) in a passage that is read."""
+"""The minimum share of the question's words (0 to 1) in a passage that is read."""
 LEVEL = 0.8
 """Scores that differ by less count as equal."""
 COMMON = 20_000
-"""The greatest number of passages with a word that is searched, unless there is no rarer word."""
+"""The maximum number of passages with a word that is searched, unless there is no rarer word."""
 COMMON_KIND = 2_000
 """The same limit for words that only say what kind of answer is wanted."""
 WORDS = 24
-"""The greatest number of words to search for."""
+"""The maximum number of words to search for."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -158,7 +158,7 @@ class Answerer:
         known = index.frequencies(sorted({stem for stems in stem_of.values() for stem in stems}))
 
         def standing(word: str) -> int:
-            """Return the greatest possible number of passages with a word."""
+            """Return the maximum number of passages with a word."""
             return min(known.get(stem, 0) for stem in stem_of[word])
 
         rare = [word for word in stem_of if standing(word) <= (COMMON_KIND if word in question.kinds else COMMON)]

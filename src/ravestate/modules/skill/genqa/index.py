@@ -163,7 +163,7 @@ class Index:
 
         Args:
             words: Any text; operators of the query language are plain words here.
-            limit: The greatest number of passages.
+            limit: The maximum number of passages.
             without: Words that leave a passage out.
         """
         return self._matching(_any_of(words), limit, without)

@@ -10,9 +10,9 @@ from ravestate.modules._text import printable
 from .document import Passage
 
 LONGEST = 280
-"""The greatest number of characters in a passage; a longer sentence is cut."""
+"""The maximum number of characters in a passage; a longer sentence is cut."""
 SHORTEST = 12
-"""The least number of characters in a passage; page numbers and captions are shorter."""
+"""The minimum number of characters in a passage; page numbers and captions are shorter."""
 
 _PARAGRAPH = re.compile(r"\n\s*\n")
 _END = re.compile(r"(?<=[.!?…])[\"”’)\]]*\s+(?=[\"“‘(\[]?[^\W_a-z])|(?<=[。！？])")

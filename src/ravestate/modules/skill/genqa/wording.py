@@ -15,11 +15,11 @@ from .names import Settings, found
 from .names import module as genqa
 
 TOLD = 3
-"""The greatest number of passages in the prompt."""
+"""The maximum number of passages in the prompt."""
 WORTH_TELLING = 3.0
-"""The greatest distance to the best score of a passage in the prompt."""
+"""The maximum distance to the best score of a passage in the prompt."""
 FAMILIAR = 0.6
-"""The least share of the model's words that the passages and the question have."""
+"""The minimum share of the model's words that the passages and the question have."""
 
 _INSTRUCTION = (
     "You word answers. Answer the question in one short sentence, only with what the quotations between <<< and >>> say. "

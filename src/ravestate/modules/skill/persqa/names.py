@@ -45,7 +45,7 @@ facts: rs.Collection[tuple[str, ...]] = module.collection("facts")
 """Values by topic (``home``, ``hobby``, ...); an empty tuple means that there are none."""
 
 talk: rs.Slot[Talk] = module.slot("talk", Talk(), type=Talk)
-"""The state of the talk about the user: what was asked, and what they would rather not say."""
+"""The state of the conversation about the user: what was asked, and what they would rather not say."""
 
 reply = module.signal("reply", payload=Intent)
 """The user has told or asked something about themselves; the payload is the reply."""

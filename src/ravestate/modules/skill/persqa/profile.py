@@ -79,7 +79,7 @@ def _without(values: Iterable[str], others: Iterable[str]) -> tuple[str, ...]:
 
 
 def merged(remembered: Facts, told: Facts) -> Facts:
-    """Return remembered facts and those of this talk together; this talk goes first."""
+    """Return remembered facts and those of this talk together; this conversation goes first."""
     found = dict(remembered)
     for topic, values in told.items():
         before = remembered.get(topic, ()) if TOPICS[topic].many and values else ()
@@ -88,7 +88,7 @@ def merged(remembered: Facts, told: Facts) -> Facts:
 
 
 def told_apart(facts: Facts, remembered: Facts, told: Iterable[str]) -> Facts:
-    """Return the facts that come from this talk alone."""
+    """Return the facts that come from this conversation alone."""
     return {
         topic: _without(facts[topic], remembered.get(topic, ())) if TOPICS[topic].many else facts[topic]
         for topic in told

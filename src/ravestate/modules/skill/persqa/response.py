@@ -125,7 +125,7 @@ async def _written(user: Acquaintance, name: str | None, memory: ontology.Memory
     """Save the facts about the user, under their new name if they told one."""
     again = name is not None and not (user.name and same(user.name, name))
     try:
-        if user.who is not None:  # else the facts stay in the talk
+        if user.who is not None:  # else the facts stay in the conversation
             user = await _at_once(
                 memory, lambda graph: (user.renamed(graph, name) if again and name else user).noted(graph)
             )
@@ -133,7 +133,7 @@ async def _written(user: Acquaintance, name: str | None, memory: ontology.Memory
     except RavestateError as error:
         user = replace(user, talk=replace(user.talk, trouble=str(error)))
     if again:
-        return replace(user, who=ontology.Node("Person", {NAME: name}))  # for as long as the talk lasts
+        return replace(user, who=ontology.Node("Person", {NAME: name}))  # for as long as the conversation lasts
     with contextlib.suppress(RavestateError):  # reading may work where writing fails
         return await _at_once(memory, user.recall)
     return user

@@ -159,8 +159,8 @@ def due(
         known: The values by topic; an empty tuple means that there are none.
         closed: Topics not to ask about.
         tries: The number of questions about each.
-        last: The topic of the talk.
-        limit: The greatest number of questions about one topic.
+        last: The topic of the conversation.
+        limit: The maximum number of questions about one topic.
 
     Example:
         >>> due(["name", "home"], {"name": ("Ada",)}, [], {}, limit=2)

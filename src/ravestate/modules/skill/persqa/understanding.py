@@ -1,4 +1,4 @@
-"""The meaning of an utterance for the talk about the user."""
+"""The meaning of an utterance for the conversation about the user."""
 
 from __future__ import annotations
 
@@ -82,7 +82,7 @@ def understand(heard: Heard, talk: Talk, known: Mapping[str, tuple[str, ...]], n
 
     Args:
         heard: The utterance.
-        talk: The talk before it.
+        talk: The conversation before it.
         known: The values by topic, with the name.
         now: Seconds since the context began.
         within: Seconds for which a question waits for its answer.

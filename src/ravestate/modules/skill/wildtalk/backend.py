@@ -47,7 +47,7 @@ class Backend(Protocol):
 
         Args:
             messages: The conversation, oldest first; the last message is to be answered.
-            max_tokens: The greatest number of tokens (each about three quarters of an English word).
+            max_tokens: The maximum number of tokens (each about three quarters of an English word).
             temperature: The randomness: 0 always takes the likeliest word, 1 is the model's own distribution.
             seed: The same seed and messages give the same answer, where the model allows it.
             stop: Texts before which the model stops.

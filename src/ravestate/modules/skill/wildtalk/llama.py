@@ -108,7 +108,7 @@ class LlamaBackend:
         except PlatformError as error:
             if self._process is not process:
                 return  # the backend was closed in the middle of an answer
-            # A broken connection comes some milliseconds before the end of the process.
+            # A broken connection comes a few milliseconds before the end of the process.
             grace = 0.5 if error.__cause__ is not None else 0.0
             if obituary := await asyncio.to_thread(process.obituary, grace):
                 raise PlatformError(

@@ -205,7 +205,7 @@ def take(key: ModelKey) -> LlamaProcess:
 
 
 def drop(process: LlamaProcess) -> None:
-    """Remove one user of `process`; the last one ends it, which blocks for some milliseconds."""
+    """Remove one user of `process`; the last one ends it, which blocks for a few milliseconds."""
     with _sharing:
         process.users -= 1
         if process.users:

@@ -56,7 +56,7 @@ class Settings(rs.Settings):
     """The answer when the model cannot be loaded, or fails before its first word."""
 
     max_tokens: Annotated[int, Field(ge=1)] = 96
-    """The longest answer, in tokens; ``sentences`` mostly ends it before."""
+    """The longest answer, in tokens; ``sentences`` usually ends it before."""
     sentences: Annotated[int, Field(ge=1)] = 2
     """The longest answer, in sentences."""
     temperature: Annotated[float, Field(ge=0, le=2)] = 0.5

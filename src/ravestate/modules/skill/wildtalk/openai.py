@@ -197,7 +197,7 @@ class OpenAIBackend:
         if kind not in ("text/event-stream", ""):
             raise PlatformError(
                 f"wildtalk: {self._place} answers with {kind!r}, not with a stream of events: it is not an "
-                f"OpenAI-compatible API. Such an address mostly ends in /v1"
+                f"OpenAI-compatible API. Such an address usually ends in /v1"
             )
         finished = False
         async with aclosing(self._events(answer)) as events:
@@ -287,7 +287,7 @@ class OpenAIBackend:
         elif status == 404:
             hint = (
                 f"does it know the model {self._model!r} (wildtalk.model; with Ollama: `ollama pull "
-                f"{self._model or 'llama3.2'}`), and is the address right? It mostly ends in /v1"
+                f"{self._model or 'llama3.2'}`), and is the address right? It usually ends in /v1"
             )
         elif status in (300, 301, 302, 303, 307, 308):
             hint = f"it has moved: set wildtalk.base_url to where {answer.headers.get('location', '?')!r} is"
