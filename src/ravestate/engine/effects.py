@@ -38,7 +38,7 @@ class Cancel:
 
 @dataclass(slots=True)
 class Failed:
-    """Log the failure of a rule, once, with its traceback."""
+    """Log a rule's failure once, with its traceback."""
 
     rule: str
     exception: BaseException

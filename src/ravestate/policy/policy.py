@@ -28,7 +28,7 @@ class Policy:
     Attributes:
         modules: The modules, each after those that it requires.
         rules: The rules by qualified name, in declaration order.
-        signals: The signals by qualified name, those of slots included.
+        signals: The signals by qualified name, including those of slots.
         slots: The slots by qualified name.
     """
 
@@ -79,8 +79,8 @@ class Policy:
     def utility(self, rule: str | Rule[Any, Any]) -> float:
         """Return the utility of a rule in nats, without weight and cooldown: the greatest over its clauses (L9).
 
-        It may be somewhat too great if dozens of signals on a pathway each have several causes with common causes; else
-        it is exact (``policy/least.py``).
+        The result is exact, unless dozens of signals on a pathway each have several causes with common causes; then it
+        may be slightly too high (``policy/least.py``).
 
         Args:
             rule: The rule, or its qualified name.

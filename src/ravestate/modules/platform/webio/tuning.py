@@ -1,4 +1,4 @@
-"""Settings of the interpreter for short answers to many visitors."""
+"""Interpreter settings for quick answers to many visitors."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ _saved = _Saved()
 
 @contextlib.contextmanager
 def low_latency() -> Generator[None]:
-    """Set the interpreter for short answers, until the last server has ended."""
+    """Tune the interpreter for quick answers, until the last server has ended."""
     if not _saved.users:
         _saved.switch, _saved.collect = sys.getswitchinterval(), gc.get_threshold()
         sys.setswitchinterval(SWITCH)

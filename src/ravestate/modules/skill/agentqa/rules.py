@@ -48,7 +48,7 @@ def load(ctx: rs.RuleContext) -> None:
 
 @module.rule(when=life.changed.detached(), reads=ontology.memory, background=True)
 async def remember(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Bring memory in line with the file."""
+    """Update memory to match the file."""
     told, memory = ctx.payload(life.changed), ctx[ontology.memory]
     if told is None or memory is None:
         return rs.Resign("there is no memory, or no life")
@@ -103,18 +103,18 @@ async def heed(ctx: rs.RuleContext) -> rs.Resign | None:
     when=remarked,
     reads=(life, mood, clock),
     writes=verbaliser.intent,
-    weight=25.0,  # few rules of other modules go before it, not even with an answer to a question
+    weight=25.0,  # outranks nearly all rules of other modules, even those that answer a question
 )
 async def respond(ctx: rs.RuleContext) -> None:
     """Answer the remark."""
     told, remark = ctx[life], ctx.payload(remarked)
-    assert told is not None  # `heed` needs a life
+    assert told is not None  # `heed` has run only if there is a life
     phrases = telling(told.topics[remark.topic], remark.text, told.facts, mood=ctx[mood], now=ctx[clock]())
     if phrases is not None:
         ctx[verbaliser.intent] = intent(remark.topic, phrases)
 
 
-@module.rule(when=idle.hushed, writes=verbaliser.intent, weight=20.0)  # before all but such a remark
+@module.rule(when=idle.hushed, writes=verbaliser.intent, weight=20.0)  # outranks everything except such a remark
 async def keep_quiet(ctx: rs.RuleContext) -> None:
     """Promise to be quiet; `idle` keeps the promise."""
     ctx[verbaliser.intent] = Intent("hushed", package=__package__)
@@ -124,12 +124,12 @@ async def keep_quiet(ctx: rs.RuleContext) -> None:
     when=asked,
     reads=(life, mood, clock, ontology.memory),
     writes=verbaliser.intent,
-    weight=1.5,  # before other modules with an answer to the same question
+    weight=1.5,  # outranks other modules that answer the same question
 )
 async def answer(ctx: rs.RuleContext) -> rs.Resign | None:
     """Answer the question."""
     match, told = ctx.payload(asked), ctx[life]
-    assert told is not None  # `understand` needs a life
+    assert told is not None  # `understand` has run only if there is a life
     facts = await known(ctx, told, ctx[ontology.memory])
     phrases = telling(told.topics[match.topic], match.question, facts, mood=ctx[mood], now=ctx[clock]())
     if phrases is None:
@@ -147,9 +147,9 @@ async def answer(ctx: rs.RuleContext) -> rs.Resign | None:
         verbaliser.intent,
         rawio.output,
         prompted,
-    ),  # the output too, so that no goal is pursued at the same time
+    ),  # also writes the output, so that no goal is pursued at the same time
     weight=0.9,
-    detached=True,  # else the intent could not be worded in the same causal group
+    detached=True,  # otherwise the intent could not become words in the same causal group
 )
 async def offer(ctx: rs.RuleContext) -> rs.Resign | None:
     """Invite the user to ask, now and then, in a silence."""
@@ -162,7 +162,7 @@ async def offer(ctx: rs.RuleContext) -> rs.Resign | None:
 
 
 def intent(topic: str, phrases: Sequence[str]) -> Intent:
-    """Return an intent with finished phrases; the braces left in them belong to a fact."""
+    """Return an intent with finished phrases; any braces left in them belong to a fact."""
     texts = [phrase.replace("{", "{{").replace("}", "}}") for phrase in phrases]
     return Intent(f"agentqa:{topic}", phrases={"en": texts})
 
@@ -174,5 +174,5 @@ async def known(ctx: rs.RuleContext, told: Life, memory: ontology.Memory | None)
     try:
         return {**await recall(told, memory), "memory": "my memory"}
     except RavestateError as error:
-        ctx.log.warning("memory does not answer, so the file counts: %s", error)
+        ctx.log.warning("memory does not answer, so the agent uses the file: %s", error)
         return told.facts

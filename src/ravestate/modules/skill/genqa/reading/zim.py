@@ -13,7 +13,7 @@ from .unreadable import Unreadable
 
 
 def read(path: Path, source: str) -> Iterator[Document]:
-    """Yield the documents of each article; redirections and pictures are passed over."""
+    """Yield the documents of each article; skip redirects and pictures."""
     try:
         reader: Any = import_module("libzim.reader")
     except ImportError as error:
