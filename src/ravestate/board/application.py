@@ -1,4 +1,4 @@
-"""The board's routes, for a place beside the chat page and behind its checks."""
+"""The board's routes, mounted beside the chat page and behind its checks."""
 
 from __future__ import annotations
 
@@ -63,8 +63,8 @@ def routes(
 
     Args:
         recorders: The recorders of a `RecordedAgent`. Without them, recording starts when a board opens.
-        recording: The recording to show unless a page asks for a conversation.
-        title: The agent's name; None: the name that the agent gives itself.
+        recording: The recording to show, unless a page asks for a conversation.
+        title: The agent's name; None for the name that the agent gives itself.
     """
     known = Recorders() if recorders is None else recorders
     recordings = Recordings(recording)
@@ -96,7 +96,7 @@ def routes(
         except TimeoutError:
             return PlainTextResponse(f"the upload took more than {LONGEST:g} s", 408)
         except ClientDisconnect:
-            return Response(status_code=400)  # nobody reads it
+            return Response(status_code=400)  # the client never reads it
         try:
             async with reading:
                 recording = await asyncio.to_thread(read_apart, bytes(data))

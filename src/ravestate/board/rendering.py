@@ -15,7 +15,7 @@ from ravestate.board.repr_chunks import repr_chunks
 from ravestate.declare.slot import Entry
 
 DEEPEST = 6
-"""The maximum number of nested containers."""
+"""The maximum depth of nested containers."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,7 +98,7 @@ def not_json(value: object, most: int = 2000) -> bool:
 
 
 def _json(value: object, depth: int) -> Iterator[str]:
-    """Yield a value's JSON in chunks, so that nobody has to make all of a huge one."""
+    """Yield a value's JSON in chunks, so that a huge value is never converted as a whole."""
     if value is None or isinstance(value, (bool, int)):
         yield json.dumps(value)
     elif isinstance(value, float):

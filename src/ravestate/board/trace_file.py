@@ -126,7 +126,7 @@ def read_trace(text: str | bytes) -> Recording:
 
 
 def read_apart(data: bytes) -> Recording:
-    """Read a trace in a process of its own, so that other threads of this one run on.
+    """Read a trace in a separate process, so that the other threads of this one keep running.
 
     Raises:
         ValueError: The data is not a trace, or reading takes too long.
@@ -157,7 +157,7 @@ def _parsed(text: str) -> Any:
 
 def _main() -> int:
     """Read a trace from the standard input, and write it to the standard output for `read_apart`."""
-    from ravestate.board import trace_file  # by its name, which the pickled records need
+    from ravestate.board import trace_file  # import it by name, because the pickled records need that
 
     try:
         read = trace_file.read_trace(sys.stdin.buffer.read())

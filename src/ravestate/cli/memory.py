@@ -40,7 +40,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_place(parser: argparse.ArgumentParser, *, later: bool = False) -> None:
-    """Add the options that choose a memory. `later`: behind an action; they keep the values given before it."""
+    """Add the options that choose a memory. `later` means that they follow an action, and keep earlier values."""
     default = argparse.SUPPRESS if later else None
     parser.add_argument(
         "--path",
@@ -150,7 +150,7 @@ def _export(memory: Memory, options: argparse.Namespace) -> int:
     target = Path(options.to)
     new = target.with_name(target.name + ".new")
     try:
-        new.touch(mode=0o600)  # the document is about people
+        new.touch(mode=0o600)  # the document has personal data
         new.write_text(text, encoding="utf-8")
         new.replace(target)
     except OSError as error:

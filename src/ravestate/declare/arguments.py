@@ -56,7 +56,7 @@ def check_name(name: object, what: str) -> None:
 
 
 def check_options(keep: object = "all", limit: object = 1, *, what: str) -> None:
-    """Refuse values of `keep` and `limit` that a signal cannot have."""
+    """Refuse invalid values of `keep` and `limit`."""
     if keep not in ("all", "latest"):
         raise DeclarationError(f"{what}: keep={keep!r}: write keep='all' or keep='latest'")
     if not isinstance(limit, int) or limit < 1:
@@ -71,7 +71,7 @@ def check_function(function: object, title: str, *, named: bool, where: str, dec
         title: The rule's name within its module: given, or the function's own.
         named: Whether the name was given.
         where: The rule and its place, for messages.
-        decorator: The decorator as it is typed, for messages.
+        decorator: The decorator as the user types it, for messages.
     """
     if isinstance(function, Rule):
         raise DeclarationError(
@@ -93,7 +93,7 @@ def check_function(function: object, title: str, *, named: bool, where: str, dec
 
 
 def condition(value: object, what: str, where: str, home: str) -> Condition:
-    """Return a condition, or refuse a value that is none.
+    """Return a condition, or refuse any other value.
 
     Args:
         value: The value.

@@ -80,7 +80,8 @@ class Constraint(Condition):
         """Accept a spike only if ``predicate(payload)`` is true. Adds ln 2 to the utility (L9).
 
         Args:
-            predicate: A plain, quick function. The loop calls it for each spike that it offers to the rule.
+            predicate: A plain function, which should be fast. The loop calls it for each spike that it offers to the
+                rule.
 
         Raises:
             DeclarationError: The predicate is not a function, or an asynchronous one.
@@ -183,7 +184,7 @@ def _age(seconds: object, what: str) -> Number:
 
 
 def _written(condition: Condition) -> str:
-    """Return a condition as code, whatever its depth."""
+    """Return a condition of any depth as code."""
     words: list[str] = []
     stack: list[Condition | str] = [condition]
     while stack:

@@ -35,7 +35,7 @@ class Node:
 
 @dataclass(frozen=True, slots=True)
 class Edge:
-    """An arrow from `source` to `target`, both ids of nodes, with a few words beside it or none."""
+    """An arrow from `source` to `target` (both are ids of nodes), perhaps with a few words beside it."""
 
     source: str
     target: str

@@ -2,7 +2,7 @@
 
 Within one layer, the best coordinates under minimum distances are a weighted isotonic regression, solved by pooling
 adjacent violators. Forward and backward sweeps repeat it for all layers. Crowded pictures become far more compact than
-with alignment, whose straight lines need empty space.
+with alignment, because straight lines need empty space.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ def relax(graph: LayeredGraph, spread: float, room: float | None = None) -> list
 
     Args:
         graph: A graph with ordered layers and placed ports.
-        spread: The minimum distances are multiplied by it.
+        spread: A factor on the minimum distances.
         room: The maximum height in pixels, unless the largest layer needs more; ``None`` for any height.
     """
     gaps: list[list[float]] = []

@@ -128,7 +128,7 @@ def _offending(a: _Net, b: _Net, segments: Sequence[Segment], joined: set[tuple[
 
 
 def _cost(a: _Net, b: _Net, joined: set[tuple[int, int]]) -> int:
-    """Return the cost of `a` on the left of `b`."""
+    """Return the cost of putting `a` to the left of `b`."""
     cost = 0
     for p, y in b.left.items():
         if a.top < y < a.bottom and p not in a.left:

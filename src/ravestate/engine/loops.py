@@ -1,8 +1,8 @@
-"""Loops without an end (L23): rules that set each other off without time passing.
+"""Endless loops (L23): rules that trigger each other without time passing.
 
 An instant lasts until the engine has nothing left to do. After `MANY` runs in one instant the engine notes, for each
-new spike, which rules led to it. A run whose own rule led to it is a further turn of a loop. After `TURNS` of them,
-each further turn of that loop waits until nothing else is ready.
+new spike, which rules led to it. If a run's own rule led to it, the run is another turn of a loop. After `TURNS` turns,
+each further turn waits until nothing else is ready.
 """
 
 from __future__ import annotations
@@ -21,11 +21,11 @@ MANY = 500
 """Runs in one instant that are not traced; most instants have fewer, so tracing costs them nothing."""
 
 TURNS = 500
-"""Further turns of a loop that go ahead like any other run: with the runs before, 1,000."""
+"""Turns of a loop that start like any other run; together with the runs before them, 1,000."""
 
 
 class Loop:
-    """All that one run has set off within an instant.
+    """All runs that one run has triggered within an instant.
 
     Attributes:
         instant: The number of the instant.
@@ -71,7 +71,7 @@ class Loops:
         self._instant += 1
 
     def defer(self, activation: Activation) -> bool:
-        """Put a ready activation off if it is one turn too many; return whether it is."""
+        """Defer a ready activation if it is one turn too many; return whether it is."""
         rule = activation.clause.rule.index
         over = any(rule in line.rules and line.loop.turns >= TURNS for line in self._lines(activation))
         if over:

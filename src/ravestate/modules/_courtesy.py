@@ -1,4 +1,4 @@
-"""The courtesies before a sentence: thanks, okay, well."""
+"""Polite words before a sentence: thanks, okay, well."""
 
 from __future__ import annotations
 
