@@ -66,7 +66,7 @@ class Recorder:
         kept: The maximum number of records to keep.
         burst: The maximum number of records at once.
         rate: Records a second after a burst.
-        spare: Further records a second, times the idle share of the process.
+        spare: Additional records a second, multiplied by the idle share of the process.
         whole: Whether the context has not started yet, so that the records are complete.
         grown: A callback after each `BATCH` of records.
     """

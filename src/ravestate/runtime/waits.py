@@ -69,8 +69,7 @@ class Waits:
         return {a.id: a for a in (*self._engine.running.values(), *self._engine.waiting)}
 
     async def until_others_end(self, known: Mapping[int, Activation], seconds: float) -> None:
-        """Wait until only `known` activations run or wait, and every spike of ``rs.shutdown`` is old enough for all its
-        rules.
+        """Wait until only `known` activations run or wait, and no rule waits for ``rs.shutdown`` to grow older.
 
         A background rule that was already running may restart endlessly. It counts only if it handles ``rs.shutdown``.
 

@@ -23,9 +23,9 @@ class YesNo:
     """
 
     yes: int | None = None
-    """0 no, 1 weakly, 2 surely."""
+    """0: no, 1: weakly, 2: surely."""
     no: int | None = None
-    """0 no, 1 weakly, 2 surely."""
+    """0: no, 1: weakly, 2: surely."""
     unsure: bool | None = None
     """Whether the speaker does not know."""
 

@@ -1,7 +1,7 @@
 """Recognise questions and their kinds.
 
-The functions use words, their order, and question marks. They ignore the dependency tree, which is unreliable for
-questions without capitals and punctuation, as from speech recognition.
+The functions use words, their order, and question marks. They ignore the dependency tree. It is unreliable for
+questions without capitals and punctuation, such as those from speech recognition.
 """
 
 from __future__ import annotations

@@ -44,7 +44,7 @@ class BoltStore:
             url: The address: ``bolt://localhost:7687``, or ``neo4j+s://...`` with encryption.
             user: The user name.
             password: Empty for a server without passwords.
-            database: Its name on the server; None for the default one.
+            database: The database's name on the server; None for the default one.
             timeout: Seconds to wait for each answer.
 
         Raises:
@@ -184,7 +184,7 @@ class BoltStore:
         """Close the connections."""
         try:
             if self._driver is not None:
-                with contextlib.suppress(PlatformError):  # a server that does not answer has closed them
+                with contextlib.suppress(PlatformError):  # if the server does not answer, it has already closed them
                     self._wait(self._driver.close())
         finally:
             self._loop.run_until_complete(self._loop.shutdown_asyncgens())

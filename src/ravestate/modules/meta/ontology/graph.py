@@ -15,11 +15,11 @@ from .types import Types
 T = TypeVar("T")
 
 AGENT = "Agent"
-"""The type of persons and robots: the agent may know more of them than one user told."""
+"""The type of people and robots. The agent may know more about them than one user has told it."""
 
 
 class Graph:
-    """A store, used according to the types."""
+    """The operations on a store, checked against the types."""
 
     def __init__(self, store: Store, types: Types) -> None:
         self._store = store

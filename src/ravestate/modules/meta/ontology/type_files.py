@@ -58,7 +58,7 @@ def types_in(paths: Iterable[Path]) -> Types:
     return _read(tuple((path.expanduser(), _state_of(path.expanduser())) for path in paths))
 
 
-@lru_cache(maxsize=8)  # each visitor of a page opens memory
+@lru_cache(maxsize=8)  # each visitor to a page opens memory
 def _read(own: tuple[tuple[Path, object], ...]) -> Types:
     built_in = files("ravestate.modules.meta.ontology") / "types.yaml"
     return read_types([built_in, *(path for path, _ in own)])
@@ -68,7 +68,7 @@ def _state_of(path: Path) -> object:
     """Return what changes with a file."""
     try:
         stat = path.stat()
-    except OSError:  # reading it says so
+    except OSError:  # reading the file reports that
         return None
     return stat.st_ino, stat.st_size, stat.st_mtime_ns
 
@@ -191,7 +191,7 @@ class _Reader:
     def _name(
         self, file: str, node: yaml.Node, name: str, among: Mapping[str, object], others: Mapping[str, object]
     ) -> None:
-        """Take the name of a type or relation: all of them differ, not by capitals alone."""
+        """Register the name of a type or relation. Names must differ by more than capitals."""
         _check_name(file, node, name, "type or relation")
         for other in (*among, *others):
             if other.lower() == name.lower() and (other != name or other in others):

@@ -61,7 +61,7 @@ class Types:
     """All types and relations, with checks. ``read_types`` reads them from files."""
 
     def __init__(self, types: Mapping[str, Type], relations: Mapping[str, Relating]) -> None:
-        """Take types whose parents and ends exist, without cycles."""
+        """Take valid types: all parents and ends exist, and there are no cycles."""
         self._types = dict(types)
         self._relations = dict(relations)
         self._lines = {name: tuple(self._line(name)) for name in self._types}

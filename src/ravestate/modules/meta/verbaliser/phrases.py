@@ -11,7 +11,7 @@ greet:
 farewell: Goodbye!           # without a language: the default one
 ```
 
-Several files make one book. The phrases of a later file *replace* those of earlier files for the same intent and
+Several files make one phrase book. The phrases of a later file *replace* those of earlier files for the same intent and
 language. With ``!add`` they are added:
 
 ```yaml

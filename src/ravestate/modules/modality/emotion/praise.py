@@ -87,7 +87,7 @@ def is_kind(word: str) -> bool:
 
 
 def _begins_kindly(words: Sequence[str], *, does: bool) -> bool:
-    """Return whether the first word that counts is kind; of an act (`does`), any of the first words."""
+    """Return whether the first word that counts is kind. For an act (`does`), any of the first words may be."""
     for word, after in zip(words[:WINDOW], (*words[1:], ""), strict=False):
         if (word == "pretty" and after not in AFTER_PRETTY) or (word == "kind" and after == "of"):
             continue  # "pretty clever", "kind of slow"
