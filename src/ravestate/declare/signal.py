@@ -23,7 +23,7 @@ class SignalOptions(TypedDict, total=False):
         input: Whether code outside may raise it even though a rule does (L8). A signal that no rule raises is an input
             anyway.
         keep: ``"all"``; or ``"latest"``: a new spike withdraws the older ones (L20).
-        limit: The maximum number of live spikes, 100,000 by default. Beyond it the oldest is dropped (L23).
+        limit: The maximum number of live spikes, 100,000 by default. If there are more, the oldest is dropped (L23).
     """
 
     input: bool

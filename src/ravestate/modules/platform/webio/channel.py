@@ -23,9 +23,9 @@ class Channel:
     """A WebSocket that carries frames as text.
 
     Args:
-        socket: A WebSocket that nobody has accepted yet.
-        replies: The maximum number of replies that may wait for the client. A client that asks on without reading is
-            dropped.
+        socket: A WebSocket, not accepted yet.
+        replies: The maximum number of replies that may wait for the client. A client that keeps asking without reading
+            is dropped.
     """
 
     def __init__(self, socket: WebSocket, replies: int) -> None:
@@ -84,7 +84,7 @@ class Channel:
         if message["type"] == "websocket.disconnect":
             raise WebSocketDisconnect(message.get("code", 1006))
         text: str | bytes = message.get("text") or message.get("bytes") or ""
-        if len(text) > LONGEST:  # most servers refuse it themselves
+        if len(text) > LONGEST:  # most servers refuse such frames themselves
             raise ProtocolError("too-large", f"a frame has at most {LONGEST:,} bytes, not {len(text):,}")
         return text
 
@@ -105,5 +105,5 @@ class Channel:
             await self.send(self._replies.popleft())
 
     async def end(self) -> None:
-        """Close the WebSocket in order."""
+        """Close the WebSocket cleanly."""
         await self._socket.close(CLOSING_CODES["ended"], "ended")

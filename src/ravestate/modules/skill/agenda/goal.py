@@ -65,17 +65,17 @@ def goal(
 ) -> Goal:
     """Declare a goal of the agent.
 
-    The agent pursues it by saying something, when it is bored and no other goal has just had its turn. The goal is over
-    when `done` or `refused` comes, or after the last try. The user goes first: their words interrupt a pursuit, and
-    take the opportunity away.
+    The agent pursues a goal by saying something, when it is bored and no other goal has just had its turn. The goal is
+    over when `done` or `refused` comes, or after the last try. The user goes first: their words interrupt a pursuit,
+    and take the opportunity away.
 
     The goal is a rule, ``module:name``, so ``sim.explain("module:name")`` explains it.
 
     Args:
         module: The goal's module; it must require `agenda`.
         name: The name within the module.
-        say: The words: a text; several, one for each try in turn; or a function of the rule context that returns one,
-            which may be async, and slow.
+        say: The words: a text; several texts, one for each try in turn; or a function of the rule context that returns
+            a text. The function may be async, and slow.
         intent: An intent for the verbaliser, instead of `say`.
         reads: The slots that the function reads.
         when: A further condition, e.g. ``interloc.users.holds(bool)``.
@@ -126,9 +126,9 @@ def goal(
         when=condition | goals.changed.where(is_over).detached(),
         reads=reads,
         writes=(rawio.output, goals) if intent is None else (verbaliser.intent, rawio.output, goals),
-        weight=priority,  # and no cooldown option: the goal rests by resigning, with or without a rival
-        until=rawio.input.changed | goals.changed.where(is_over),  # it may be reached while it is worded
-        detached=True,  # an answer to it may be answered: it begins a new causal group
+        weight=priority,  # no cooldown option either: the goal rests by resigning, with or without a rival
+        until=rawio.input.changed | goals.changed.where(is_over),  # the goal may be reached while a function words it
+        detached=True,  # it starts a new causal group, so that rules can react to the user's answer
         name=name,
     )
     async def pursue(ctx: rs.RuleContext) -> rs.Resign | rs.Retire | None:

@@ -25,7 +25,8 @@ class Settings(rs.Settings):
 module = rs.Module("agenda", requires=[rawio, idle, verbaliser], settings=Settings)
 
 opportunity = module.signal("opportunity", payload=float)
-"""One goal may be pursued: nobody is busy, and the last goal is long enough ago. The payload is the time (seconds)."""
+"""One goal may be pursued: neither side is talking, and the last goal is long enough ago. The payload is the time
+(seconds)."""
 
 goals: rs.Collection[GoalState] = module.collection("goals")
 """The state of each goal that was pursued, reached or dropped, by the name of its rule."""

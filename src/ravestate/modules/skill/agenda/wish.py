@@ -1,4 +1,4 @@
-"""A goal from an agent's file: words alone."""
+"""A goal from an agent's file, without code."""
 
 from __future__ import annotations
 
@@ -62,4 +62,4 @@ def _no_twins(wishes: tuple[Wish, ...]) -> tuple[Wish, ...]:
 
 
 without_twins = AfterValidator(_no_twins)
-"""Refuse two goals of one name."""
+"""Refuse two goals with the same name."""

@@ -25,7 +25,7 @@ class Asked:
     text: str
     """The plain form."""
     addressed: bool
-    """Whether it has *you* or *your*. *How is it going* has neither, and still asks after the agent's mood."""
+    """Whether it has *you* or *your*. *How is it going* has neither, but still asks about the agent's mood."""
 
 
 def about_agent(
@@ -35,7 +35,7 @@ def about_agent(
     *,
     question: bool = False,
 ) -> tuple[list[Asked], str]:
-    """Return the questions that may be about the agent, and why the last other sentence is none.
+    """Return the questions that may be about the agent, and why the last other sentence is not one.
 
     Args:
         utterance: The user's words.
@@ -261,4 +261,4 @@ _WRITTEN_OUT: dict[str, str] = {
     }.items()
     for short in shorts.split()
 }
-"""Short forms and common slips in typing, written out."""
+"""Short forms and common typos, written out."""

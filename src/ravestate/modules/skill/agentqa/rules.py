@@ -35,10 +35,10 @@ async def be_born(ctx: rs.RuleContext) -> None:
 
 @module.rule(when=life.changed.detached(), background=True)
 def load(ctx: rs.RuleContext) -> None:
-    """Learn the topics in the background, so that the first question need not wait."""
+    """Learn the topics in the background, so that the first question does not have to wait."""
     told = ctx.payload(life.changed)
     if told is not None:
-        with contextlib.suppress(PlatformError):  # the first question raises it again
+        with contextlib.suppress(PlatformError):  # the first question raises the error again
             try:
                 router_of(told).load()
                 give_back()

@@ -153,7 +153,7 @@ class Index:
     # ---------------------------------------------------------------------------------- searching
 
     def frequencies(self, stems: Sequence[str]) -> dict[str, int]:
-        """Return the number of passages with each stem, without those in none."""
+        """Return the number of passages with each stem; leave out stems without passages."""
         marks = ", ".join("?" * len(stems))
         with self._lock, self._told():
             return dict(self._base.execute(f"SELECT term, doc FROM words WHERE term IN ({marks})", tuple(stems)))
@@ -164,7 +164,7 @@ class Index:
         Args:
             words: Any text; operators of the query language are plain words here.
             limit: The maximum number of passages.
-            without: Words that leave a passage out.
+            without: Words that exclude a passage.
         """
         return self._matching(_any_of(words), limit, without)
 
@@ -205,7 +205,7 @@ class Index:
         return row - first
 
     def touch(self, file: IndexedFile) -> None:
-        """Save a file's new size and date; its content is the same."""
+        """Save a file's new size and date; its content has not changed."""
         with self._changing():
             self._base.execute(
                 "UPDATE files SET size = ?, modified = ? WHERE path = ?",
@@ -252,7 +252,9 @@ class Index:
         self._base.execute("PRAGMA synchronous = NORMAL")
         if empty:
             with self._changing():
-                if not self._base.execute("SELECT count(*) FROM sqlite_master").fetchone()[0]:  # nobody was faster
+                if not self._base.execute("SELECT count(*) FROM sqlite_master").fetchone()[
+                    0
+                ]:  # no other process was faster
                     for statement in _SCHEMA.split(";\n"):
                         self._base.execute(statement)
 

@@ -74,7 +74,7 @@ class Acquaintance:
         A person that this conversation created is renamed. A person from memory gets their old facts back, and the
         facts of this conversation go to the new name.
         """
-        assert self.who is not None  # their name was understood
+        assert self.who is not None  # the agent understood their name
         if not self.talk.met:
             return replace(self, who=self.who.with_properties(name=name))
         if self.talk.newcomer:
@@ -93,7 +93,7 @@ class Acquaintance:
     def rebased(self, base: Acquaintance, after: Acquaintance) -> Acquaintance:
         """Return this state of the user with the changes from `base` to `after`.
 
-        A field that has changed since `base` stays as it is, because the user has gone on talking."""
+        A field that has changed since `base` stays as it is, because the user has kept talking."""
         same_user = (self.who, self.talk.met) == (base.who, base.talk.met)
         facts = dict(self.facts)
         for topic in {**base.facts, **after.facts}:

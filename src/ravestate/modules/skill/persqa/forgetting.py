@@ -26,7 +26,7 @@ _OTHERWISE = re.compile(
     r"\b(i|we|you|they|he|she|people|everybody|everyone|who|to) (will |would |always |might |may |could )*)$",
     re.IGNORECASE,
 )
-"""Words before *forget me* that make it no request."""
+"""Words before *forget me* that make it something other than a request."""
 
 
 def wants_to_be_forgotten(text: str) -> bool:

@@ -33,7 +33,7 @@ class Settings(rs.Settings):
     within: Annotated[float, Field(gt=0)] = 90.0
     """Seconds for which a question waits for its answer."""
     ignored: Annotated[int, Field(ge=1)] = 2
-    """After this many unanswered questions in a row, the agent asks none until the user speaks."""
+    """After this many unanswered questions in a row, the agent asks no more until the user speaks."""
 
 
 module = rs.Module("persqa", requires=[rawio, nlp, ontology, verbaliser, interloc, idle], settings=Settings)

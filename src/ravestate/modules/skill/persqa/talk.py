@@ -9,13 +9,13 @@ FORGET = "forget"
 """The topic of the question whether the user really wants to be forgotten."""
 
 ENOUGH = 1_000
-"""A number of tries after which a topic is never asked again."""
+"""The number of tries after which the agent never asks about a topic again."""
 
 TRIES = 2
 """The maximum number of questions about one topic in a conversation."""
 
 CORRECTABLE = 2
-"""Utterances for which "no, Bremen" corrects the last fact."""
+"""The number of utterances during which "no, Bremen" corrects the last fact."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,7 +38,7 @@ class Question:
 
     @property
     def fresh(self) -> bool:
-        """Whether nobody has spoken since."""
+        """Whether neither side has spoken since."""
         return not self.turns and not self.spoken_over
 
 
@@ -91,7 +91,7 @@ class Talk:
         )
 
     def pending(self, now: float, within: float) -> Question | None:
-        """Return the question that the user may answer now; None if it is too old or was passed over."""
+        """Return the question that the user may answer now; None if it is too old or the user ignored it."""
         question = self.question
         if question is None or question.turns > 1 or now - question.since > within:
             return None
@@ -118,7 +118,7 @@ class Talk:
         return self if question.turns else replace(self, question=replace(question, spoken_over=True))
 
     def waiting(self) -> Talk:
-        """Give the question up; the user has not answered it."""
+        """Give up the question; the user has not answered it."""
         return replace(self, question=None, ignored=self.ignored + 1)
 
     def closing(self, *topics: str) -> Talk:

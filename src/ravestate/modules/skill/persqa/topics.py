@@ -30,7 +30,7 @@ class Topic:
     many: bool = False
     """Whether there may be several values."""
     only_with: str = ""
-    """The topic that must be known before this one is asked."""
+    """The topic that must be known before the agent asks about this one."""
     asked: bool = True
     """Whether the agent asks for it."""
     nouns: str = ""
@@ -38,7 +38,7 @@ class Topic:
     role: bool = False
     """Whether several topics share the relation; its property ``role`` then tells them apart."""
     besides: tuple[str, ...] = ()
-    """Topics that make the question unnecessary: a birthplace answers the question for the origin."""
+    """Topics that make the question unnecessary: a birthplace answers the question about the origin."""
 
 
 NAME = "name"
@@ -115,7 +115,7 @@ class Fact:
     topic: str
     values: tuple[str, ...]
     gone: bool = False
-    """Whether the fact does not hold, or no longer; without values, that there is none."""
+    """Whether the fact is denied. Without values, the user says that there are none."""
 
 
 def favourite(words: str) -> str:

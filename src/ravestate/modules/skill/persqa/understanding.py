@@ -66,8 +66,8 @@ class Meaning:
         facts: The facts that they tell, or ask for.
         topic: The topic of the question that they answer.
         leave: Whether they say goodbye.
-        aloud: Whether the agent replies. Questions, goodbyes and games of the user go first: what they tell on the side
-            is learnt in silence.
+        aloud: Whether the agent replies. Questions, goodbyes and games of the user go first: the agent silently learns
+            anything else that they say.
     """
 
     kind: Kind
@@ -187,7 +187,7 @@ def _of_yesno(yesno: nlp.YesNo, topic: str, text: str) -> Kind:
 
 
 def _matters(fact: Fact, known: Mapping[str, tuple[str, ...]], topic: str) -> bool:
-    """Return whether a denial matters: it denies a known fact, or that there is any."""
+    """Return whether a denial matters: it denies a known fact, or says that there are none."""
     if fact.topic == NAME:
         return any(value in known.get(NAME, ()) for value in fact.values)
     if fact.values:

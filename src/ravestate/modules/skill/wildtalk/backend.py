@@ -24,7 +24,7 @@ class Backend(Protocol):
     """A language model. An instance belongs to one event loop."""
 
     async def load(self, progress: Progress | None = None) -> None:
-        """Get ready to answer, once. `stream` does it as well.
+        """Get ready to answer, once. `stream` does this too if needed.
 
         Raises:
             PlatformError: A package, a file or a server is missing or broken. The message says what to do.
@@ -53,7 +53,7 @@ class Backend(Protocol):
             stop: Texts before which the model stops.
 
         Raises:
-            PlatformError: The model failed, or its server refused, stalled or broke off.
+            PlatformError: The model failed, or its server refused, stalled or disconnected.
         """
         ...
 

@@ -1,4 +1,4 @@
-"""Small talk by any server that speaks OpenAI's protocol: Ollama, llama.cpp, vLLM, LM Studio, a cloud."""
+"""Small talk by any server that supports OpenAI's protocol: Ollama, llama.cpp, vLLM, LM Studio, a cloud."""
 
 from __future__ import annotations
 
@@ -356,6 +356,6 @@ def _withdraw(body: dict[str, object], parameter: str) -> bool:
     if parameter not in ("max_tokens", "temperature", "seed", "stop") or parameter not in body:
         return False
     value = body.pop(parameter)
-    if parameter == "max_tokens":  # its newer name
+    if parameter == "max_tokens":  # the parameter's newer name
         body["max_completion_tokens"] = value
     return True

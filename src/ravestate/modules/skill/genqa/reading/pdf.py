@@ -19,7 +19,7 @@ def read(path: Path, source: str) -> Iterator[Document]:
     except ImportError as error:
         raise Unreadable("genqa needs pypdf to read PDF: pip install 'ravestate[genqa]'") from error
     library: Any = pypdf
-    logging.getLogger("pypdf").setLevel(logging.ERROR)  # it warns about each oddity that it copes with
+    logging.getLogger("pypdf").setLevel(logging.ERROR)  # it warns about every oddity that it can handle
     try:
         reader = library.PdfReader(path)
         if reader.is_encrypted and not reader.decrypt(""):
