@@ -12,7 +12,7 @@ from ravestate.declare.signal import Signal
 from ravestate.errors import DeclarationError
 
 MAX_CLAUSES = 256
-"""The maximum number of conjunctions of a condition; more are surely a mistake of the designer."""
+"""The maximum number of conjunctions in a condition; more must be a mistake."""
 
 Atoms = tuple[Constraint | Holds, ...]
 

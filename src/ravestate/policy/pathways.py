@@ -1,8 +1,8 @@
 """All pathways of a clause (L8), for explanations.
 
 The pathways of a signal are, for each of its alternatives, the signal and every union of pathways of the
-alternative's signals. A cycle ends at a signal that is on the way already, so its signals have pathways of their own
-for each way. Nothing but an explanation needs the pathways one by one: `Completion` counts rules by reachability, and
+alternative's signals. A cycle ends at a signal that is already on the path, so its signals have different pathways for
+each path. Nothing but an explanation needs the pathways one by one: `Completion` counts rules by reachability, and
 `Least` searches for the least pathway.
 """
 
@@ -26,7 +26,7 @@ Costs = dict[int, int]
 """Sets of signals, with the information of each."""
 
 Search = Generator["Search", Costs, Costs]
-"""A computation that yields others and receives their results, so that a depth of causes is not a depth of calls."""
+"""A computation that yields others and receives their results, so that deep causes need no deep recursion."""
 
 
 class _Entangled(Exception):

@@ -1,7 +1,7 @@
 """The source of a rule's function: reads, writes and emits that its declaration lacks, and a forgotten ``await``.
 
 A name in the source counts only if the function's globals or its closure hold a slot or a signal by that name.
-Names that the function binds itself, and everything else, are left to the run (L3).
+Everything else, such as names that the function binds itself, is checked when the rule runs (L3).
 """
 
 from __future__ import annotations
@@ -95,11 +95,11 @@ class _Reader:
         for node in ast.walk(tree):
             for name in _bound(node):
                 if name == self._context and node is not arguments[0]:
-                    self._context = ""  # another value takes its name
+                    self._context = ""  # another value has taken its name
                 self._names.pop(name, None)
 
     def note(self, node: ast.AST, acts: Acts) -> None:
-        """Enter the act that a node of the function is, if it is one."""
+        """Record the act at a node of the function, if there is one."""
         match node:
             case ast.Subscript(value=ast.Name(id=self._context), slice=slot, ctx=ast.Load()):
                 self._enter(slot, Slot, acts.reads)

@@ -1,4 +1,4 @@
-"""An agent apart from any conversation; each conversation gets a context of its own."""
+"""An agent, independent of any conversation; each conversation gets its own context."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class Agent:
         """Return a new context, to be started once.
 
         Args:
-            options: See `Context`, except ``settings``; they go before the agent's own.
+            options: See `Context`, except ``settings``; they override the agent's own.
         """
         merged: Any = self._options | options
         return Context(self.policy, **merged)
