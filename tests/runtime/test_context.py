@@ -1,4 +1,4 @@
-"""A context's life: begun once, acted on from the loop and from threads, ended in order."""
+"""A context's life: it starts once, takes calls from the loop and from threads, and ends cleanly."""
 
 import asyncio
 import contextlib

@@ -106,7 +106,7 @@ class Constraint(Condition):
 
 @dataclass(frozen=True, slots=True, repr=False)
 class Holds(Condition):
-    """A predicate on a slot's present value. It gates a rule without a spike (L4)."""
+    """A predicate on a slot's current value. It gates a rule without a spike (L4)."""
 
     slot: Slot[Any]
     predicate: Predicate

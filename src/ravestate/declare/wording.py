@@ -23,7 +23,7 @@ def spelt(name: str, home: str = "") -> str:
 
 
 def place_of_call() -> str:
-    """Return the place of the nearest caller outside of this folder, as ``file:line``."""
+    """Return the place of the nearest caller outside this folder, as ``file:line``."""
     frame = sys._getframe(1)  # pyright: ignore[reportPrivateUsage]  # messages name the line of the mistake
     while frame.f_back is not None and frame.f_code.co_filename.startswith(HERE):
         if frame.f_code.co_filename == CORE:

@@ -40,7 +40,7 @@ class Acts:
 
 
 def acts_of(rule: RulePlan, source: Source) -> Acts:
-    """Find the acts of a rule's function; none if there is no source, or if a decorator stands around the function."""
+    """Find the acts of a rule's function; none if there is no source, or if another decorator wraps the function."""
     acts = Acts()
     function = rule.rule.function
     if not isinstance(function, FunctionType) or hasattr(function, "__wrapped__"):

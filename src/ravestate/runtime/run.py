@@ -22,7 +22,7 @@ INPUT = "rawio:input"
 """The slot of the user's words. An agent with this slot is usually meant for conversation."""
 
 UNABLE = (NotImplementedError, RuntimeError, ValueError)
-"""Errors of `add_signal_handler` on platforms that lack it, and outside of the main thread."""
+"""Errors of `add_signal_handler` on platforms that lack it, and outside the main thread."""
 
 
 def run(*modules: Module | ModuleType | Policy, **options: Any) -> None:

@@ -285,7 +285,7 @@ class Runner:
             if self._timer is not None:
                 self._timer.cancel()
                 self._timer = None
-            self._schedule()  # not at once: the caller may be a task, and rules start outside of any task
+            self._schedule()  # not at once: the caller may be a task, and rules start outside any task
 
     def engine_now(self) -> Engine:
         """Return the engine for inspection, after everything that is due."""
@@ -293,7 +293,7 @@ class Runner:
         return self._engine
 
     def read(self, slot: str) -> Any:
-        """Return the present value of a slot."""
+        """Return the current value of a slot."""
         return self._engine.read(self.policy.slot_of[slot].index)
 
     def trace(self, tracer: Callable[[Record], None] | None) -> None:

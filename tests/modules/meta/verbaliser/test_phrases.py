@@ -1,4 +1,4 @@
-"""Books of phrases: read, merged, chosen from, and every mistake told with its line."""
+"""Phrase books: reading, merging and choosing; every mistake is reported with its line."""
 
 import random
 import re

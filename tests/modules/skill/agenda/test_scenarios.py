@@ -17,7 +17,7 @@ def agent(name: str = "guide") -> rs.Module:
 
 
 def with_times(sim: Simulation, seconds: float) -> list[tuple[int, str]]:
-    """Return what is said within some seconds, with the second of each."""
+    """Return what is said within a few seconds, with the second of each."""
     heard: list[tuple[int, str]] = []
     for _ in range(int(seconds)):
         before = len(sim.said)

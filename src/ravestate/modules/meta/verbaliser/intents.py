@@ -23,6 +23,6 @@ class Intent:
     package: str | None = None
     """The package that contains ``phrases.yaml``, usually the rule's ``__package__``."""
     file: Path | None = None
-    """A file with the phrases, for a rule outside of packages."""
+    """A file with the phrases, for a rule outside packages."""
     phrases: Mapping[str, Sequence[str]] | None = None
     """The phrases by language, for a rule that provides them itself; then no file is read."""

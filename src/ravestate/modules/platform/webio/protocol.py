@@ -266,7 +266,7 @@ class Typing:
 
 @dataclass(frozen=True, slots=True)
 class Paused:
-    """Whether somebody has paused the agent's clock, as the board can."""
+    """Whether the agent's clock is paused, for example by the board."""
 
     on: Truth
     type: Literal["paused"] = "paused"

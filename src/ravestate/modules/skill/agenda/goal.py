@@ -25,7 +25,7 @@ MOMENT = 1.0
 """Seconds for which an opportunity lasts."""
 
 LONGEST = 1000
-"""Characters of the user's words that are searched."""
+"""The number of characters of the user's words to search."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,7 +80,7 @@ def goal(
         reads: The slots that the function reads.
         when: A further condition, e.g. ``interloc.users.holds(bool)``.
         unless: A condition that prevents it: ``slot.holds(...)`` alone.
-        priority: A factor on the utility (L9); the goal of greater utility goes first.
+        priority: A factor on the utility (L9); the goal with the greatest utility goes first.
         cooldown: Seconds until the next try; also the time for an answer.
         done: Success, whenever it comes: a signal, a condition, or a regular expression of whole words for the user's
             answer. Without it, one try is a success.

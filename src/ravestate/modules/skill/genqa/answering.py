@@ -233,5 +233,5 @@ def _other_ranks(question: str) -> list[str]:
 
 
 def _besides(text: str, asked: set[str]) -> int:
-    """Return the number of words of `text`, outside of brackets, that were not asked for."""
+    """Return the number of words of `text`, outside brackets, that were not asked for."""
     return len(set(re.findall(r"[a-z]{2,}", re.sub(r"\([^)]*\)", "", text.lower()))) - asked)

@@ -107,7 +107,7 @@ NOT_EMPLOYED = frozenset(["student", "pupil", "retired", "self-employed", "freel
 
 @dataclass(frozen=True, slots=True)
 class Fact:
-    """A fact that somebody has told about themselves.
+    """A fact that the user has told about themselves.
 
     Example: ``Fact("hobby", ("chess", "football"))``.
     """
@@ -152,7 +152,7 @@ def due(
 ) -> str:
     """Return the topic to ask about next, or an empty string.
 
-    The follow-up of the `last` topic goes first, then the topic with the fewest tries, in the order of `wanted`.
+    Prefer the follow-up of the `last` topic, then the topic with the fewest tries, in the order of `wanted`.
 
     Args:
         wanted: Names of topics.

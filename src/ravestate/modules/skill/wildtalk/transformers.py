@@ -85,7 +85,7 @@ class TransformersBackend:
         def tell(piece: str | BaseException | None) -> None:
             try:
                 loop.call_soon_threadsafe(pieces.put_nowait, piece)
-            except RuntimeError:  # the loop is closed: nobody listens any more
+            except RuntimeError:  # the loop is closed: no task is listening any more
                 left.set()
 
         try:
