@@ -128,7 +128,7 @@ export class Trace {
     return lane;
   }
 
-  /** Return the group into which a causal group has merged at last. */
+  /** Return the group that a causal group has finally merged into. */
   group(id: number): number {
     let root = id;
     for (let into = this.#into.get(root); into !== undefined; into = this.#into.get(root)) root = into;
