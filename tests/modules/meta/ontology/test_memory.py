@@ -374,8 +374,8 @@ def test_everything_is_exported_and_loaded(memory: Memory, open_here: Open, tmp_
 @pytest.mark.parametrize(
     ("document", "said"),
     [
-        ({}, "no document of memory"),
-        ({"format": 2, "nodes": [], "relations": []}, "no document of memory"),
+        ({}, "not a document of memory"),
+        ({"format": 2, "nodes": [], "relations": []}, "not a document of memory"),
         ({"format": 1, "nodes": {}, "relations": []}, "'nodes' must be a list"),
         ({"format": 1, "nodes": [1], "relations": []}, "has no keys and values"),
         ({"format": 1, "nodes": [{"type": "Person"}], "relations": []}, "needs a text as 'id'"),
