@@ -138,7 +138,7 @@ def test_a_file_that_cannot_be_read(tmp_path: Path) -> None:
     with pytest.raises(PlatformError, match="cannot be read"):
         read_types([tmp_path])
     (tmp_path / "types.yaml").write_bytes(b"\xff\xfe")
-    with pytest.raises(DeclarationError, match="no text in UTF-8"):
+    with pytest.raises(DeclarationError, match="not UTF-8 text"):
         read_types([tmp_path / "types.yaml"])
     (tmp_path / "types.yaml").write_text("[" * 5000)
     with pytest.raises(DeclarationError, match="nested more than 50 levels"):

@@ -153,7 +153,7 @@ def test_a_mistake_is_told_with_its_line(text: str, told: str, tmp_path: Path) -
 
 def test_a_file_that_cannot_be_read_says_why(tmp_path: Path) -> None:
     (tmp_path / "robin.yaml").write_bytes(b"facts: {name: \xff}")
-    with pytest.raises(DeclarationError, match="no text in UTF-8"):
+    with pytest.raises(DeclarationError, match="not UTF-8 text"):
         read_life(tmp_path / "robin.yaml")
     with pytest.raises(PlatformError, match=r"does not exist; did you mean 'robin\.yaml'"):
         read_life(tmp_path / "robn.yaml")
