@@ -18,7 +18,7 @@ test.each([
   '{"type":"message","n":"1","from":"agent","text":"Hi","time":5}',
   '{"type":"typing"}',
   '{"type":"renamed"}',
-])("what is no frame is left aside: %s", (text) => {
+])("what is not a frame is left aside: %s", (text) => {
   expect(parse(text)).toBeNull();
 });
 

@@ -50,7 +50,7 @@ def _count(faults: Sequence[DeclarationError]) -> str:
 
 
 class UsageError(RavestateError):
-    """An agent is named wrongly: there is no such module, file or setting. Commands end with exit code 2."""
+    """A command names something that does not exist: a module, a file or a setting. Commands end with exit code 2."""
 
 
 class RuleError(RavestateError, RuntimeError):
@@ -82,7 +82,7 @@ class PlatformError(RavestateError, RuntimeError):
 
 def nearest(name: str, names: Iterable[str]) -> str:
     """Return the hint "; did you mean ...?" for a name that is not among `names`, or an empty text if none is near."""
-    import difflib  # only on the way to an error
+    import difflib  # needed only for an error
 
     known = list(names)
 
@@ -105,7 +105,7 @@ def nearest(name: str, names: Iterable[str]) -> str:
 
 
 ALIKE = 0.6
-"""The least likeness of a name to its nearest: the share of letters that both have in the same order."""
+"""The minimum similarity of a name to its nearest match: the share of letters that both have in the same order."""
 
 
 def _is_a_slip(one: str, other: str) -> bool:

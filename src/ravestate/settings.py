@@ -1,6 +1,6 @@
-"""Typed settings of modules: pydantic models whose fields a declaration may refer to.
+"""Typed settings of modules: pydantic models. A declaration may refer to their fields.
 
-The file is outside of the pure rooms because it needs pydantic; ``rs.Settings`` loads it.
+The file is outside the pure packages because it needs pydantic; ``rs.Settings`` loads it.
 """
 
 from __future__ import annotations
@@ -69,7 +69,7 @@ def load_settings(
 
     Args:
         modules: The modules of a policy.
-        given: By a module's name, the values of fields, or an instance of the module's settings.
+        given: For each module's name, the values of fields, or an instance of the module's settings.
         environment: Variables; those of the process by default.
 
     Raises:
@@ -125,7 +125,7 @@ def _from_environment(name: str, model: type[pydantic.BaseModel], variables: Map
 
 
 def value_of(text: str, model: type[pydantic.BaseModel], field: str, parse: Callable[[str], Any]) -> Any:
-    """Return the value of a text from outside: the text itself for a field of type text, else its parsed form.
+    """Convert a text from outside to a value: the text itself for a text field, otherwise its parsed form.
 
     Args:
         text: The text of a variable, or behind ``--set``.

@@ -1,7 +1,7 @@
 """Reading YAML that users write: bounded in depth and in size, with the file and line of every fault.
 
 A few lines of aliases can stand for billions of values ("billion laughs"), and deep nesting exhausts the stack.
-Both end at once here.
+This file refuses both immediately.
 """
 
 from __future__ import annotations
@@ -14,13 +14,13 @@ from yaml.composer import Composer
 from ravestate.errors import DeclarationError
 
 DEEPEST = 50
-"""Levels of nesting that a text may have."""
+"""The maximum depth of nesting in a text."""
 
 DIGITS = 300
 """Characters that a number may have."""
 
 LARGEST = 100_000
-"""Values that a text may have, each alias counted with all that it stands for."""
+"""The maximum number of values in a text. Each alias counts as all the values that it stands for."""
 
 
 def load_yaml(text: str, name: str) -> Any:
@@ -41,7 +41,7 @@ def load_yaml(text: str, name: str) -> Any:
         return yaml.load(text, _SafeLoader)
     except yaml.YAMLError as error:
         raise _fault(error, text, name) from None
-    except ValueError as error:  # the 30th of February, a number of 5,000 digits
+    except ValueError as error:  # such as the 30th of February, or a number of 5,000 digits
         raise DeclarationError(f"{name}: not valid YAML ({error})") from None
 
 
@@ -53,7 +53,7 @@ def compose_yaml(text: str, name: str) -> yaml.Node | None:
         name: The name of its file, for messages.
 
     Raises:
-        DeclarationError: As for `load_yaml`.
+        DeclarationError: See `load_yaml`.
     """
     try:
         return yaml.compose(text, Loader=_TextLoader)
@@ -67,8 +67,8 @@ class _Bounded(Composer):
     depth = count = 0
 
     def compose_node(self, parent: yaml.Node | None, index: int) -> yaml.Node | None:
-        event = cast("Any", self).peek_event()  # of the parser, which a loader mixes in
-        sizes: dict[object, int] = self.__dict__.setdefault("sizes", {})  # of finished nodes, by anchor
+        event = cast("Any", self).peek_event()  # from the parser, which the loader inherits
+        sizes: dict[object, int] = self.__dict__.setdefault("sizes", {})  # the sizes of finished nodes, by anchor
         before = self.count
         self.depth += 1
         if self.depth > DEEPEST:
@@ -120,5 +120,5 @@ def _fault(error: yaml.YAMLError, text: str, name: str) -> DeclarationError:
     if isinstance(error, _LimitError):
         return DeclarationError(f"{place}: {error.problem}")
     reason = ", ".join(filter(None, (error.context, error.problem)))
-    hint = "A text with : or # or braces in front wants quotes"
+    hint = "Put quotes around a text that has : or # or begins with braces"
     return DeclarationError(f"{place}: not valid YAML ({reason}). {hint}")

@@ -33,7 +33,7 @@ measure = lab.signal("measure", payload=float)
 numbers = lab.signal("numbers", payload=list[int])
 pair = lab.signal("pair", payload=tuple[int, int])
 anything = lab.signal("anything", payload=object)
-unsure: rs.Signal[Any] = lab.signal("unsure", payload=Any)  # type: ignore[arg-type]  # Any is no type for a checker
+unsure: rs.Signal[Any] = lab.signal("unsure", payload=Any)  # type: ignore[arg-type]  # Any is not a type for a checker
 point = lab.signal("point", payload=Point)
 colour = lab.signal("colour", payload=Colour)
 text = lab.slot("text", "", type=str)

@@ -1,4 +1,4 @@
-"""Values as text: whole if possible, else cut, and never an error."""
+"""Values as text: whole if possible, otherwise cut, and never an error."""
 
 import json
 

@@ -145,7 +145,7 @@ def test_a_missing_file_is_named(tmp_path: Path) -> None:
     with pytest.raises(PlatformError, match=r"cannot read .*gone\.json: No such file"):
         open_trace(tmp_path / "gone.json")
     (tmp_path / "bad.json").write_text("no", "utf-8")
-    with pytest.raises(PlatformError, match=r"bad\.json is no trace: it is not JSON"):
+    with pytest.raises(PlatformError, match=r"bad\.json is not a trace: it is not JSON"):
         open_trace(tmp_path / "bad.json")
 
 

@@ -82,7 +82,7 @@ def test_a_module_by_its_entry_point(folder: Path, monkeypatch: pytest.MonkeyPat
         "bad": "bad: expected an rs.Module (or a Python module that holds one), not 3",
         "gone": "entry point 'gone' (plugin:gone) fails: ",
         "lost": "entry point 'lost' (no_such_package) fails: ModuleNotFoundError",
-        "wrong": "Module: 'two words' is no name",
+        "wrong": "Module: 'two words' is not a name",
         "wether": "there is no module 'wether'; did you mean 'weather'?",
     }.items():
         with pytest.raises(rs.RavestateError) as caught:
@@ -120,10 +120,10 @@ def test_a_module_named_twice_is_loaded_once(folder: Path, capsys: Capture) -> N
         ("ravestate.errors", "ravestate.errors: Python module ravestate.errors holds no rs.Module"),
         ("ravestate.errors:nearest", "ravestate.errors:nearest: expected an rs.Module"),
         ("./missing.py", "there is no file ./missing.py"),
-        ("./missing", "'./missing' is no module: name a file (./hello.py), or a dotted path (pkg.mod)"),
-        (".", "'.' is no module: name a file"),
-        ("..x", "'..x' is no module: name a file (./hello.py), or a dotted path (pkg.mod)"),
-        ("", "'' is no module: name a file"),
+        ("./missing", "'./missing' is not a module: name a file (./hello.py), or a dotted path (pkg.mod)"),
+        (".", "'.' is not a module: name a file"),
+        ("..x", "'..x' is not a module: name a file (./hello.py), or a dotted path (pkg.mod)"),
+        ("", "'' is not a module: name a file"),
         (":module", "module ':module' fails when it is imported: ValueError: Empty module name"),
     ],
 )
@@ -164,7 +164,7 @@ def test_the_message_names_a_missing_package(folder: Path, capsys: Capture) -> N
 def test_a_wrong_declaration_is_a_fault_with_its_place(folder: Path, capsys: Capture) -> None:
     write(folder / "wrong.py", "import ravestate as rs\nm = rs.Module('two words')\n")
     for way in ("./wrong.py", "wrong", "wrong:m"):
-        assert refused(capsys, way, code=1).startswith("Module: 'two words' is no name")
+        assert refused(capsys, way, code=1).startswith("Module: 'two words' is not a name")
 
 
 def test_a_file_without_a_module(folder: Path, capsys: Capture) -> None:

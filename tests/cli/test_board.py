@@ -57,7 +57,7 @@ def test_the_printed_addresses_lead_to_the_agent_and_the_board(tmp_path: Path) -
     command = Command(str(tmp_path / "echo.py"), "--set", "webio.token=open-sesame-please")
     try:
         agent, board = command.address("agent"), command.address("board")
-        assert board == f"{agent}board/"  # the output is no terminal: the token stays out of it
+        assert board == f"{agent}board/"  # the output is not a terminal: the token stays out of it
         page = httpx.get(board)
         assert "board.js" in page.text
         assert "script-src 'self'" in page.headers["content-security-policy"]

@@ -88,7 +88,7 @@ def test_settings_are_checked_with_their_declarations(folder: Path, capsys: Capt
 def test_a_module_with_a_wrong_declaration_is_a_fault(folder: Path, capsys: Capture) -> None:
     write(folder / "wrong.py", "import ravestate as rs\nmodule = rs.Module('')\n")
     code, _, errors = call(capsys, "check", "./wrong.py")
-    assert code == 1 and errors.startswith("fault: Module: '' is no name")
+    assert code == 1 and errors.startswith("fault: Module: '' is not a name")
 
 
 def test_wrong_use_is_2(capsys: Capture) -> None:

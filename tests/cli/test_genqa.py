@@ -72,7 +72,7 @@ def test_an_unreadable_file_is_named_and_sets_the_exit_code(docs: Path, capsys: 
     assert code == 1
     assert out.startswith("3 unreadable, 2 added; 2 new passages")
     assert f"ravestate genqa: {docs / 'latin.txt'}: it is not UTF-8 (byte 3)" in errors
-    assert f"ravestate genqa: {docs / 'broken.pdf'}: it is no PDF, or damaged" in errors
+    assert f"ravestate genqa: {docs / 'broken.pdf'}: it is not a PDF, or damaged" in errors
     assert "nowhere: it does not exist" in errors
 
 
@@ -125,7 +125,7 @@ def test_an_index_that_is_none_is_an_error_in_words(
     (docs / "index.txt").write_text("This is a letter and no index of anything.", encoding="utf-8")
     code, _, errors = call(capsys, "genqa", "--index", str(docs / "index.txt"), *action)
     assert code == 1
-    assert errors.startswith(f"ravestate genqa: the index {docs / 'index.txt'}: it is no index, or damaged")
+    assert errors.startswith(f"ravestate genqa: the index {docs / 'index.txt'}: it is not an index, or damaged")
     assert "--index /path/to/index.sqlite" in errors
 
 

@@ -105,7 +105,7 @@ def test_files_that_cannot_be_written_or_read(file: Path, folder: Path, capsys: 
     assert call(capsys, "memory", "--path", str(file), "load", "broken.json")[0] == 2
     write(folder / "other.json", "[]")
     code, _, errors = call(capsys, "memory", "--path", str(file), "load", "other.json")
-    assert code == 1 and "this is no document of memory" in errors
+    assert code == 1 and "this is not a document of memory" in errors
 
 
 @pytest.mark.parametrize("answer", ["n\n", "", "\n", "yess\n"])

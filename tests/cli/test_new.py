@@ -82,7 +82,7 @@ def test_a_nested_folder_and_an_empty_one_are_accepted(folder: Path, capsys: Cap
 def test_an_invalid_name_is_refused(name: str, folder: Path, capsys: Capture) -> None:
     code, out, errors = call(capsys, "new", "--", name)
     assert (code, out) == (2, "")
-    assert "is no name for a project: use letters, digits, '-' and '_', e.g. my-agent" in errors
+    assert "is not a name for a project: use letters, digits, '-' and '_', e.g. my-agent" in errors
     assert list(folder.iterdir()) == []
 
 

@@ -84,9 +84,9 @@ def test_only_conditions_can_be_combined(other: object) -> None:
 
 
 def test_a_slot_beside_a_condition_gets_a_hint_at_its_signal() -> None:
-    with pytest.raises(rs.DeclarationError, match=r"a slot is no signal: write & mood\.changed"):
+    with pytest.raises(rs.DeclarationError, match=r"a slot is not a signal: write & mood\.changed"):
         _ = a & mood
-    with pytest.raises(rs.DeclarationError, match=r"a slot is no signal: write \| mood\.changed"):
+    with pytest.raises(rs.DeclarationError, match=r"a slot is not a signal: write \| mood\.changed"):
         _ = a | mood
     with pytest.raises(rs.DeclarationError, match=r"write & rawio\.input\.changed"):
         _ = a & rs.Module("rawio").slot("input")

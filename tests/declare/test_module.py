@@ -117,7 +117,7 @@ def test_names_are_words(name: Any, demo: rs.Module) -> None:
         lambda: demo.flag(name),
         lambda: demo.collection(name),
     ):
-        refused(f"{name!r} is no name: use letters, digits, '_' and '-'", declare)
+        refused(f"{name!r} is not a name: use letters, digits, '_' and '-'", declare)
 
 
 @pytest.mark.parametrize("name", ["a", "my-agent", "_x1", "gefühl"])
@@ -185,9 +185,9 @@ def test_a_function_without_a_name_needs_one(function: Any, demo: rs.Module) -> 
 
 @pytest.mark.parametrize("when", [True, None, "go", do, 3])
 def test_a_rule_needs_a_condition(when: Any, demo: rs.Module) -> None:
-    refused(f"when={when!r} is no condition: combine signals with & and |", lambda: demo.rule(when=when)(do))
+    refused(f"when={when!r} is not a condition: combine signals with & and |", lambda: demo.rule(when=when)(do))
     if when is not None:
-        refused(f"until={when!r} is no condition", lambda: demo.rule(when=demo.signal("go"), until=when)(do))
+        refused(f"until={when!r} is not a condition", lambda: demo.rule(when=demo.signal("go"), until=when)(do))
 
 
 def test_a_slot_as_condition_gets_a_hint_at_its_signal(demo: rs.Module) -> None:
@@ -207,7 +207,7 @@ def test_a_slot_as_condition_gets_a_hint_at_its_signal(demo: rs.Module) -> None:
 def test_numbers_are_numbers(what: str, number: Any, demo: rs.Module) -> None:
     options: dict[str, Any] = {what: number}
     refused(
-        f"{what}={number!r} is no number; write {what}=1.0 or a setting",
+        f"{what}={number!r} is not a number; write {what}=1.0 or a setting",
         lambda: demo.rule(when=demo.signal("go"), **options)(do),
     )
 
@@ -216,16 +216,16 @@ def test_reads_and_writes_name_slots_and_emits_names_signals(demo: rs.Module) ->
     go, mood = demo.signal("go"), demo.slot("mood")
     for what in ("reads", "writes"):
         refused(
-            f"{what}=demo:go is no slot: reads and writes name slots, emits names signals",
+            f"{what}=demo:go is not a slot: reads and writes name slots, emits names signals",
             lambda what=what: demo.rule(when=go, **{what: go})(do),
         )
-        refused(f"{what}='mood' is no slot", lambda what=what: demo.rule(when=go, **{what: ["mood"]})(do))
-        refused(f"{what}=None is no slot", lambda what=what: demo.rule(when=go, **{what: None})(do))
+        refused(f"{what}='mood' is not a slot", lambda what=what: demo.rule(when=go, **{what: ["mood"]})(do))
+        refused(f"{what}=None is not a slot", lambda what=what: demo.rule(when=go, **{what: None})(do))
     refused(
-        "emits=demo:mood is no signal: a write raises its signals; write writes=mood",
+        "emits=demo:mood is not a signal: a write raises its signals; write writes=mood",
         lambda: demo.rule(when=go, emits=mood)(do),
     )
-    message = refused("emits=5 is no signal", lambda: demo.rule(when=go, emits=5)(do))
+    message = refused("emits=5 is not a signal", lambda: demo.rule(when=go, emits=5)(do))
     assert re.match(rf"rule demo:do \({HERE}:\d+\): emits=5", message)
 
 
@@ -254,5 +254,5 @@ def test_help_shows_the_arguments_of_a_rule() -> None:
 
 
 def test_a_refused_rule_is_not_in_the_module(demo: rs.Module) -> None:
-    refused("is no condition", lambda: demo.rule(when=None)(do))
+    refused("is not a condition", lambda: demo.rule(when=None)(do))
     assert demo.rules == []

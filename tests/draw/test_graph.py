@@ -15,7 +15,7 @@ def test_two_nodes_of_one_id_are_refused() -> None:
 
 
 def test_an_edge_to_an_unknown_node_is_refused() -> None:
-    with pytest.raises(ValueError, match="'c', which is no node"):
+    with pytest.raises(ValueError, match="'c', which is not a node"):
         Diagram((A, B), (Edge("a", "c", "emits"),))
 
 

@@ -23,7 +23,7 @@ from ravestate.modules.platform.webio.server import Server
 from ravestate.modules.platform.webio.session import Ending
 
 SCRIPT = 300_000
-"""The most bytes of compressed script on the page."""
+"""The maximum number of bytes of compressed script on the page."""
 
 keeper = rs.Module("keeper", requires=(rawio,))
 question = keeper.signal("question", payload=str)
@@ -327,7 +327,7 @@ async def test_a_trace_is_exported_and_opened_again_without_an_agent(stage: Stag
         await expect(page.get_by_text("trace.json")).to_be_visible()
         (tmp_path / "bad.json").write_text("{}", "utf-8")
         await page.get_by_label("Open a recorded trace").set_input_files(tmp_path / "bad.json")
-        await expect(page.get_by_role("alert")).to_contain_text("bad.json: this is no trace")
+        await expect(page.get_by_role("alert")).to_contain_text("bad.json: this is not a trace")
         await page.get_by_role("button", name="Close this recording").click()
         await expect(page.locator(".status")).to_have_text("live")
         await expect(page.get_by_text("trace.json")).to_have_count(0)

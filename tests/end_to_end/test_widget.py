@@ -1,4 +1,4 @@
-"""The widget: the chat on somebody else's page."""
+"""The widget: the chat on another site's page."""
 
 import asyncio
 import contextlib

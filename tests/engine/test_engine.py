@@ -33,11 +33,11 @@ def running() -> tuple[Engine, int]:
 @pytest.mark.parametrize(
     ("event", "message"),
     [
-        (events.Store("m:lit", "key", 1), "m:lit is no collection"),
-        (events.Discard("m:lit", "key"), "m:lit is no collection"),
+        (events.Store("m:lit", "key", 1), "m:lit is not a collection"),
+        (events.Discard("m:lit", "key"), "m:lit is not a collection"),
         (events.AddRule(rs.compile(rs.Module("other"))), r"make it with policy\.with_rule\(rule\)"),
         (events.Finish(999, "done"), "run 999 is over, or never began"),
-        (cast("Any", "go"), "'go' is no event"),
+        (cast("Any", "go"), "'go' is not an event"),
     ],
 )
 def test_an_event_that_makes_no_sense_is_refused_and_changes_nothing(event: Any, message: str) -> None:

@@ -17,7 +17,7 @@ def output(module: rs.Module, name: str = "out") -> rs.Slot[str]:
 def writer(
     module: rs.Module, name: str, when: rs.Condition, *slots: rs.Slot[Any], after: float = 0.0, **options: Any
 ) -> rs.Rule[Any, Any]:
-    """Declare a rule that, after some seconds, writes its own name into its slots."""
+    """Declare a rule that, after a few seconds, writes its own name into its slots."""
 
     async def write(ctx: Any) -> None:
         if after:
@@ -37,7 +37,7 @@ def emitter(
     only_if: Callable[[Any], bool] = lambda ctx: True,
     **options: Any,
 ) -> rs.Rule[Any, Any]:
-    """Declare a rule that, after some seconds, emits its signals if ``only_if`` is true."""
+    """Declare a rule that, after a few seconds, emits its signals if ``only_if`` is true."""
 
     async def emit(ctx: Any) -> None:
         if after:
@@ -52,7 +52,7 @@ def emitter(
 def resigner(
     module: rs.Module, name: str, when: rs.Condition, *slots: rs.Slot[Any], after: float = 0.0, **options: Any
 ) -> rs.Rule[Any, Any]:
-    """Declare a rule that, after some seconds, resigns."""
+    """Declare a rule that, after a few seconds, resigns."""
 
     async def resign(ctx: Any) -> rs.Resign:
         if after:

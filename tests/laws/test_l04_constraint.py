@@ -126,7 +126,7 @@ def test_holds_gates_a_rule(play: Any) -> None:
         assert moments(sim, out) == []
         sim.advance(6.0)
         sim.put(mood, "gay")
-        assert moments(sim, out) == []  # a predicate is no spike: no rule fires by it
+        assert moments(sim, out) == []  # a predicate is not a spike: no rule fires by it
         assert at_rest(sim)
         sim.emit(a)
         assert moments(sim, out) == [(6.0, "gated")]

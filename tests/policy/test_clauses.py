@@ -1,4 +1,4 @@
-"""Disjunctive normal form (L5): in declaration order, without doubles, bounded."""
+"""Disjunctive normal form (L5): in declaration order, without duplicates, bounded."""
 
 import pytest
 
@@ -91,5 +91,5 @@ def test_depth_is_no_limit() -> None:
 
 
 def test_a_part_must_be_a_condition() -> None:
-    with pytest.raises(rs.DeclarationError, match="'a' is no condition: combine signals with & and"):
+    with pytest.raises(rs.DeclarationError, match="'a' is not a condition: combine signals with & and"):
         normal_form("a")

@@ -148,7 +148,7 @@ def test_signals_that_no_rule_hears(scene: Scene) -> None:
     scene.rule("emit", scene.heard, emits=(lost, watched))
     scene.rule("watch", scene.heard, writes=scene.out, until=watched)
     found = scene.findings()
-    assert list(found) == [("unheard", "m:lost")]  # nobody raises `free`, and slots may be read
+    assert list(found) == [("unheard", "m:lost")]  # no rule raises `free`, and slots may be read
     assert (
         found["unheard", "m:lost"]
         == "unheard: no rule hears signal m:lost, which m:emit may raise; remove it, or write a rule that hears it"

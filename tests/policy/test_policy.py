@@ -140,7 +140,7 @@ def test_a_new_rule_may_refer_to_a_setting() -> None:
         (extra(when=rs.Module("far").signal("x")), "unknown signal far:x"),
         (extra(weight=0), "weight=0.0 must be above 0"),
         (add, "is in the policy already; give the new one another name=..."),
-        (lambda ctx: None, "is no rule: write @module.rule"),
+        (lambda ctx: None, "is not a rule: write @module.rule"),
     ],
 )
 def test_a_rule_that_does_not_fit_is_refused(rule: Any, text: str) -> None:

@@ -106,7 +106,7 @@ Clause = tuple[Want | Gate, ...]
 
 @dataclass(frozen=True, repr=False)
 class Act(Brief):
-    """The work of a rule's function: steps, each after some seconds, then an end."""
+    """The work of a rule's function: steps, each after a few seconds, then an end."""
 
     steps: tuple[tuple[float, Op], ...] = ()
     seconds: float = 0.0
@@ -158,7 +158,7 @@ class SlotOf(Brief):
 
 @dataclass(frozen=True, repr=False)
 class World(Brief):
-    """Signals ``s0, s1, ...``, slots ``v0, v1, ...``, rules ``r0, r1, ...``; and inputs, each after some seconds."""
+    """Signals ``s0, s1, ...``, slots ``v0, v1, ...``, rules ``r0, r1, ...``; and inputs, each after a few seconds."""
 
     signals: tuple[SignalOf, ...] = ()
     slots: tuple[SlotOf, ...] = ()

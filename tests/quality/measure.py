@@ -120,7 +120,7 @@ def measure_triples(see: Callable[[str], Iterable[Iterable[str]]], cases: list[t
 
 
 def measure_labels(name: str, see: Callable[[str], str], cases: list[tuple[str, str]]) -> Result:
-    """The share of right labels; and the F1 of all labels but `-`, where a wrong label is no hit."""
+    """The share of right labels; and the F1 of all labels but `-`, where a wrong label is not a hit."""
     right = hits = given = 0
     misses: list[str] = []
     for text, expected in cases:

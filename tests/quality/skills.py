@@ -32,7 +32,7 @@ FLOORS = {
     "wildtalk_facts": 0.97,
     "hibye_words": 0.97,
 }
-"""The least share of right labels: the last result rounded down, or 0.97 for a perfect one."""
+"""The minimum share of right labels: the last result rounded down, or 0.97 for a perfect one."""
 
 _SITUATION = re.compile(r"(?:\[(asked|told|knows) ([^]=]+)(?:=([^]]*))?\] )?(.*)")
 

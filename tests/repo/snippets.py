@@ -31,7 +31,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 STAND_INS = Path(__file__).with_name("stand_ins")
-"""Packages that no test environment has (ROS), as far as the documentation uses them; real ones go first."""
+"""Stand-ins for packages that no test environment has (ROS), as far as the documentation uses them. Real packages take
+precedence."""
 FENCE = re.compile(r"(?P<indent>[ \t]*)(?P<fence>`{3,}|~{3,})[ \t]*(?P<info>[^`]*)")
 NOT_RUN = re.compile(r"\s*<!--\s*not run:\s*(?P<reason>.*?)\s*-->\s*")
 TITLE = re.compile(r"""title=(?P<quote>["'])(?P<title>.*?)(?P=quote)""")
@@ -203,7 +204,7 @@ def run_pycon(block: Block, module: types.ModuleType) -> None:
 
 
 def run_tests(block: Block, folder: Path) -> None:
-    """Have pytest run a block's file, in a process of its own. Raises AssertionError with what it prints if one fails."""
+    """Run a block's file with pytest, in a separate process. Raises AssertionError with what it prints if one fails."""
     name = Path(block.title or "").name
     assert name.startswith("test_") and name.endswith(".py"), f'{block}: give it title="test_....py", or drop its tests'
     environment = {key: value for key, value in os.environ.items() if not key.startswith("PYTEST")}

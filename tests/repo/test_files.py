@@ -54,7 +54,7 @@ def test_no_registry_is_named() -> None:
 
 
 def test_no_folder_of_one_machine_is_named() -> None:
-    """Neither this checkout's own path nor somebody's home."""
+    """Neither this checkout's own path nor a user's home."""
     folders = [re.escape(str(place)) for place in (ROOT, Path.home()) if len(place.parts) > 2]
     folders += [r"/(?:home|Users)/(?!user\b|me\b|you\b|runner\b)\w+", r"(?<![\w.])/(?:ro" r"ot|wo" r"rk)/\w"]
     found = lines_matching(re.compile("|".join(folders)), kept_files())

@@ -1,4 +1,4 @@
-"""Rules that block the loop are named; a busy machine is no rule's fault."""
+"""Rules that block the loop are named; a busy machine is not a rule's fault."""
 
 import asyncio
 import logging

@@ -1,4 +1,4 @@
-"""A context's life: begun once, acted on from the loop and from threads, ended in order."""
+"""A context's life: it starts once, takes calls from the loop and from threads, and ends cleanly."""
 
 import asyncio
 import contextlib
@@ -124,7 +124,7 @@ async def test_an_exception_inside_ends_the_context_and_comes_through() -> None:
 
 def test_faults_are_raised_before_anything_runs() -> None:
     with pytest.raises(rs.DeclarationErrors) as caught:
-        rs.Context("demo")  # a name is no module
+        rs.Context("demo")  # a name is not a module
     assert "expected an rs.Module" in str(caught.value)
     with pytest.raises(rs.DeclarationErrors) as caught:
         rs.Context(policy, demo)

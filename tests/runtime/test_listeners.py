@@ -1,4 +1,4 @@
-"""Listeners: the engine reports only signals for which somebody listens."""
+"""Listeners: the engine reports only signals that have a listener."""
 
 import asyncio
 from typing import Any

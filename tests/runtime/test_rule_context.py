@@ -98,12 +98,12 @@ def test_an_undeclared_read_names_the_line_to_add(scene: Scene, slot: str, text:
 @pytest.mark.parametrize("key", ["mood", None, 3])
 def test_a_value_that_is_no_slot_is_named(scene: Scene, key: Any) -> None:
     scene.run(lambda ctx: ctx[key], reads=scene.mood)
-    assert f"read {key!r}, which is no slot: write ctx[slot]" in str(scene.outcome())
+    assert f"read {key!r}, which is not a slot: write ctx[slot]" in str(scene.outcome())
 
 
 def test_a_signal_in_place_of_its_slot(scene: Scene) -> None:
     scene.run(lambda ctx: ctx[scene.mood.changed], reads=scene.mood)
-    assert "read m:mood:changed, which is no slot" in str(scene.outcome())
+    assert "read m:mood:changed, which is not a slot" in str(scene.outcome())
 
 
 # ---------------------------------------------------------------------------------------- writing

@@ -1,4 +1,4 @@
-"""Running until a rule or Ctrl-C ends the agent in order, or a second Ctrl-C at once."""
+"""Running until a rule or Ctrl-C ends the agent cleanly, or a second Ctrl-C ends it at once."""
 
 import asyncio
 import gc

@@ -625,7 +625,7 @@ async def test_a_refused_act_of_a_thread_is_logged() -> None:
     with Records() as log:
         async with rs.Context(talk.module) as context:
             await talk.ask(context)
-    assert any("what another thread asked for was refused: Wipe(signal='far:far'" in m for m in log.messages)
+    assert any("refused a request from another thread: Wipe(signal='far:far'" in m for m in log.messages)
 
 
 # ---------------------------------------------------------------------------------------- rules that hang, or block

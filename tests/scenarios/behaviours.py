@@ -32,7 +32,7 @@ def talker(m: rs.Module, name: str, when: rs.Condition, *, hears: bool = True, *
 def classifier(
     m: rs.Module, signal: rs.Signal[str], word: str, *, takes: Callable[[str], float] = lambda text: 0.0
 ) -> None:
-    """Declare a rule that, after some seconds, raises a signal for an utterance with a certain word."""
+    """Declare a rule that, after a few seconds, raises a signal for an utterance with a certain word."""
 
     @m.rule(when=rawio.input.changed, emits=signal, name=f"Find{signal.name.split(':')[1].title()}")
     async def classify(ctx: Any) -> None:

@@ -464,7 +464,7 @@ function paintLabel(context: CanvasRenderingContext2D, scene: Scene, label: Labe
   context.fillText(text, left, y + 0.5);
 }
 
-/** Return a JSON string in quotation marks. A cut text is no valid JSON. */
+/** Return a JSON string in quotation marks. A cut text is not valid JSON. */
 function spoken(json: string): string {
   try {
     return `“${String(JSON.parse(json))}”`;

@@ -138,7 +138,7 @@ export interface Dropped {
   reason: string;
 }
 
-/** An arrow from `source` to `target`, both ids of nodes, with a few words beside it or none. */
+/** An arrow from `source` to `target` (both are ids of nodes), perhaps with a few words beside it. */
 export interface Edge {
   source: string;
   target: string;

@@ -83,7 +83,7 @@ export class Trace {
   #bars = new Map<number, Bar>();
   #into = new Map<number, number>();
 
-  /** @param kept the least number of records to keep; the oldest go first */
+  /** @param kept the minimum number of records to keep; the oldest go first */
   constructor(private readonly kept = 100_000) {}
 
   add(records: TraceRecord[]): void {
@@ -128,7 +128,7 @@ export class Trace {
     return lane;
   }
 
-  /** Return the group into which a causal group has merged at last. */
+  /** Return the group that a causal group has finally merged into. */
   group(id: number): number {
     let root = id;
     for (let into = this.#into.get(root); into !== undefined; into = this.#into.get(root)) root = into;

@@ -3,7 +3,7 @@
 /** The version of the protocol. A new frame or field keeps it; any other change raises it. */
 export const VERSION = 1;
 
-/** The most characters that a visitor may say at once. */
+/** The maximum number of characters that a visitor may say at once. */
 export const LONGEST_TEXT = 10000;
 
 /** The WebSocket's closing code for each error; an error that is not listed closes with that of `malformed`. */
@@ -114,7 +114,7 @@ export interface Typing {
   on: boolean;
 }
 
-/** Whether somebody has paused the agent's clock, as the board can. */
+/** Whether the agent's clock is paused, for example by the board. */
 export interface Paused {
   type: "paused";
   on: boolean;

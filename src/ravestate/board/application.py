@@ -1,4 +1,4 @@
-"""The board's routes, for a place beside the chat page and behind its checks."""
+"""The board's routes, mounted beside the chat page and behind its checks."""
 
 from __future__ import annotations
 
@@ -29,13 +29,14 @@ INSIDE = "board/"
 """The board's address, relative to the chat page."""
 
 LARGEST = 64 * 1024 * 1024
-"""The most bytes of an uploaded recording: twice the page's largest export, some 125,000 records of 270 bytes."""
+"""The maximum number of bytes of an uploaded recording: twice the page's largest export, some 125,000 records of 270
+bytes."""
 
 AT_ONCE = 4
-"""The most uploads at once."""
+"""The maximum number of uploads at once."""
 
 LONGEST = 300.0
-"""The most seconds for an upload."""
+"""The maximum number of seconds for an upload."""
 
 
 class RecordedAgent(Agent):
@@ -62,8 +63,8 @@ def routes(
 
     Args:
         recorders: The recorders of a `RecordedAgent`. Without them, recording starts when a board opens.
-        recording: The recording to show unless a page asks for a conversation.
-        title: The agent's name; None: the name that the agent gives itself.
+        recording: The recording to show, unless a page asks for a conversation.
+        title: The agent's name; None for the name that the agent gives itself.
     """
     known = Recorders() if recorders is None else recorders
     recordings = Recordings(recording)
@@ -95,12 +96,12 @@ def routes(
         except TimeoutError:
             return PlainTextResponse(f"the upload took more than {LONGEST:g} s", 408)
         except ClientDisconnect:
-            return Response(status_code=400)  # nobody reads it
+            return Response(status_code=400)  # the client never reads it
         try:
             async with reading:
                 recording = await asyncio.to_thread(read_apart, bytes(data))
         except ValueError as error:
-            return PlainTextResponse(f"this is no trace: {error}", 422)
+            return PlainTextResponse(f"this is not a trace: {error}", 422)
         return JSONResponse({"recording": recordings.put(recording)}, 201)
 
     async def redirect(request: Request) -> Response:

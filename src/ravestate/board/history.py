@@ -26,7 +26,7 @@ class Attempt:
         records: All its records, in order.
         held: The spikes that it took, in order.
         lacks: The signals that it lacked before it ended.
-        complete: The time at which it had all spikes (seconds); None: never.
+        complete: The time at which it had all spikes (seconds); None if it never did.
         waits: The records of its waits.
         gave_up: The spikes that it gave up at its end.
         started: The record of its run's start.
@@ -93,7 +93,7 @@ class History:
         raising: A pair for each signal that a run raised: the run's number and the signal.
 
     Raises:
-        LookupError: The trace does not hold the spike, or no longer does.
+        LookupError: The trace does not contain the spike, or no longer does.
     """
 
     def __init__(self, records: Iterable[t.Record], spike: int) -> None:
@@ -126,7 +126,7 @@ class History:
         self.group = {id for id, born in self.born.items() if self.root(born.group) == root}
 
     def root(self, group: int) -> int:
-        """Return the group into which a group has merged at last."""
+        """Return the group that a group has finally merged into."""
         root = group
         while root in self._into:
             root = self._into[root]
@@ -214,7 +214,7 @@ class History:
                 self._attempt(record.run, record).started = record
             case t.GaveUp() | t.Waits():
                 attempt = self._runs.get(record.activation)
-                if attempt is not None:  # else it began before the trace
+                if attempt is not None:  # otherwise it began before the trace
                     attempt.records.append(record)
                     if isinstance(record, t.GaveUp):
                         attempt.lose(record)

@@ -35,28 +35,29 @@ OF_SPARE = 0.5
 """The share of the process's idle time that an inspector may use as well."""
 
 MOST = 800
-"""The most records in a frame; more would delay the agent."""
+"""The maximum number of records in a frame; more would delay the agent."""
 
 BACKLOG = 20_000
-"""The most past records that a new inspector gets."""
+"""The maximum number of past records that a new inspector gets."""
 
 LAG = 25_000
-"""The most records that an inspector may lag behind. Beyond it, the server skips to the present."""
+"""The maximum number of records that an inspector may lag behind. If it lags further, the server skips to the
+present."""
 
 BURST, SPEED = 60, 30.0
-"""The rate limit: commands at once, and commands a second after that."""
+"""The rate limit: the size of a burst, and commands a second after that."""
 
 LISTED = 1.0
 """Seconds between two checks of the list of conversations."""
 
 LIST = 100
-"""The most conversations in the list: the newest, and the shown one."""
+"""The maximum number of conversations in the list: the newest, and the shown one."""
 
 WORDS = 48
-"""The most characters of a visitor's last words in the list."""
+"""The maximum number of characters of a visitor's last words in the list."""
 
 REPLIES = 64
-"""The most answers in the queue for a client."""
+"""The maximum number of answers in the queue for a client."""
 
 HELLO = f'{{"type": "hello", "v": {protocol.VERSION}}}'
 
@@ -70,7 +71,7 @@ class Inspector:
         sessions: The conversations.
         recorders: The recorders of their contexts.
         recordings: The recordings.
-        title: The agent's name; None: the name that the agent gives itself.
+        title: The agent's name; None for the name that the agent gives itself.
     """
 
     def __init__(
@@ -90,7 +91,7 @@ class Inspector:
         self._title = title
 
     def wake(self) -> None:
-        """Ignore news of the conversation: the records have it all."""
+        """Ignore changes in the conversation: the records contain them all."""
 
     async def run(self) -> None:
         """Serve the page until either side closes."""
@@ -207,7 +208,7 @@ class Inspector:
             case protocol.Ping():
                 self._reply(protocol.Pong())
             case protocol.Hello():
-                raise ValueError("hello comes once, first")
+                raise ValueError("hello comes first, and only once")
             case _:
                 await source.act(command)
 

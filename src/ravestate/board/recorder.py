@@ -1,7 +1,7 @@
 """Recorders: they keep the records of contexts for inspectors, with bounded memory and cost.
 
-Inspectors have no queues. Records are numbered, and each inspector reads the ones that it lacks. A slow inspector misses
-the records that are gone, and delays nobody.
+Inspectors have no queues. Records are numbered, and each inspector reads the ones that it lacks. A slow inspector
+misses the records that are gone, and delays nothing else.
 
 Making records is expensive for a busy agent, so a rate limit applies: a burst, then a steady rate, and more while the
 process is idle. Beyond the limit, a recorder stops listening for a moment, and the engine makes no records. A `Gap` says
@@ -27,22 +27,22 @@ from ravestate.engine.trace import Born, Record, Settled
 from ravestate.runtime.context import Context
 
 KEPT = 100_000
-"""The most records of one context."""
+"""The maximum number of records of one context."""
 
 IN_ALL = 500_000
-"""The most records of all contexts together, at some 136 bytes each, and their payloads."""
+"""The maximum number of records of all contexts together. Each takes about 136 bytes plus its payload."""
 
 BATCH = 100
 """The number of records between two reports of growth."""
 
 BURST = 20_000
-"""The most records at once."""
+"""The maximum number of records at once."""
 
 RATE = 2_000
 """Records a second after a burst, from an agent that is always busy."""
 
 SPARE = 60_000
-"""Further records a second, times the idle share of the process."""
+"""Additional records a second, multiplied by the idle share of the process."""
 
 PAUSE = 0.1
 """Seconds without listening, after too many records."""
@@ -66,10 +66,10 @@ class Recorder:
 
     Args:
         context: A context, running or not.
-        kept: The most records to keep.
-        burst: The most records at once.
+        kept: The maximum number of records to keep.
+        burst: The maximum number of records at once.
         rate: Records a second after a burst.
-        spare: Further records a second, times the idle share of the process.
+        spare: Additional records a second, multiplied by the idle share of the process.
         whole: Whether the context has not started yet, so that the records are complete.
         grown: A callback after each `BATCH` of records.
     """
@@ -159,7 +159,7 @@ class Recorder:
         self._take(record)  # may begin the next gap
 
     def _rest(self) -> None:
-        """Earn further records for the time that has passed, or else stop listening for a moment."""
+        """Raise the allowance for the time that has passed; if there is none, stop listening for a moment."""
         loop = asyncio.get_running_loop()
         now = loop.time()
         earned = self._burst if self._granted is None else (now - self._granted) * self._speed()
@@ -187,7 +187,8 @@ class Recorders:
     """The recorders of an agent's contexts. Each lives as long as its context.
 
     Args:
-        in_all: The most records of all contexts together. The limit may be exceeded by a fiftieth and a batch of each.
+        in_all: The maximum number of records of all contexts together. The actual number may exceed it by a fiftieth,
+            plus one batch for each context.
     """
 
     def __init__(self, in_all: int = IN_ALL) -> None:
@@ -206,7 +207,7 @@ class Recorders:
 
     def _grow(self) -> None:
         self._grown += BATCH
-        if self._grown * 50 >= self._in_all:  # rarely, so that it costs almost nothing a record
+        if self._grown * 50 >= self._in_all:  # rarely, so that it costs almost nothing for each record
             self._grown = 0
             recorders = [found for known in self._of.values() if (found := known()) is not None]
             length = _fair([len(recorder.records) for recorder in recorders], self._in_all)
@@ -215,7 +216,7 @@ class Recorders:
 
 
 def _fair(lengths: list[int], in_all: int) -> int:
-    """Return the length to which the longest have to be cut, for a total of at most `in_all`.
+    """Return the length to which to cut the longest ones, for a total of at most `in_all`.
 
     Example:
         >>> _fair([10, 500, 700], 610)

@@ -12,7 +12,7 @@ KEPT = 4
 
 
 class Recordings:
-    """Recordings by their names, which nobody can guess.
+    """Recordings by their unguessable names.
 
     Args:
         first: The recording to show without a name, if any.

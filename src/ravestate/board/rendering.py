@@ -16,7 +16,7 @@ from ravestate.board.repr_chunks import repr_chunks
 from ravestate.declare.slot import Entry
 
 DEEPEST = 6
-"""The most nested containers."""
+"""The maximum depth of nested containers."""
 
 TRACEBACK = 8000
 """The most characters of a traceback; its end is kept."""
@@ -102,7 +102,7 @@ def _start(chunks: Iterator[str], most: int) -> str:
 
 
 def _json(value: object, depth: int) -> Iterator[str]:
-    """Yield a value's JSON in chunks, so that nobody has to make all of a huge one."""
+    """Yield a value's JSON in chunks, so that a huge value is never converted as a whole."""
     if value is None or isinstance(value, (bool, int)):
         yield json.dumps(value)
     elif isinstance(value, float):

@@ -11,10 +11,10 @@ from types import MappingProxyType
 from typing import Any, NamedTuple, cast
 
 DEEPEST = 30
-"""The most nested containers."""
+"""The maximum depth of nested containers."""
 
 LONGEST = 100_000
-"""The most characters, or bytes, of one text."""
+"""The maximum number of characters, or bytes, of one text."""
 
 TEXTS: dict[Any, Any] = {kind.__repr__: kind for kind in (str, bytes, bytearray)}
 
@@ -24,7 +24,7 @@ _WALKS: dict[Any, Any] = {
     **{kind: kind.__iter__ for kind in _ROWS},
     **{kind: kind.items for kind in _TABLES},
 }
-"""For each built-in container its own iterator, which a subclass cannot override here."""
+"""The iterator of each built-in container, so that a subclass cannot override it here."""
 
 BUILT_IN: dict[Any, Any] = {kind.__repr__: kind for kind in _WALKS}
 """The built-in containers, by their ``__repr__``."""
@@ -33,7 +33,7 @@ BUILT_IN: dict[Any, Any] = {kind.__repr__: kind for kind in _WALKS}
 class _Box(NamedTuple):
     """A container: the text around its items, the items, each with its prefix, and the text for it within itself.
 
-    Without a text of its own, a container within itself is three dots in its brackets.
+    By default, a container within itself appears as three dots in its brackets.
     """
 
     opening: str
@@ -46,8 +46,8 @@ def repr_chunks(value: object, around: tuple[int, ...] = ()) -> Iterator[str]:
     """Yield a ``repr`` in chunks: built-in containers, records and texts bit by bit, other values at once.
 
     Joined, the chunks are the ``repr``, with these differences. Long and deep values are cut. A `Counter` keeps its order
-    instead of sorting. A mapping proxy reads like its dictionary. A subclass of a built-in container shows its items,
-    without calls of its own methods. A value within itself is left out.
+    instead of sorting. A mapping proxy reads like its dictionary. A subclass of a built-in container shows its items;
+    its own methods are not called. A value within itself is left out.
 
     Args:
         value: The value.
@@ -85,7 +85,7 @@ def repr_chunks(value: object, around: tuple[int, ...] = ()) -> Iterator[str]:
 
 
 def _box(value: Any, made_by: Any, around: tuple[int, ...]) -> _Box | None:
-    """Return the parts of a value's ``repr``, by its type's `__repr__`; None: they are unknown."""
+    """Return the parts of a value's ``repr``, by its type's `__repr__`; None if they are unknown."""
     own = cast("type[Any]", type(value))
     kind = BUILT_IN.get(made_by)
     if kind is not None:
@@ -100,7 +100,7 @@ def _box(value: Any, made_by: Any, around: tuple[int, ...]) -> _Box | None:
 
 
 def _built_in(value: Any, kind: Any, around: tuple[int, ...]) -> _Box | None:
-    """Return the parts of a built-in container or of a subclass; None: it is empty and has a ``repr`` of its own."""
+    """Return the parts of a built-in container or of a subclass; None if it is empty and has its own ``repr``."""
     name = type(value).__name__
     size: int = kind.__len__(value)
     items = _WALKS[kind](value)

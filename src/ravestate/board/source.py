@@ -163,7 +163,7 @@ class LiveSource:
     def _say(self, text: str) -> None:
         try:
             heard = heard_text(text)
-        except ProtocolError as error:  # here the command is refused, not the connection
+        except ProtocolError as error:  # this refuses the command, not the connection
             raise RavestateError(str(error)) from None
         self._session.hear(f"board-{secrets.token_hex(8)}", heard)
 
@@ -174,7 +174,7 @@ class LiveSource:
 
 
 async def _outside_of_any_task(function: Callable[[], T]) -> T:
-    """Call a function on the loop, outside of this task: the task may be cancelled, and rules must not be."""
+    """Call a function on the loop, outside this task: the task may be cancelled, but rules must not be."""
     loop = asyncio.get_running_loop()
     called: asyncio.Future[T] = loop.create_future()
 
@@ -182,7 +182,7 @@ async def _outside_of_any_task(function: Callable[[], T]) -> T:
         try:
             result = function()
         except Exception as error:
-            if not called.done():  # else the caller is gone
+            if not called.done():  # otherwise the caller is gone
                 called.set_exception(error)
         else:
             if not called.done():

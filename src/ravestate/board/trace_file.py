@@ -28,10 +28,11 @@ from ravestate.policy.policy import Policy
 FORMAT = "ravestate-trace"
 
 MOST_VALUES = 6_000_000
-"""The most commas and brackets in a file: more would fill the memory. 64 MB of records have some four million."""
+"""The maximum number of commas and brackets in a file: more would fill the memory. 64 MB of records have some four
+million."""
 
 LONGEST = 120
-"""The most seconds for reading a file."""
+"""The maximum number of seconds for reading a file."""
 
 CHUNK = 1000
 """Records that pass between processes at once. While they are unpacked, no other thread runs."""
@@ -92,21 +93,21 @@ def open_trace(path: Path) -> Recording:
     """Read a trace from a file.
 
     Raises:
-        PlatformError: The file cannot be read, or is no trace.
+        PlatformError: The file cannot be read, or is not a trace.
     """
     try:
         return read_trace(path.read_bytes())
     except OSError as error:
         raise PlatformError(f"cannot read {path}: {error.strerror}") from None
     except ValueError as error:
-        raise PlatformError(f"{path} is no trace: {error}") from None
+        raise PlatformError(f"{path} is not a trace: {error}") from None
 
 
 def read_trace(text: str | bytes) -> Recording:
     """Read a trace. Lone surrogates in its texts are replaced.
 
     Raises:
-        ValueError: The text is no trace; the message names the place of the fault.
+        ValueError: The text is not a trace; the message names the place of the fault.
     """
     data = text if isinstance(text, bytes) else text.encode("utf-8", "surrogatepass")
     if sum(map(data.count, (b",", b"[", b"{"))) > MOST_VALUES:
@@ -125,10 +126,10 @@ def read_trace(text: str | bytes) -> Recording:
 
 
 def read_apart(data: bytes) -> Recording:
-    """Read a trace in a process of its own, so that other threads of this one run on.
+    """Read a trace in a separate process, so that the other threads of this one keep running.
 
     Raises:
-        ValueError: The data is no trace, or reading takes too long.
+        ValueError: The data is not a trace, or reading takes too long.
     """
     command = [sys.executable, "-m", __name__]
     paths = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
@@ -156,7 +157,7 @@ def _parsed(text: str) -> Any:
 
 def _main() -> int:
     """Read a trace from the standard input, and write it to the standard output for `read_apart`."""
-    from ravestate.board import trace_file  # by its name, which the pickled records need
+    from ravestate.board import trace_file  # import it by name, because the pickled records need that
 
     try:
         read = trace_file.read_trace(sys.stdin.buffer.read())

@@ -18,10 +18,10 @@ from ravestate.engine.reasons import DropReason, LossReason, Outcome, PassReason
 from ravestate.engine.trace import GaveUp, Passed, Record, Settled, Waits
 
 DEEPEST = 3
-"""The most causes of causes in an answer."""
+"""The maximum depth of causes in an answer."""
 
 MOST = 200
-"""The most moments in an answer. Beyond it, the middle is left out."""
+"""The maximum number of moments in an answer. If there are more, the middle is left out."""
 
 Opens = Callable[[str, int, int, Any], bool | None]
 """Returns whether a slot predicate accepts a value, given the rule, the clause's number, the predicate's number and the

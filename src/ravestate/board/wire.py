@@ -22,10 +22,10 @@ VERSION = 1
 """The version of the protocol and of trace files. A new frame, record or field keeps it; any other change raises it."""
 
 PAYLOAD = 400
-"""The most characters of a payload."""
+"""The maximum number of characters of a payload."""
 
 VALUE = 2000
-"""The most characters of a slot's value."""
+"""The maximum number of characters of a slot's value."""
 
 KINDS: dict[str, type[Any]] = {kind.__name__.lower(): kind for kind in (*get_args(Record), Gap)}
 """Each kind of record."""
@@ -76,7 +76,7 @@ def record_of(data: Any) -> Record | Gap:
     """Return the record that data stands for. Its values stay rendered.
 
     Raises:
-        ValueError: The data is no record.
+        ValueError: The data is not a record.
     """
     return checked_record(_RECORD.validate_python(data))
 

@@ -1,6 +1,6 @@
 """The command line: ``ravestate COMMAND ...``, one file for each command.
 
-Exit codes: 0 for success, 1 if the agent has faults or fails, 2 for wrong use. A user's mistake gives a message,
+Exit codes: 0 for success, 1 if the agent has faults or fails, 2 for wrong use. A user's mistake produces a message,
 never a traceback.
 """
 
@@ -57,7 +57,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         parser.epilog = listing()
     for name, summary in COMMANDS.items():
         command = commands.add_parser(name, help=summary, description=summary.capitalize() + ".")
-        if name in arguments:  # listing the others needs no options of theirs
+        if name in arguments:  # the list of the other commands needs none of their options
             import_module(f"ravestate.cli.{name}").add_arguments(command)
     options = parser.parse_args(arguments)
     _log(options.verbose)
@@ -79,7 +79,7 @@ def script() -> int:
     """Run the command ``ravestate``, and end the process.
 
     The interpreter stops the remaining threads in the middle of their work. In a C++ library, such as a model that is
-    still loading, this aborts the process. So the process ends here, after everything else is in order.
+    still loading, this aborts the process. So the process ends here, after everything else has been cleaned up.
     """
     import atexit
     import os
@@ -105,7 +105,7 @@ class CommandParser(argparse.ArgumentParser):
         """Refuse unknown arguments here: the parser above would show its own usage."""
         options, unknown = super().parse_known_args(args, namespace)
         many = [action.dest for action in self._get_positional_actions() if action.nargs in ("+", "*")]
-        if many and unknown and all(not word.startswith("-") for word in unknown):  # they follow an option
+        if many and unknown and all(not word.startswith("-") for word in unknown):  # they belong to an option
             setattr(options, many[0], [*getattr(options, many[0]), *unknown])
             return options, []
         if unknown:

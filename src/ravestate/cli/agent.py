@@ -42,7 +42,7 @@ def load_agent(options: argparse.Namespace, first: Iterable[str] = (), *, announ
         announce: Print the Python code that agent files run, before it runs: for commands that only look.
 
     Raises:
-        UsageError: A module, file or setting is wrong. The message has all mistakes of agent files and of ``--set``.
+        UsageError: A module, file or setting is wrong. The message lists all mistakes of agent files and of ``--set``.
     """
     agent = AgentSpec()
     names = [(name, Path()) for name in first]

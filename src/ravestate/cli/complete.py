@@ -38,7 +38,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def explain_memory(parser: argparse.ArgumentParser) -> None:
-    """Add to the help where the agent keeps its memory."""
+    """Say in the help text where the agent keeps its memory."""
     parser.formatter_class = argparse.RawDescriptionHelpFormatter
     parser.epilog = (
         "The complete agent keeps its memory of you on this machine:\n"

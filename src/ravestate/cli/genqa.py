@@ -39,7 +39,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_index(parser: argparse.ArgumentParser, *, later: bool = False) -> None:
-    """Add the option for the index; `later`, after the name of an action, it keeps the value from before."""
+    """Add the option for the index. `later` means that it follows the name of an action, and keeps an earlier value."""
     parser.add_argument(
         "--index",
         metavar="FILE",
@@ -51,7 +51,7 @@ def _add_index(parser: argparse.ArgumentParser, *, later: bool = False) -> None:
 def run(options: argparse.Namespace) -> int:
     try:
         return _run(options)
-    except PlatformError as error:  # its words are for an agent; here another option names the index
+    except PlatformError as error:  # its message is for an agent; here a different option names the index
         said = str(error).removeprefix("genqa: ").replace("--set genqa.index=", "--index ")
         raise PlatformError(said) from error
 
@@ -76,7 +76,7 @@ def _run(options: argparse.Namespace) -> int:
 
 
 def _settings(index: str | None) -> Settings:
-    """Return the module's settings, as in an agent without a file."""
+    """Return the module's settings, as for an agent without a file."""
     from ravestate.modules.skill import genqa
     from ravestate.settings import load_settings
 
@@ -125,7 +125,7 @@ def _collected(found: Found, index: Index) -> Iterator[Outcome]:
 
         def reading(path: Path, number: int) -> None:
             bar.set_postfix_str(f"{path.name[-40:]}, part {number + 1}", refresh=False)
-            bar.update(0)  # draws now and then
+            bar.update(0)  # redraws now and then
 
         for outcome in collect(found, index, reading):
             bar.update(sizes.get(outcome.path, 0))

@@ -10,10 +10,10 @@ from ravestate.cli import agent, complete
 from ravestate.errors import UsageError, nearest
 
 SUFFIXES = {".svg": "svg", ".dot": "dot", ".gv": "dot", ".mmd": "mermaid", ".mermaid": "mermaid"}
-"""The format of an output file by the end of its name."""
+"""The format for each ending of an output file's name."""
 
 LARGE = 40
-"""Rules from which the diagram folds by itself: with more, no text is legible on a screen."""
+"""The number of rules above which modules fold automatically: with more, text is too small to read on a screen."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

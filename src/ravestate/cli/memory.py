@@ -38,7 +38,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_place(parser: argparse.ArgumentParser, *, later: bool = False) -> None:
-    """Add the options that choose a memory. `later`: behind an action; they keep the values given before it."""
+    """Add the options that choose a memory. `later` means that they follow an action, and keep earlier values."""
     default = argparse.SUPPRESS if later else None
     parser.add_argument(
         "--path",
@@ -153,8 +153,8 @@ def _export(memory: Memory, options: argparse.Namespace) -> int:
     target = Path(options.to)
     new = target.with_name(target.name + ".new")
     try:
-        new.unlink(missing_ok=True)  # others may read one that is left from before
-        new.touch(mode=0o600)  # the document is about people
+        new.unlink(missing_ok=True)  # a file that is left from before may be public
+        new.touch(mode=0o600)  # the document has personal data
         new.write_text(text, encoding="utf-8")
         new.replace(target)
     except OSError as error:
@@ -171,7 +171,7 @@ def _load(memory: Memory, options: argparse.Namespace) -> int:
     except OSError as error:
         raise UsageError(f"cannot read {options.document}: {error.strerror}") from None
     except ValueError as error:
-        raise UsageError(f"{options.document} is no JSON: {error}") from None
+        raise UsageError(f"{options.document} is not JSON: {error}") from None
     print(f"loaded {memory.load(document).result()}")
     return 0
 

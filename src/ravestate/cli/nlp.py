@@ -56,7 +56,7 @@ def _lines() -> Iterator[str]:
             if line.strip():
                 yield line.rstrip("\n")
     except UnicodeDecodeError as error:
-        raise UsageError(f"standard input is no UTF-8 text: {error}") from None
+        raise UsageError(f"standard input is not UTF-8 text: {error}") from None
 
 
 def _table(seen: Analysis) -> str:

@@ -48,15 +48,15 @@ def keywords(*options: str) -> Callable[[Callable[P, R]], Callable[P, R]]:
 
 
 def check_name(name: object, what: str) -> None:
-    """Refuse a name that is no word; `what` names the declaration in the message."""
+    """Refuse a name that is not a word; `what` names the declaration in the message."""
     if not isinstance(name, str) or not name.replace("-", "_").isidentifier():
         raise DeclarationError(
-            f"{what}: {name!r} is no name: use letters, digits, '_' and '-', beginning with a letter"
+            f"{what}: {name!r} is not a name: use letters, digits, '_' and '-', beginning with a letter"
         )
 
 
 def check_options(keep: object = "all", limit: object = 1, *, what: str) -> None:
-    """Refuse values of `keep` and `limit` that a signal cannot have."""
+    """Refuse invalid values of `keep` and `limit`."""
     if keep not in ("all", "latest"):
         raise DeclarationError(f"{what}: keep={keep!r}: write keep='all' or keep='latest'")
     if not isinstance(limit, int) or limit < 1:
@@ -71,7 +71,7 @@ def check_function(function: object, title: str, *, named: bool, where: str, dec
         title: The rule's name within its module: given, or the function's own.
         named: Whether the name was given.
         where: The rule and its place, for messages.
-        decorator: The decorator as it is typed, for messages.
+        decorator: The decorator as the user types it, for messages.
     """
     if isinstance(function, Rule):
         raise DeclarationError(
@@ -93,7 +93,7 @@ def check_function(function: object, title: str, *, named: bool, where: str, dec
 
 
 def condition(value: object, what: str, where: str, home: str) -> Condition:
-    """Return a condition, or refuse a value that is none.
+    """Return a condition, or refuse any other value.
 
     Args:
         value: The value.
@@ -105,19 +105,20 @@ def condition(value: object, what: str, where: str, home: str) -> Condition:
         slot = cast("Slot[Any]", value)
         raise DeclarationError(f"{where}: {what}={slot!r} is a slot: write {what}={spelt(slot.name, home)}.changed")
     if not isinstance(value, Condition):
-        raise DeclarationError(f"{where}: {what}={value!r} is no condition: combine signals with & and |")
+        raise DeclarationError(f"{where}: {what}={value!r} is not a condition: combine signals with & and |")
     return value
 
 
 def number(value: object, what: str, where: str) -> Number:
     """Return a number as a float, or a setting as it is; refuse any other value."""
     if isinstance(value, bool) or not isinstance(value, type_of_number):
-        raise DeclarationError(f"{where}: {what}={value!r} is no number; write {what}=1.0 or a setting")
+        raise DeclarationError(f"{where}: {what}={value!r} is not a number; write {what}=1.0 or a setting")
     return value if isinstance(value, SettingRef) else float(value)
 
 
 def several(values: Any, kind: type[T], what: str, where: str, home: str) -> tuple[T, ...]:
-    """Return one slot or signal, or an iterable of them, as a tuple without doubles; arguments as for `condition`."""
+    """Return one slot or signal, or an iterable of them, as a tuple without duplicates; the arguments are those of
+    `condition`."""
     if isinstance(values, kind):
         return (values,)
     try:
@@ -132,5 +133,5 @@ def several(values: Any, kind: type[T], what: str, where: str, home: str) -> tup
             elif isinstance(value, Slot):
                 name = cast("Slot[Any]", value).name
                 hint = f": a write raises its signals; write writes={spelt(name, home)}"
-            raise DeclarationError(f"{where}: {what}={value!r} is no {kind.__name__.lower()}{hint}")
+            raise DeclarationError(f"{where}: {what}={value!r} is not a {kind.__name__.lower()}{hint}")
     return tuple(dict.fromkeys(found))

@@ -80,10 +80,11 @@ class Constraint(Condition):
         """Accept a spike only if ``predicate(payload)`` is true. Adds ln 2 to the utility (L9).
 
         Args:
-            predicate: A plain, quick function. The loop calls it for each spike that it offers to the rule.
+            predicate: A plain function, which should be fast. The loop calls it for each spike that it offers to the
+                rule.
 
         Raises:
-            DeclarationError: The predicate is no function, or an asynchronous one.
+            DeclarationError: The predicate is not a function, or an asynchronous one.
 
         Example:
             >>> import ravestate as rs
@@ -105,7 +106,7 @@ class Constraint(Condition):
 
 @dataclass(frozen=True, slots=True, repr=False)
 class Holds(Condition):
-    """A predicate on a slot's present value. It gates a rule without a spike (L4)."""
+    """A predicate on a slot's current value. It gates a rule without a spike (L4)."""
 
     slot: Slot[Any]
     predicate: Predicate
@@ -138,7 +139,7 @@ def checked_predicate(predicate: object, what: str, of: str) -> Predicate:
     A call of an asynchronous function or a generator only makes an object, which is always true.
 
     Raises:
-        DeclarationError: The predicate is no function, an asynchronous one, or a generator.
+        DeclarationError: The predicate is not a function, an asynchronous one, or a generator.
     """
     if not callable(predicate):
         raise DeclarationError(f"{what}({predicate!r}): expected a function of the {of}")
@@ -165,7 +166,7 @@ def _checked(condition: Condition, other: object, operator: str) -> Condition:
         hint = ""
         if hasattr(other, "changed"):
             home = str(condition).lstrip("(").partition(":")[0]
-            hint = f"; a slot is no signal: write {operator} {spelt(getattr(other, 'name', 'slot'), home)}.changed"
+            hint = f"; a slot is not a signal: write {operator} {spelt(getattr(other, 'name', 'slot'), home)}.changed"
         raise DeclarationError(
             f"cannot combine condition {condition} with {other!r} by {operator} ({place_of_call()}){hint}"
         )
@@ -181,7 +182,7 @@ def _age(seconds: object, what: str) -> Number:
 
 
 def _written(condition: Condition) -> str:
-    """Return a condition as code, whatever its depth."""
+    """Return a condition of any depth as code."""
     words: list[str] = []
     stack: list[Condition | str] = [condition]
     while stack:

@@ -36,8 +36,8 @@ class Module:
 
     Args:
         name: Letters, digits, ``_`` and ``-``; the first part of all its qualified names.
-        requires: Modules whose signals and slots this one uses: `Module` values, or Python modules that
-            hold one (``from ravestate.modules import rawio``).
+        requires: Modules whose signals and slots this one uses: `Module` values, or Python modules that contain one
+            (``from ravestate.modules import rawio``).
         settings: A subclass of ``rs.Settings`` with the values that a user may configure.
         serve: An async function, for platforms that serve many users at once. ``rs.run`` calls it with the `Agent`
             instead of running one context. It makes a context for each user, and ends when it is cancelled.
@@ -130,14 +130,16 @@ class Module:
 
     @keywords(*SlotOptions.__annotations__)
     def flag(self, name: str, default: bool = False, **options: Unpack[SlotOptions]) -> Flag:
-        """Declare a boolean slot; its signals are ``.changed``, ``.true``, ``.false``. Arguments as for `slot`."""
+        """Declare a boolean slot; its signals are ``.changed``, ``.true``, ``.false``. The arguments are those of
+        `slot`."""
         flag = Flag(self._qualified("flag", name, options), default, origin=place_of_call(), **options)
         self.slots.append(flag)
         return flag
 
     @keywords(*SignalOptions.__annotations__)
     def collection(self, name: str, **options: Unpack[SignalOptions]) -> Collection[Any]:
-        """Declare keyed items; the signals are ``.added``, ``.removed``, ``.changed``. Arguments as for `slot`."""
+        """Declare keyed items; the signals are ``.added``, ``.removed``, ``.changed``. The arguments are those of
+        `slot`."""
         qualified = self._qualified("collection", name, options)
         collection: Collection[Any] = Collection(qualified, origin=place_of_call(), **options)
         self.slots.append(collection)
@@ -165,7 +167,8 @@ class Module:
         background: bool = False,
         name: str | None = None,
     ) -> Callable[[Callable[P, R]], Rule[P, R]]:
-        """Turn a function of the rule context into a rule: ``async def`` runs on the loop, a plain one in a thread.
+        """Turn a function of the rule context into a rule. An ``async def`` runs on the loop, a plain function in a
+        thread.
 
         Args:
             when: The condition: signals, combined with ``&`` and ``|``.
@@ -173,7 +176,7 @@ class Module:
             writes: The slot or slots that it may write and read. Rules that write one slot for the same cause exclude
                 each other (L10).
             emits: The signal or signals that it may emit.
-            weight: Factor on the utility (L9), above 0.
+            weight: Factor that multiplies the utility (L9), above 0.
             cooldown: Seconds over which the utility recovers from 0 after a run (L9).
             patience: Seconds that the rule has to become ready while others wait for it (L16); the context's by default.
             until: A condition that interrupts a run (L21).
@@ -217,7 +220,7 @@ class Module:
 
 
 def as_module(value: object) -> Module:
-    """Return the `Module` that a value stands for: itself, or the one that a Python module holds as ``module``.
+    """Return the `Module` that a value denotes: the value itself, or the ``module`` of a Python module.
 
     Raises:
         DeclarationError: The value is neither.

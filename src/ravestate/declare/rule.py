@@ -19,17 +19,18 @@ R = TypeVar("R")
 
 @dataclass(eq=False, repr=False)
 class Rule(Generic[P, R]):
-    """A function with its declaration, made by ``@module.rule(...)``. A call of the rule calls the function.
+    """A function with its declaration, made by ``@module.rule(...)``. Calling the rule calls the function.
 
     Attributes:
         name: The qualified name, ``module:function``.
         function: The function.
-        is_async: Whether the function is a coroutine function. It runs on the loop, a plain one in a worker thread.
+        is_async: Whether the function is a coroutine function. Coroutine functions run on the loop, plain functions in
+            a worker thread.
         when: The condition.
         reads: The slots whose values the function may read.
         writes: The slots that the function may write and read. Rules that write one slot exclude each other (L10).
         emits: The signals that the function may emit.
-        weight: Factor on the utility (L9), above 0.
+        weight: Factor that multiplies the utility (L9), above 0.
         cooldown: Seconds over which the utility recovers from 0 after a run (L9).
         patience: Seconds that the rule has to become ready while others wait for it (L16); ``None`` for the context's.
         until: A condition that interrupts a run (L21).

@@ -1,6 +1,6 @@
 """A reference to a setting in a declaration; a context looks the value up when it starts.
 
-The `Settings` model is in ``ravestate/settings.py``: it needs pydantic, and the pure rooms use no third party.
+The `Settings` model is in ``ravestate/settings.py``: it needs pydantic, and the pure packages use no third-party code.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class SettingRef:
-    """The name of a numeric setting, and the settings class that has it, if known."""
+    """The name of a numeric setting, and the settings class that defines it, if known."""
 
     name: str
     owner: type | None = None

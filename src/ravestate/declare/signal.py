@@ -21,10 +21,10 @@ class SignalOptions(TypedDict, total=False):
     """The options of a signal; a collection gives them to each of its signals.
 
     Attributes:
-        input: Whether it may also come from outside although a rule raises it (L8). A signal that no rule raises is
-            an input anyway.
+        input: Whether code outside may raise it even though a rule does (L8). A signal that no rule raises is an input
+            anyway.
         keep: ``"all"``; or ``"latest"``: a new spike withdraws the older ones (L20).
-        limit: The greatest number of live spikes, 100,000 by default. Beyond it the oldest is dropped (L23).
+        limit: The maximum number of live spikes, 100,000 by default. If there are more, the oldest is dropped (L23).
     """
 
     input: bool
@@ -39,9 +39,9 @@ class Signal(Condition, Generic[T]):
     Attributes:
         name: The qualified name, ``module:name``.
         payload: The payload's type. None if there is no payload, and for a slot's signal, whose payload is the slot's.
-        input: Whether it may come from outside although a rule raises it too (L8).
+        input: Whether code outside may raise it even though a rule does (L8).
         keep: ``"all"`` or ``"latest"``.
-        limit: The greatest number of live spikes.
+        limit: The maximum number of live spikes.
         origin: The place of the declaration, ``file:line``.
     """
 

@@ -21,7 +21,7 @@ class SlotOptions(SignalOptions, total=False):
     """The options of a value slot and of a flag.
 
     Attributes:
-        always: Whether a write of an equal value signals too: an utterance may occur twice.
+        always: Whether writing an equal value also raises the signals: an utterance may occur twice.
     """
 
     always: bool
@@ -42,7 +42,7 @@ class Slot(Generic[T]):
         default: The value before the first write; each context gets a copy of its own.
         type: The type that `isinstance` checks at each write; None checks nothing.
         declared: The type as the designer wrote it, such as ``list[int]``; None if there is none.
-        always: Whether a write of an equal value signals too.
+        always: Whether writing an equal value also raises the signals.
         signals: All signals of the slot, `changed` first.
         origin: The place of the declaration, ``file:line``.
     """
@@ -106,7 +106,7 @@ class Slot(Generic[T]):
 
     def __and__(self, other: object) -> NoReturn:
         raise DeclarationError(
-            f"slot {self.name} ({place_of_call()}) is no condition: write .changed (its signal) or .holds(predicate)"
+            f"slot {self.name} ({place_of_call()}) is not a condition: write .changed (its signal) or .holds(predicate)"
         )
 
     __or__ = __rand__ = __ror__ = __and__
@@ -116,7 +116,8 @@ class Slot(Generic[T]):
 
 
 def checkable(kind: Any) -> Any:
-    """Return a type for `isinstance`, or None for a type that it does not know. A float slot takes integers too."""
+    """Return a type for `isinstance`, or None for a type that `isinstance` cannot check. A float slot takes integers
+    too."""
     if kind is float:
         kind = int | float
     try:
@@ -139,7 +140,7 @@ class Flag(Slot[bool]):
 class Collection(Slot[Mapping[str, V]]):
     """Items by key, with the signals ``.added``, ``.removed`` and ``.changed`` (payload: an `Entry`).
 
-    Every change raises ``changed``, as for any slot. A new key raises ``added``, a key that goes ``removed``.
+    Every change raises ``changed``, as for any slot. A new key raises ``added``, and a removed key raises ``removed``.
     """
 
     __slots__ = ("added", "removed")

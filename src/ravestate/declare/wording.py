@@ -8,11 +8,11 @@ LENGTH = 60
 """Characters of a value that a message shows."""
 
 HERE = __file__.removesuffix("wording.py")
-CORE = HERE + "core.py"  # the one file here that declares something
+CORE = HERE + "core.py"  # the only file here that declares something
 
 
 def spelt(name: str, home: str = "") -> str:
-    """Return a qualified name as code of the module `home` spells it; there, its own names are variables.
+    """Return a qualified name as it appears in code of the module `home`, where the module's own names are variables.
 
     Example:
         >>> spelt("rawio:input:changed", "guide"), spelt("guide:face", "guide"), spelt("core:error", "guide")
@@ -25,7 +25,7 @@ def spelt(name: str, home: str = "") -> str:
 
 
 def place_of_call() -> str:
-    """Return the place of the nearest caller outside of this folder, as ``file:line``."""
+    """Return the place of the nearest caller outside this folder, as ``file:line``."""
     frame = sys._getframe(1)  # pyright: ignore[reportPrivateUsage]  # messages name the line of the mistake
     while frame.f_back is not None and frame.f_code.co_filename.startswith(HERE):
         if frame.f_code.co_filename == CORE:
@@ -38,7 +38,7 @@ def shown(value: object) -> str:
     """Return the `repr` of a value. If its own code fails, return its type."""
     try:
         return repr(value)
-    except Exception:  # a value's own code may raise anything, and the message about it still has to appear
+    except Exception:  # a value's own code may raise anything, and the message must still appear
         return f"<{type(value).__name__} without a repr>"
 
 

@@ -1,4 +1,4 @@
-"""Signal-Rule-Slot diagrams in the paper's notation, as SVG, DOT or Mermaid, without any third party.
+"""Signal-Rule-Slot diagrams in the paper's notation, as SVG, DOT or Mermaid, without third-party packages.
 
 `build` makes a diagram (`graph`) from rules, `fold` folds modules, `layout` places the nodes and lines, and `svg`, `dot`
 and `mermaid` write text.

@@ -17,7 +17,7 @@ Extent = tuple[float, float]
 """Width and height in pixels."""
 
 _SCREEN = 720.0  # pixels: a picture of this height fits a screen, however narrow it is
-_TALLEST = 1.2  # least width : height
+_TALLEST = 1.2  # minimum width : height
 _ASPECT = 1.6  # wished width : height
 _SPLITS = 16
 

@@ -14,11 +14,11 @@ from ravestate.draw.acyclic import topological
 from ravestate.draw.layered import LayeredGraph, places
 
 _GAPS = {(True, True): 16.0, (True, False): 12.0, (False, True): 12.0, (False, False): 9.0}
-"""Least pixels between two neighbours of a layer; `False` stands for a dummy vertex."""
+"""Minimum pixels between two neighbours of a layer; `False` stands for a dummy vertex."""
 
 
 def separation(graph: LayeredGraph, upper: int, lower: int) -> float:
-    """Return the least distance in pixels between the middles of two neighbours of a layer."""
+    """Return the minimum distance in pixels between the middles of two neighbours of a layer."""
     solid = (graph.kind[upper] != "dummy", graph.kind[lower] != "dummy")
     return (graph.height[upper] + graph.height[lower]) / 2 + _GAPS[solid]
 

@@ -1,8 +1,8 @@
 """From declared rules to a diagram.
 
-The diagram has the slots and signals that some rule names, and no others. A slot emits those of its signals that have a
-listener. Conditions are in disjunctive normal form, since a rule fires by one clause at a time (L5). Several constraints
-of a clause meet in a conjunction, several clauses in a disjunction.
+The diagram has only the slots and signals that some rule names. It shows a slot's signals only if they have a listener.
+Conditions are in disjunctive normal form, since a rule fires by one clause at a time (L5). Several constraints of a
+clause meet in a conjunction, several clauses in a disjunction.
 """
 
 from __future__ import annotations

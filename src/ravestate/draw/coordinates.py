@@ -21,7 +21,7 @@ def assign_coordinates(graph: LayeredGraph, room: float | None = None) -> list[f
 
     Args:
         graph: A graph with ordered layers and placed ports.
-        room: The greatest height of the picture in pixels, unless its largest layer needs more; ``None`` for any height.
+        room: The maximum height of the picture in pixels, unless its largest layer needs more; ``None`` for any height.
     """
     candidates = [relax(graph, spread, room) for spread in _SPREADS]
     if room is None:

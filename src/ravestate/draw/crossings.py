@@ -30,7 +30,7 @@ def minimise_crossings(graph: LayeredGraph, *, centred: bool = False) -> None:
         after = [_dummies_centred(graph, vertices) for vertices in after]
     sweeps = max(4, min(24, _WORK // (1 + len(graph.segments))))
     best = graph.order
-    least = count_crossings(best, after) + 1  # an initial order wins against the order of creation
+    least = count_crossings(best, after) + 1  # a better initial order replaces the order of creation
     for downwards in (True, False):
         order, crossed = _sweep(_start(graph, before, after, downwards), before, after, sweeps)
         if crossed < least:

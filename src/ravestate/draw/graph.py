@@ -35,7 +35,7 @@ class Node:
 
 @dataclass(frozen=True, slots=True)
 class Edge:
-    """An arrow from `source` to `target`, both ids of nodes, with a few words beside it or none."""
+    """An arrow from `source` to `target` (both are ids of nodes), perhaps with a few words beside it."""
 
     source: str
     target: str
@@ -67,6 +67,6 @@ class Diagram:
         for edge in self.edges:
             for end in (edge.source, edge.target):
                 if end not in ids:
-                    raise ValueError(f"{edge} ends at {end!r}, which is no node of the diagram")
+                    raise ValueError(f"{edge} ends at {end!r}, which is not a node of the diagram")
             if edge.source == edge.target:
                 raise ValueError(f"{edge} ends where it began")

@@ -6,7 +6,7 @@ from ravestate.draw.layered import LayeredGraph, places
 
 _PITCH = 10.0  # pixels between ports of one side, where there is room
 _MARGIN = 10.0  # pixels from the first and last port to the corner, which is sometimes round
-_LEAST = 3.0  # least pixels between ports; with less room they coincide, except for lines of the other direction
+_LEAST = 3.0  # minimum pixels between ports; with less room they coincide, except for lines of the other direction
 
 
 def place_ports(graph: LayeredGraph) -> None:

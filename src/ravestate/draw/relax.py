@@ -1,8 +1,8 @@
 """Coordinates that keep lines short: each layer in turn moves as near as possible to its neighbours.
 
-Within one layer, the best coordinates under least distances are a weighted isotonic regression, solved by pooling adjacent
-violators. Forward and backward sweeps repeat it for all layers. Crowded pictures become far more compact than with
-alignment, whose straight lines need empty space.
+Within one layer, the best coordinates under minimum distances are a weighted isotonic regression, solved by pooling
+adjacent violators. Forward and backward sweeps repeat it for all layers. Crowded pictures become far more compact than
+with alignment, because straight lines need empty space.
 """
 
 from __future__ import annotations
@@ -23,8 +23,8 @@ def relax(graph: LayeredGraph, spread: float, room: float | None = None) -> list
 
     Args:
         graph: A graph with ordered layers and placed ports.
-        spread: The least distances are multiplied by it.
-        room: The greatest height in pixels, unless the largest layer needs more; ``None`` for any height.
+        spread: A factor on the minimum distances.
+        room: The maximum height in pixels, unless the largest layer needs more; ``None`` for any height.
     """
     gaps: list[list[float]] = []
     middle = [0.0] * len(graph.layer)

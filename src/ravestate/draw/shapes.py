@@ -49,7 +49,7 @@ def outline(kind: NodeKind, box: Box) -> str:
 
 
 def heads(prefix: str) -> str:
-    """Return the definitions of the arrows' heads, one for each kind of edge; ids begin with `prefix`."""
+    """Return the definitions of the arrowheads, one for each kind of edge; ids begin with `prefix`."""
     found: list[str] = []
     for kind, style in EDGE_STYLES.items():
         shape = "M1 1L9 5L1 9" + ("" if style.head == "open" else "Z")

@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from ravestate.draw.acyclic import topological
 
 Arc = tuple[int, int, int, int]
-"""Tail, head, weight, and least length in layers."""
+"""Tail, head, weight, and minimum length in layers."""
 
 _SAMPLE = 30  # leaving arcs to compare before one is chosen
 _WORK = 2_000_000  # exchanges x vertices

@@ -16,7 +16,7 @@ LABEL = 10.5
 """Font size of an edge's label, pixels."""
 
 LONGEST = 250.0
-"""Pixels of the longest text; longer ones are shortened, and their title has the whole text."""
+"""The maximum width of a text in pixels; longer texts are cut, and their title has the whole text."""
 
 _JUNCTION = 22.0
 

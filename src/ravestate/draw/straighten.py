@@ -1,7 +1,7 @@
 """Remove small steps from lines that are almost straight.
 
-The average of four alignments is rarely one of them. Here, aligned vertices move together, and only into free space. They
-move if this straightens a line and makes no other line much longer.
+The average of four alignments is rarely aligned itself. Here, aligned vertices move together, and only into free space.
+They move if this straightens a line and makes no other line much longer.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """The width of a text, estimated without a font.
 
-The viewer picks the sans serif font. The widths here are those of a broad one, so that a text always fits into its box.
+The viewer picks the sans serif font. The widths here are those of a wide font, so that a text always fits into its box.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ def _unprintable(character: str) -> bool:
     code = ord(character)
     return (
         unicodedata.category(character) in ("Cc", "Cs", "Zl", "Zp")
-        or code & 0xFFFE == 0xFFFE  # no characters, by definition of Unicode
+        or code & 0xFFFE == 0xFFFE  # noncharacters, as Unicode defines them
         or 0xFDD0 <= code <= 0xFDEF
         or 0x202A <= code <= 0x202E
         or 0x2066 <= code <= 0x2069

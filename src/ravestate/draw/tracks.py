@@ -17,7 +17,7 @@ Segment = tuple[int, int, float, float]
 """The port on the left, the port on the right, and the y coordinates of both."""
 
 _NEAR = 5.0  # pixels: closer stubs look like one line
-_APART = 7.0  # pixels: least distance of two verticals on one track
+_APART = 7.0  # pixels: minimum distance of two verticals on one track
 _LEVEL = 0.01
 _TOUCHING = 4 * STRONG  # far above the sum of all crossings
 
@@ -120,7 +120,7 @@ def _offending(a: _Net, b: _Net, segments: Sequence[Segment], joined: set[tuple[
 
 
 def _cost(a: _Net, b: _Net, joined: set[tuple[int, int]]) -> int:
-    """Return the cost of `a` on the left of `b`."""
+    """Return the cost of putting `a` to the left of `b`."""
     cost = 0
     for p, y in b.left.items():
         if a.top < y < a.bottom and p not in a.left:

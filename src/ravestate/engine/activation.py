@@ -1,8 +1,8 @@
 """The life of an activation (L12, L14, L17, L18).
 
-An activation is a clause plus the spikes that it has acquired; once it has consent, it is the run of the rule.
-Every clause always has one more, in stand-by, that holds nothing. It has no state, so it is no object: an
-activation is made for the first spike that it takes.
+An activation is a clause plus the spikes that it has acquired. Once it has consent, it is a run of the rule. Every
+clause also has an activation in stand-by, which holds nothing. Stand-by needs no object: the engine creates one for the
+first spike.
 
 - `GATHERING`: it holds some of its spikes, or some are too young.
 - `READY`: it holds all, old enough, and asks for consent.
@@ -11,7 +11,7 @@ activation is made for the first spike that it takes.
 - `CANCELLING`: the engine has cancelled the function, which cleans up.
 - `ENDED`: it holds nothing.
 
-Any step that is not in the table of transitions is an error of the engine.
+A step that is not in the table of transitions is a bug in the engine.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from ravestate.policy.model import Clause
 
 NEVER = float("inf")
-"""A time that does not come."""
+"""A time that never comes."""
 
 
 class State(enum.IntEnum):
@@ -53,7 +53,7 @@ class Step(enum.IntEnum):
     END = 5  # finished, or gave up its last spike
 
 
-_G, _R, _W, _X, _C, _E = State  # short, so that the table reads as one
+_G, _R, _W, _X, _C, _E = State  # short names, to make the table readable
 TRANSITIONS: dict[tuple[State, Step], State] = {
     (_G, Step.COMPLETE): _R,
     (_G, Step.LOSE): _G,
@@ -73,7 +73,7 @@ TRANSITIONS: dict[tuple[State, Step], State] = {
 
 _TABLE = tuple(tuple(TRANSITIONS.get((state, step)) for step in Step) for state in State)
 
-# Reading an attribute of an enumeration costs more than the use of its value.
+# Reading an attribute of an enumeration costs more than using its value.
 GATHERING, READY, WAITING, RUNNING, CANCELLING, ENDED = State
 COMPLETE, LOSE, REFUSE, GRANT, CANCEL, END = Step
 
@@ -81,8 +81,7 @@ COMPLETE, LOSE, REFUSE, GRANT, CANCEL, END = Step
 class Activation:
     """A clause plus the spikes that it has acquired.
 
-    Most activations are given up before they run or wait. The attributes that only the others need are defaults on
-    the class.
+    Most activations end before they run or wait. Attributes that only the others need are defaults on the class.
 
     Attributes:
         id: A number that grows with age; also the number of its run.

@@ -106,7 +106,8 @@ class Agenda(Slots):
         return self._loops.runs > MANY and activation.state is READY and self._loops.defer(activation)
 
     def _claimed(self, activation: Activation) -> Activation | None:
-        """Return a run of the same rule on one of the same spikes: it alone excludes a rule without slots (L10)."""
+        """Return a run of the same rule on one of the same spikes. Only such a run excludes a rule without slots
+        (L10)."""
         for spike in activation.firm_spikes():
             if spike.claims is not None:
                 other = spike.claims.get(activation.clause.rule.index)
@@ -115,7 +116,7 @@ class Agenda(Slots):
         return None
 
     def _guarded(self, activation: Activation) -> bool:
-        """Return whether the predicates on slots hold; if not, the activation is ready no longer."""
+        """Return whether the predicates on slots hold; if not, the activation is no longer ready."""
         clause = activation.clause
         if not all(self.holds(s, g, clause.rule) for s, g in clause.guards):
             self._horizon = None
@@ -157,7 +158,7 @@ class Agenda(Slots):
                 continue
             rule = clause.rule
             if rule.cooldown and (turn := self._turn(activation)) > entry[:4]:
-                heapq.heappush(queue, (*turn, activation))  # its rule has run meanwhile, and recovers
+                heapq.heappush(queue, (*turn, activation))  # its rule has run meanwhile, and is recovering
                 continue
             if written and not rule.readable.isdisjoint(written):
                 if self._is_taken(activation):
@@ -208,7 +209,7 @@ class Agenda(Slots):
         return False
 
     def _refuse(self, activation: Activation, refusal: Refusal) -> None:
-        """Let an activation wait."""
+        """Make an activation wait."""
         activation.step(REFUSE)
         self._lose_interest(activation)
         self.waiting[activation] = self._refused[activation] = None
@@ -237,7 +238,8 @@ class Agenda(Slots):
         return max(times, default=None)
 
     def _press(self, group: Group, rival: Clause, member: Activation | None, by: Activation) -> None:
-        """Put a rival under pressure, unless it is already: an activation, or (None) the clause in stand-by (L16)."""
+        """Put a rival under pressure, unless it already is (L16). The rival is an activation, or (None) the clause in
+        stand-by."""
         patience = self.patience if rival.rule.patience is None else rival.rule.patience
         until = self.now + patience
         if member is not None:
@@ -258,7 +260,8 @@ class Agenda(Slots):
             self.tracer(trace.Pressed(self.now, rival.rule.name, by.clause.rule.name, lacks, until))
 
     def _pressed_for_nothing(self, rival: Activation) -> bool:
-        """Return whether a rival may stay at the end of its patience: no activation waits for it, or it is sure (L16)."""
+        """Return whether a rival survives the end of its patience: no activation waits for it, or it is certain to
+        become ready (L16)."""
         slots = rival.clause.rule.slotset
         groups = rival.firm_groups()
         waited = any(
@@ -337,7 +340,7 @@ class Agenda(Slots):
 
 
 def _endless(rules: Sequence[RulePlan]) -> str:
-    """Return the message about a loop without an end."""
+    """Return the message about an endless loop."""
     names = ", ".join(rule.name for rule in rules)
     whom = "each other" if len(rules) > 1 else "itself"
     return (

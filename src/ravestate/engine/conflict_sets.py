@@ -1,10 +1,10 @@
-"""Conflict sets: clauses that the same spike makes ready, while only one of them can run.
+"""Conflict sets: clauses that the same spike makes ready, although only one of them can run.
 
 A thousand rules on one signal that write one slot would be a thousand activations: one runs, and the rest give up. So
 only the best clause gets an activation; the other clauses are its queue of alternatives. If it resigns or fails, the
 next clause takes its place. The queue is *unfolded* into ordinary activations where it could make a difference: to
 judge a rival, to explain something, to retire or add a rule. The number of each activation is fixed from the start, so
-nothing depends on the moment of the unfolding.
+it does not matter when a queue unfolds.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ class ConflictSets(Holdings):
     """The holdings, and the queues of alternatives."""
 
     def unfold(self, activation: Activation) -> None:
-        """Make the activations of all alternatives of one."""
+        """Create the activations for all alternatives of one activation."""
         clauses, made, base = self.alternatives.pop(activation)
         spike = activation.spikes[0]
         assert spike is not None  # it is ready, or runs
@@ -27,7 +27,7 @@ class ConflictSets(Holdings):
             self._activate(clauses[position], base + position + 1, spike)
 
     def unfold_all(self) -> None:
-        """Make the activations of all alternatives."""
+        """Create the activations for all alternatives."""
         for activation in list(self.alternatives):
             self.unfold(activation)
 

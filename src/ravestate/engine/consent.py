@@ -1,6 +1,6 @@
 """Consent (L15): whether a ready activation may run now, and if not, which activations it waits for.
 
-A group refuses while one of the activation's slots is taken in it, or while a rival stands. A rival is another clause
+A group refuses while one of the activation's slots is taken in it, or while there is a rival. A rival is another clause
 that writes one of these slots with greater effective utility. It has a stake in the group, and is still viable there.
 A rival with a stake holds a spike of the group, or is in stand-by, downstream of a live rule of the group.
 """
@@ -99,7 +99,7 @@ def _rivals(engine: Engine, activation: Activation, group: Group) -> Iterator[tu
     worth = engine.effective(clause)
     seen: set[Clause] = {clause}
     rules: dict[RulePlan, None] = {}
-    for member in tuple(group.members):  # judging one may unfold alternatives
+    for member in tuple(group.members):  # judging a rival may unfold alternatives
         theirs = member.clause
         rules[theirs.rule] = None
         if theirs is clause or theirs.rule.slotset.isdisjoint(slots) or member.state >= RUNNING:
@@ -139,13 +139,13 @@ def _crossing(engine: Engine, mine: Clause, theirs: Clause) -> float:
 def stalemate(engine: Engine, refused: Iterable[Activation]) -> Activation | None:
     """Return the best of the activations that wait only for each other, if there are any.
 
-    Two ready rules may each wait for a rival that the other might bring about. Nothing would ever move them, so the
-    one of greater effective utility, or else the first declared, goes first.
+    Two ready rules may each wait for a rival that the other might bring about. They would wait for ever, so the one
+    with the greater effective utility goes first, or else the one declared first.
 
     Args:
         engine: The engine.
         refused: The activations that were refused since the last search. A new stalemate contains at least one of
-            them, and each of its members is reached from one of them over its blockers.
+            them, and the chains of blockers lead from these activations to all of its members.
     """
     stuck: dict[Activation, None] = {}
     reached = [activation for activation in refused if activation in engine.waiting]

@@ -22,7 +22,7 @@ class Kind(enum.IntEnum):
     WATCH = 7  # the spikes of an `until` are old enough
 
 
-# Reading an attribute of an enumeration costs more than the use of its value.
+# Reading an attribute of an enumeration costs more than using its value.
 RIPEN, RECHECK, PATIENCE, STANDBY, EXPIRE, FORGET, TIMEOUT, WATCH = Kind
 
 Entry = tuple[float, Kind, int, Any]

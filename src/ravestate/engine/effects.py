@@ -19,7 +19,7 @@ class Run:
         run: The number of the run, which every event of the run carries.
         rule: The rule.
         payloads: The payload of each signal that it holds, by qualified name.
-        values: The present values of the slots that it may read (L13), by qualified name.
+        values: The current values of the slots that it may read (L13), by qualified name.
     """
 
     run: int
@@ -38,7 +38,7 @@ class Cancel:
 
 @dataclass(slots=True)
 class Failed:
-    """Log the failure of a rule, once, with its traceback."""
+    """Log a rule's failure once, with its traceback."""
 
     rule: str
     exception: BaseException

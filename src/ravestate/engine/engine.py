@@ -72,11 +72,11 @@ class Engine(Agenda):
             self.now = now
         handler = HANDLERS.get(type(event))
         if handler is None:
-            raise EngineError(f"{event!r} is no event: see ravestate.engine.events")
+            raise EngineError(f"{event!r} is not an event: see ravestate.engine.events")
         handler(self, event)
 
     def advance(self, now: float) -> None:
-        """Let time pass until `now`, deadline by deadline. A second call, or a call too early, changes nothing."""
+        """Let time pass until `now`, deadline by deadline. A repeated or early call changes nothing."""
         entry = self._deadlines.pop(now)
         while entry is not None:
             self.now = max(self.now, entry[0])
@@ -90,7 +90,7 @@ class Engine(Agenda):
 
     @property
     def late_turns(self) -> int:
-        """The number of further turns that loops have had in this instant behind all other ready rules (L23)."""
+        """The number of extra turns that loops have had in this instant, after all other ready rules (L23)."""
         return self._loops.late
 
     def effects(self) -> list[Effect]:
@@ -220,7 +220,7 @@ class Engine(Agenda):
             )
         elif told and outcome != "failed":
             outcome = told if outcome != "retired" else outcome
-        # A run that is wiped before it wrote has answered nothing: others may answer the spikes that are left.
+        # A run that is wiped before it wrote anything has answered nothing: others may answer the remaining spikes.
         unheard = told == "wiped" and not run.wrote
         fired = (outcome not in ("resigned", "failed") and not unheard) or run.wrote or told == "interrupted"
         if rule.cooldown and fired:
@@ -264,7 +264,7 @@ class Engine(Agenda):
     def _collection(self, name: str) -> SlotPlan:
         slot = self._slot(name)
         if not slot.is_collection:
-            raise EngineError(f"{name} is no collection: use Write({name!r}, value)")
+            raise EngineError(f"{name} is not a collection: use Write({name!r}, value)")
         return slot
 
     def _run(self, number: int | None) -> Activation | None:
@@ -314,9 +314,9 @@ class Engine(Agenda):
         self._give_up(run, spikes, "resigned")
 
     def _give_up(self, run: Activation, spikes: tuple[Spike, ...], reason: str) -> None:
-        """Let the rule give spikes up for good, in all its other activations."""
+        """Make the rule give up spikes for good, in all its other activations."""
         rule = run.clause.rule
-        for spike in spikes:  # all of them first: an activation that loses one looks for others at once
+        for spike in spikes:  # mark all of them first: an activation that loses one looks for others at once
             if spike.claims is not None and rule.index in spike.claims:
                 spike.claims[rule.index] = None
             spike.refuse(rule.index)
@@ -337,7 +337,7 @@ class Engine(Agenda):
     # ------------------------------------------------------------------------------------ deadlines
 
     def _due(self, entry: Entry) -> None:
-        """Handle a deadline that falls due."""
+        """Handle a deadline that is due."""
         time, kind, _, owner = entry
         if kind is EXPIRE:
             self._expire(owner, time)

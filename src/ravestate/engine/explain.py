@@ -61,8 +61,8 @@ class Explanation:
         retired: Whether the rule has left the context.
         clauses: Its clauses.
         activations: Its live activations.
-        missing: A sentence for each of its signals that the trace lacks: the rules that may raise it, and how each ended
-            last. Empty without a trace.
+        missing: A sentence for each of its signals that the trace lacks: the rules that may raise it, and how each one
+            last ended. Empty without a trace.
         history: Its latest records in the trace, as text. Empty without a trace.
     """
 
@@ -163,7 +163,7 @@ def _activation(engine: Engine, activation: Activation) -> ActivationState:
 
 
 def words_of(record: Record, others: str = "", behind: str = "") -> str:
-    """Say what a record means for its rule; empty for a record without one.
+    """Say what a record means for its rule; empty for a record without a rule.
 
     `others` describes the rules that it waits for, and `behind` is the rule that raised the answering rule's input.
     """
@@ -198,7 +198,7 @@ def why_given_up(lost: GaveUp, behind: str = "") -> str:
 
 
 def without(rule: str, ended: Settled) -> str:
-    """Say that a run ended and had not raised the signal in question."""
+    """Say that a run ended without raising the signal in question."""
     return f"{rule} {Outcome.say(ended.outcome)} without raising it, at {seconds(ended.time)}"
 
 

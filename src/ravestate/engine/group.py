@@ -31,7 +31,7 @@ class Group:
         self.id = id
         self.into: Group | None = None  # the group that this one has merged into
         self.members: dict[Activation, int] = {}
-        # Most groups never need the following tables, so each is made at its first use.
+        # Most groups never need the following tables, so each one is created on first use.
         self.taken: Mapping[int, tuple[Activation, ...] | None] = NOTHING
         self.interested: Mapping[Activation, None] = NOTHING
         self.pressed: dict[int, float] | None = None
@@ -46,7 +46,7 @@ class Group:
         return group
 
     def take(self, slot: int, holders: tuple[Activation, ...] | None) -> None:
-        """Take a slot for a run (for several, if their groups have merged), or (None) for good."""
+        """Take a slot for a run, or (None) for good. Several runs may hold a slot if their groups have merged."""
         if self.taken is NOTHING:
             self.taken = {slot: holders}
         else:
@@ -82,7 +82,7 @@ class Group:
             self.interested[activation] = None  # type: ignore[index]  # as above
 
     def forget(self, activation: Activation) -> None:
-        """Forget an activation that waits no longer."""
+        """Forget an activation that no longer waits."""
         if activation in self.interested:
             self.interested.pop(activation)  # type: ignore[attr-defined]  # as above
 
@@ -93,7 +93,7 @@ class Group:
         self.eliminated.add(clause)
 
     def absorb(self, other: Group) -> None:
-        """Make `other` part of this group. A slot that is taken for good in either is so in both."""
+        """Make `other` part of this group. A slot that is taken for good in either group stays taken."""
         other.into = self
         for slot, holders in other.taken.items():
             mine = self.taken.get(slot, ())

@@ -1,4 +1,4 @@
-"""Holdings: activations take spikes and give them up, and become ready or end by it (L12, L14, L20, L23)."""
+"""Holdings: activations take spikes and give them up, and so become ready or end (L12, L14, L20, L23)."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ class Holdings(State):
                     return
 
     def _coherent(self, activation: Activation, need: Need, spike: Spike) -> bool:
-        """Return whether a spike is of the causal group in which the need's kin are met (L12)."""
+        """Return whether a spike is in the causal group that meets the related needs (L12)."""
         if need.kin == need.bit:
             return True
         held = activation.held(need.kin & ~need.bit)
@@ -92,7 +92,7 @@ class Holdings(State):
             )
 
     def _pass_by(self, clause: Clause, spike: Spike, reason: str) -> None:
-        """Trace that a rule hears the signal of a spike and does not take it."""
+        """Trace that a rule hears a spike's signal but does not take the spike."""
         if self.tracer is not None:
             rule = clause.rule
             by, run = spike.group.root().answer(rule.slots) if reason == "consumed" else ("", 0)
@@ -205,14 +205,14 @@ class Holdings(State):
         kin = 0
         for need in needs:
             kin |= need.kin
-        # A lost spike may have kept spikes of other groups out: its kin may find theirs now.
+        # The lost spike may have excluded spikes of other groups; related needs may now find theirs.
         for need in (*needs, *(n for n in clause.needs if n.bit & kin)):
             if need.bit & activation.missing:
                 self._rematch(activation, need)
         self._update(activation)
 
     def _stir(self, activation: Activation) -> None:
-        """Reconsider the activations that wait for this one, as it holds other spikes than before."""
+        """Reconsider the activations that wait for this one, because its spikes have changed."""
         for group in activation.firm_groups():
             if group.interested:
                 self._dirty[group] = None
@@ -227,7 +227,8 @@ class Holdings(State):
         self.gated.pop(activation, None)
 
     def _end(self, activation: Activation, reason: str = "", by: Activation | None = None) -> None:
-        """End an activation and leave nothing of it. With a `reason`, it counts as having given its spikes up."""
+        """End an activation and remove every reference to it. With a `reason`, it counts as having given its spikes
+        up."""
         before = activation.state
         activation.step(END)
         clause = activation.clause
@@ -267,7 +268,7 @@ class Holdings(State):
             self._busy -= 1
 
     def _lose_interest(self, activation: Activation) -> None:
-        """End the waiting of an activation: the groups that it was interested in concern it no longer."""
+        """Stop an activation from waiting: changes in its groups no longer concern it."""
         self.waiting.pop(activation, None)
         self._refused.pop(activation, None)
         self.hoping.pop(activation, None)
@@ -276,7 +277,7 @@ class Holdings(State):
         activation.interests = ()
 
     def _forget(self, spike: Spike) -> None:
-        """Remove a spike that nobody holds, unless detached needs may still look at it."""
+        """Remove a spike that no activation holds, unless detached needs may still look at it."""
         signal = spike.signal
         if signal.retain >= 0 and spike.born + signal.retain > self.now:
             if signal.retain != NEVER:
@@ -291,7 +292,7 @@ class Holdings(State):
             self._dirty[spike.group.root()] = None
 
     def _kill(self, spike: Spike, reason: str) -> None:
-        """Withdraw a spike (L20): activations give it up, but a run that stands on it keeps it."""
+        """Withdraw a spike (L20): activations give it up, but a run that started with it keeps it."""
         if self.tracer is not None:
             self.tracer(trace.Dropped(self.now, spike.id, spike.signal.name, reason))
         live = self.live.get(spike.signal.index)

@@ -12,7 +12,7 @@ A derivation has one of three strengths:
                  only patience bounds it
 ``NO``           nothing leads to the signal
 
-A rule that would take a slot of the rival's own cannot help it: in one group a slot is written once (L19).
+A rule that would take one of the rival's own slots cannot help it: in one group a slot is written once (L19).
 
 A derivation may be as deep as the policy has signals. So each of its steps is a generator, a `Step`: it yields the
 steps whose strengths it needs, and `_solve` keeps those that wait on a stack of its own.
@@ -68,7 +68,8 @@ class Horizon:
         return _solve(self._viable(clause, activation, group, slots))
 
     def judge(self, clause: Clause, activation: Activation | None, group: Group) -> tuple[int, dict[Activation, None]]:
-        """Return how viable a rival is, and on whose progress that depends. All that ask get the same answer."""
+        """Return how viable a rival is, and which activations that depends on. The answer does not depend on who
+        asks."""
         known = self._judged.get((clause, activation, group))
         if known is None:
             self.roots.clear()
@@ -89,7 +90,8 @@ class Horizon:
             missing = activation.missing
             if not missing:
                 self.roots.append(activation)  # it is ready, or will ripen
-        # For each need, or needs that one group must meet: how firmly this group may meet it, and how firmly anything.
+        # For each need, or set of needs that one group must meet: how firmly this group may meet it, and how firmly any
+        # may.
         here: list[int] = []
         best: list[int] = []
         answered = 0
@@ -112,7 +114,7 @@ class Horizon:
             here.append(mine)
             best.append(max(mine, other))
         strength = min(best, default=FIRM)
-        if activation is None:  # the group must meet one of them itself: help from elsewhere gives no stake
+        if activation is None:  # the group must meet one of them itself: help from elsewhere creates no stake
             strength = max(
                 (min(mine, *best[:k], *best[k + 1 :]) if len(best) > 1 else mine for k, mine in enumerate(here)),
                 default=NO,
@@ -137,7 +139,8 @@ class Horizon:
     def _kin(
         self, need: Need, activation: Activation | None, missing: int, group: Group, slots: Slots
     ) -> Generator[Any, int, tuple[int, int]]:
-        """Return how firmly this group, and any other, may meet needs that one group must meet together (L12)."""
+        """Return how firmly this group, and how firmly any group, may meet needs that one group must meet together
+        (L12)."""
         kin = [n for n in need.clause.needs if n.bit & need.kin & missing]
         held = activation.held(need.kin) if activation is not None else None
         home = group if held is None else held.group.root()
@@ -207,7 +210,7 @@ class Horizon:
             if best == FIRM:
                 break
         self._path.discard(signal)
-        if self._cuts == cuts:  # it does not depend on the way that led here
+        if self._cuts == cuts:  # the result does not depend on the path that led here
             self._known[signal, group, slots] = best, tuple(self.roots[mark:])
         return best
 

@@ -1,11 +1,12 @@
-"""Loops without an end (L23): rules that set each other off without time passing.
+"""Endless loops (L23): rules that trigger each other without time passing.
 
 An instant lasts until the engine has nothing left to do. After `MANY` runs in one instant the engine notes, for each
-new spike, which rules led to it. A run whose own rule led to it is a further turn of a loop. After `TURNS` of them in
-all, each further turn waits until nothing else is ready. A loop is named once it has had so many turns of its own.
+new spike, which rules led to it. If a run's own rule led to it, the run is another turn of a loop. After `TURNS` turns
+of all loops together, each further turn waits until nothing else is ready. The engine names a loop once it has had so
+many turns of its own.
 
-A rule that sets off two runs of itself makes one loop into thousands. So the turns of all loops count together. A turn
-is judged when it becomes ready, and again when it is to start: thousands may be ready by then.
+A rule that triggers two runs of itself turns one loop into thousands. So the turns of all loops count together. The
+engine judges a turn when it becomes ready, and again when it is to start: thousands may be ready by then.
 """
 
 from __future__ import annotations
@@ -26,12 +27,12 @@ MANY = 500
 """Runs in one instant that are not traced; most instants have fewer, so tracing costs them nothing."""
 
 TURNS = 500
-"""Further turns in one instant that go ahead like any other run: with the runs before, 1,000."""
+"""Turns in one instant that start like any other run; together with the runs before them, 1,000."""
 
 
 @dataclass(slots=True, eq=False)
 class Loop:
-    """All that one run has set off within an instant.
+    """All runs that one run has triggered within an instant.
 
     Attributes:
         instant: The number of the instant.
@@ -76,7 +77,7 @@ class Loops:
         self._instant += 1
 
     def defer(self, activation: Activation) -> bool:
-        """Put a ready activation off if it is one turn too many; return whether it is."""
+        """Defer a ready activation if it is one turn too many; return whether it is."""
         if self._turns < TURNS or activation is self._next:
             return False
         rule = activation.clause.rule.index

@@ -61,7 +61,7 @@ class Matching(ConflictSets):
     def _offer_again(self, group: Group) -> None:
         """Offer the spikes of a merged group again, oldest first: coherence kept some of them apart until now (L12).
 
-        As at its birth, a spike goes to the activations that are older than it, the oldest first.
+        As at its birth, a spike goes to the activations that are older than the spike, oldest first.
         """
         offers: list[tuple[int, int, int, Activation, Spike]] = []
         for activation in group.members:
@@ -96,7 +96,7 @@ class Matching(ConflictSets):
         self._spikes += 1
         source = 0 if run is None else run.id
         if run is not None and run.told == "wiped" and parents:
-            return  # the run stands on a wiped spike, and so would this one (L20)
+            return  # the run started with a wiped spike, so this spike is wiped too (L20)
         if self.tracer is not None:
             ids = tuple(parent.id for parent in parents)
             self.tracer(trace.Born(self.now, self._spikes, signal.name, group.id, ids, source, payload))
@@ -151,7 +151,7 @@ class Matching(ConflictSets):
                     self._stir(activation)
                     self._update(activation)
         if need.detached and clause.asks_detached:
-            return  # a detached need only looks: it begins no activation
+            return  # a detached need only looks: it starts no activation
         self._activations += 1
         activation = self._new_activation(clause, self._activations)
         self._acquire(activation, need, spike)
@@ -180,7 +180,7 @@ class Matching(ConflictSets):
                     self._judge(watch)
 
     def _unwatch(self, watch: Watch, spike: Spike) -> None:
-        """Let a watch give a spike up."""
+        """Make a watch give up a spike."""
         watches = self._watched_by.get(spike, {})
         watches.pop(watch, None)
         if not watches:

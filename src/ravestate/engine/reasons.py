@@ -30,7 +30,7 @@ class Reason(StrEnum):
 
     @classmethod
     def say(cls, value: str) -> str:
-        """Return the phrase for a value. A value from a newer release's trace stands for itself."""
+        """Return the phrase for a value. For an unknown value from a newer release's trace, return the value itself."""
         try:
             return cls(value).words
         except ValueError:

@@ -26,7 +26,7 @@ class Slots(Matching):
             run.wrote = True
 
     def _change(self, slot: SlotPlan, value: Any, parents: tuple[Spike, ...], run: Activation | None) -> None:
-        """Give a value or flag slot its value, and signal (L2, L13)."""
+        """Set the value of a value or flag slot, and raise its signals (L2, L13)."""
         self.values[slot.index] = value
         if self.tracer is not None:
             self.tracer(trace.Set(self.now, slot.name, value, 0 if run is None else run.id))
@@ -52,7 +52,7 @@ class Slots(Matching):
         item: Any,
         run: Activation | None,
     ) -> None:
-        """Store or remove an item, and signal. An item that is equal to the one there changes nothing (L2)."""
+        """Store or remove an item, and raise its signals. An item equal to the present one changes nothing (L2)."""
         items = self._unseen.get(slot.index)
         old: Mapping[str, Any] = self.read(slot.index) if items is None else items
         known = old.get(key, ABSENT)
@@ -120,10 +120,10 @@ ABSENT: Any = _Absent()
 
 
 def equal(old: Any, new: Any) -> bool:
-    """Return whether a write changes nothing. Values that cannot be compared (arrays, say) are different."""
+    """Return whether a write changes nothing. Values that cannot be compared, such as arrays, count as different."""
     if old is new:
         return True
     try:
         return bool(old == new)
-    except Exception:  # a value's comparison is foreign code: it may raise anything
+    except Exception:  # a value's comparison is not our code: it may raise anything
         return False

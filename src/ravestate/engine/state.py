@@ -47,7 +47,8 @@ class State:
         self.values: dict[int, Any] = {}
         """The slots that were written or read: index to value."""
         self._unseen: dict[int, dict[str, Any]] = {}
-        """The items of each collection that nobody has read since its last change: they change further without a copy."""
+        """The items of each collection that no code has read since its last change. They can change again without a
+        copy."""
         self.live: dict[int, dict[Spike, None]] = {}
         """Live spikes by signal, oldest first."""
         self.active: dict[int, dict[Activation, None]] = {}
@@ -80,13 +81,13 @@ class State:
         self._stirred = False  # whether something ended that the `hoping` activations may have hoped for
         self._watches: dict[Clause, dict[Activation, Watch]] = {}
         self._watched_by: dict[Spike, dict[Watch, None]] = {}  # spikes that a watch keeps until they are old enough
-        # Failures that ``core:error`` has yet to signal, each with the rules that led to it.
+        # Failures that ``core:error`` has not reported yet, each with the rules that led to it.
         self._errors: list[tuple[RuleFailure, Lineage | None]] = []
         self._loops = Loops()
         self._blamed: set[int] = set()  # the ids of predicates whose failure was reported
         self._deadlines = Deadlines(self._stands)
         self._busy: int = 0  # activations of rules that are not in the background
-        self._activations: int = 0  # how many numbers are given
+        self._activations: int = 0  # how many numbers have been assigned
         self._spikes = 0
         self._groups = 0
 
@@ -164,7 +165,7 @@ class State:
         """Return the same for a debugger: a predicate that raises counts as false, and is not reported."""
         try:
             return bool(guard.predicate(self.read(slot.index)))
-        except Exception:  # foreign code, as in `_test`
+        except Exception:  # not our code, as in `_test`
             return False
 
     def _test(self, predicate: Any, value: Any, rule: RulePlan) -> bool:

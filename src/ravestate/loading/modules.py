@@ -35,8 +35,8 @@ def load_module(name: str, folder: Path = Path()) -> Module:
         with _loading(f"entry point {name!r} ({installed[name].value}) fails"):
             return _as_module(name, installed[name].load())
     if "/" in name or name.startswith(".") or not name:
-        raise UsageError(f"{name!r} is no module: name a file (./hello.py), or a dotted path (pkg.mod)")
-    if str(Path.cwd()) not in sys.path:  # a command does not look there by itself
+        raise UsageError(f"{name!r} is not a module: name a file (./hello.py), or a dotted path (pkg.mod)")
+    if str(Path.cwd()) not in sys.path:  # a command does not search there by default
         sys.path.insert(0, str(Path.cwd()))
     if "." in name or ":" in name or (name.isidentifier() and importlib.util.find_spec(name) is not None):
         return _from_path(name, [*BUILT_IN, *installed])
@@ -65,11 +65,11 @@ def _from_file(name: str, path: Path) -> Module:
         raise UsageError(f"there is no file {name}")
     known = sys.modules.get(path.stem)
     if known is not None and getattr(known, "__file__", None) == str(path):
-        return _as_module(name, known)  # a test imported it: its slots are these slots
+        return _as_module(name, known)  # a test has already imported it: its slots must be the same objects
     spec = importlib.util.spec_from_file_location(path.stem, path)
     if spec is None or spec.loader is None:
-        raise UsageError(f"{name} is no Python file")
-    if str(path.parent) not in sys.path:  # the file may import its neighbours
+        raise UsageError(f"{name} is not a Python file")
+    if str(path.parent) not in sys.path:  # the file may import files beside it
         sys.path.insert(0, str(path.parent))
     module = importlib.util.module_from_spec(spec)
     sys.modules[path.stem] = module
@@ -86,7 +86,7 @@ def _from_file(name: str, path: Path) -> Module:
 def _loading(failure: str) -> Generator[None]:
     """Turn an exception of a user's module into a message that begins with `failure`.
 
-    ``sys.exit`` counts as one: it would end the command without a word.
+    ``sys.exit`` counts as one: it would end the command without a message.
     """
     try:
         yield

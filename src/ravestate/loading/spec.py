@@ -23,7 +23,7 @@ NUMBERS: tuple[tuple[str, Callable[[Any], bool], str], ...] = (
     ("seed", lambda value: type(value) is int, "a whole number"),
     ("patience", lambda value: type(value) in (int, float) and 0 <= value < math.inf, "0 seconds or more"),
 )
-"""The numbers of an agent file: key, test, and the words for a good value."""
+"""The numbers of an agent file: key, test, and a description of a valid value."""
 VARIABLE = re.compile(r"\$\{([A-Za-z_][A-Za-z0-9_]*)(?::-([^}]*))?\}")
 
 
@@ -50,7 +50,7 @@ class AgentSpec:
         """Read an agent file and load its modules.
 
         Raises:
-            UsageError: The file or something in it is wrong. The message has all mistakes.
+            UsageError: The file or something in it is wrong. The message lists all mistakes.
         """
         spec = cls()
         spec.load(spec.read(path))
@@ -100,7 +100,7 @@ class AgentSpec:
         """Load modules, each by its name and the folder that a relative file starts from.
 
         Raises:
-            UsageError: The first fault of all is a module that cannot be loaded.
+            UsageError: A module cannot be loaded, and there is no earlier fault.
         """
         for name, folder in names:
             try:
@@ -162,16 +162,16 @@ class AgentSpec:
             self.settings.setdefault(str(module), {}).update(
                 (key, value)
                 for key, value in cast("Mapping[str, Any]", values).items()
-                if variable_of(str(module), str(key)) not in os.environ  # the environment goes before a file
+                if variable_of(str(module), str(key)) not in os.environ  # the environment overrides a file
             )
 
 
 def _filled(value: Any, wrong: list[str]) -> Any:
-    """Replace ``${NAME}`` and ``${NAME:-default}`` by the environment's values: secrets do not belong into files."""
+    """Replace ``${NAME}`` and ``${NAME:-default}`` with the environment's values: secrets do not belong in files."""
     if isinstance(value, str):
 
         def fill(match: re.Match[str]) -> str:
-            default: str | None = match[2]  # None where none is written
+            default: str | None = match[2]  # None if the file has none
             found = os.environ.get(match[1], default)
             if found is None:
                 wrong.append(f"the environment has no {match[1]}; set it, or write ${{{match[1]}:-default}}")

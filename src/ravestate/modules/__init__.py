@@ -1,8 +1,8 @@
 """The built-in modules: platforms, modalities, meta modules and skills. Each loads at its first use.
 
 ``from ravestate.modules import rawio`` imports the package of a module. The package holds the `Module` value
-(``rawio.module``) and its signals and slots by name (``rawio.input``). It may stand for the `Module` itself in
-every argument.
+(``rawio.module``) and its signals and slots by name (``rawio.input``). Every argument that takes a `Module` also takes
+this package.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The folders for a user's files, as the platform has them."""
+"""The platform's folders for a user's files."""
 
 from __future__ import annotations
 

@@ -8,7 +8,7 @@ import ctypes
 def give_back() -> None:
     """Return freed memory from the C library to the system; without glibc, do nothing.
 
-    A load of a model leaves tens of megabytes in the heap of its thread.
+    Loading a model leaves tens of megabytes in the heap of its thread.
     """
     try:
         trim = ctypes.CDLL(None).malloc_trim

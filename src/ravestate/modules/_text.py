@@ -1,4 +1,4 @@
-"""Text without control characters, fit to show to a person or to a model."""
+"""Text without control characters, safe to show to a person or a model."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ import re
 _ESCAPES = re.compile(
     r"\x1b\[[0-?]*[ -/]*[@-~]|\x1b\][^\x07\x1b]*(?:\x07|\x1b\\)|\x1b[ -/]*[0-~]|\x9b[0-?]*[ -/]*[@-~]"
 )
-# C0 but for tab and line feed, DEL, C1.
+# C0 except tab and line feed, DEL, C1.
 _CONTROLS = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f]")
 _SURROGATES = re.compile(r"[\ud800-\udfff]")
 
 
 def without_controls(text: str) -> str:
-    """Return `text` without control characters; fit for a piece of a longer text.
+    """Return `text` without control characters. Use it for a piece of a longer text.
 
     Line feeds and tabs stay. Lone surrogates, by which Python carries bytes that are not UTF-8, become U+FFFD, so that
     the result can always be encoded.
@@ -27,7 +27,7 @@ def without_controls(text: str) -> str:
 
 
 def printable(text: str) -> str:
-    """Return `text` without terminal escape sequences and control characters; fit for a whole text.
+    """Return `text` without terminal escape sequences and control characters. Use it for a whole text.
 
     Like `without_controls`, but it removes a sequence as a whole, and turns ``\\r\\n`` and ``\\r`` into line feeds.
 

@@ -34,7 +34,7 @@ def read_nodes(file: Path | Traversable, what: str) -> yaml.Node | None:
     except OSError as error:
         raise PlatformError(f"the {what} {str(file)!r} cannot be read: {error.strerror or error}") from error
     except UnicodeDecodeError as error:
-        raise DeclarationError(f"{file}: this is no text in UTF-8 ({error.reason} at byte {error.start})") from None
+        raise DeclarationError(f"{file}: this is not UTF-8 text ({error.reason} at byte {error.start})") from None
 
 
 def kind_of(node: yaml.Node) -> str:

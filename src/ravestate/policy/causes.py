@@ -3,8 +3,8 @@
 An edge leads from a signal, through a rule that hears it, to a signal that the rule raises. Effects of a detached
 rule have no causes: they appear in the wide closures only.
 
-A closure is an integer with bit *n* for signal *n*: a thousand signals take a hundred bytes, and an intersection
-takes no time.
+A closure is an integer with bit *n* for signal *n*: a thousand signals take about a hundred bytes, and intersections
+are fast.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ class Causes:
     Attributes:
         causes: For each signal the non-detached rules that may raise it.
         all_causes: For each signal all rules that may raise it.
-        direct: For each signal the signals of the non-detached constraints of the rules in `causes`.
+        direct: For each signal, the signals of the non-detached constraints of the rules in `causes`.
         components: The cycles of `direct`; signals of one component lead to each other.
     """
 
@@ -100,7 +100,7 @@ class Causes:
         return found
 
     def wide_ancestors(self, signal: int) -> frozenset[int]:
-        """Return the same over detached effects too, but not through an input, which may come at any time anyway."""
+        """Return the same including detached effects, but not through an input, which may come at any time anyway."""
         found = self._wide.get(signal)
         if found is None:
             found = self._wide[signal] = self._climb(signal, self.all_causes, wide=True)

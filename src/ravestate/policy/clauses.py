@@ -12,7 +12,7 @@ from ravestate.declare.signal import Signal
 from ravestate.errors import DeclarationError
 
 MAX_CLAUSES = 256
-"""The greatest number of conjunctions of a condition; more are surely a mistake of the designer."""
+"""The maximum number of conjunctions in a condition; more must be a mistake."""
 
 Atoms = tuple[Constraint | Holds, ...]
 
@@ -26,10 +26,10 @@ class Conjunction:
 
 
 def normal_form(condition: Condition) -> tuple[Conjunction, ...]:
-    """Bring a condition of any depth into disjunctive normal form, in declaration order, without doubles.
+    """Bring a condition of any depth into disjunctive normal form, in declaration order, without duplicates.
 
     Raises:
-        DeclarationError: The condition has more than `MAX_CLAUSES` conjunctions, or a part that is no condition.
+        DeclarationError: The condition has more than `MAX_CLAUSES` conjunctions, or a part that is not a condition.
 
     Example:
         >>> import ravestate as rs
@@ -70,7 +70,7 @@ def _inner_first(condition: Condition) -> Iterator[Condition]:
 
 
 def _check(condition: Condition, parts: list[Condition]) -> None:
-    """Refuse a part that is no condition, or a condition with too many conjunctions, before making any of them."""
+    """Refuse a part that is not a condition, or a condition with too many conjunctions, before making any of them."""
     counts: dict[int, int] = {}
     for part in parts:
         key = id(part)
@@ -87,7 +87,7 @@ def _check(condition: Condition, parts: list[Condition]) -> None:
         elif isinstance(part, (Signal, Constraint, Holds)):
             counts[key] = 1
         else:
-            raise DeclarationError(f"{part!r} is no condition: combine signals with & and |")
+            raise DeclarationError(f"{part!r} is not a condition: combine signals with & and |")
 
 
 def _shown(count: int) -> str:

@@ -61,8 +61,8 @@ def build(
     Args:
         modules: The modules, in order.
         rules: The rules, in order. A rule that a context added is in none of the modules.
-        settings: By a module's name, the values of its settings; a module that is missing has the defaults.
-        faults: Faults from before.
+        settings: The values of each module's settings, by the module's name; a missing module has the defaults.
+        faults: Faults found earlier.
 
     Raises:
         DeclarationErrors: There are faults, new ones or old ones.

@@ -2,10 +2,10 @@
 
 One of its *alternatives* completes each signal: a conjunction of signals that may cause it, or nothing, if it is an
 input or has no causes. A pathway of a clause is a set of signals. It holds the clause's own signals, and with each
-signal one of its alternatives. Where a cycle closes, the set holds these signals already.
+signal one of its alternatives. Where a cycle closes, the set already holds these signals.
 
 Sets of signals are integers here. Bit *n* stands for the *n*-th signal in an order with causes before their effects.
-Cycles apart, no other signal of a set leads to the signal of its highest bit.
+Except in cycles, no other signal of a set leads to the signal of its highest bit.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ class Completion:
         bare: Whether a signal may be on a pathway without causes, by place.
         information: The self-information in nats / `UNIT`, by place (L9).
         components: The places that lead to each other without passing a bare signal; causes first.
-        cycle: The set of signals on a cycle with the signal, by place; 0 for a signal on none.
+        cycle: The set of signals on a cycle with the signal, by place; 0 if the signal is on no cycle.
     """
 
     def __init__(self, signals: Sequence[SignalPlan], rules: Sequence[RulePlan], causes: Causes) -> None:

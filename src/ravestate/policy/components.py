@@ -29,7 +29,7 @@ def components(edges: Sequence[Sequence[int]]) -> Components:
     members: list[list[int]] = []
     of = [-1] * len(edges)
     number = [-1] * len(edges)  # the order of discovery
-    low = [0] * len(edges)  # the least number of an unfinished node within reach
+    low = [0] * len(edges)  # the minimum number of an unfinished node within reach
     unfinished: list[int] = []
     count = 0
     for root in range(len(edges)):

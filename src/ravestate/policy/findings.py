@@ -1,4 +1,4 @@
-"""Findings: declarations that compile, but are probably a mistake."""
+"""Findings: declarations that compile but are probably mistakes."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from ravestate.policy.source import Source, acts_of, undeclared
 from ravestate.policy.wording import few
 
 MAX_PEERS = 64
-"""The greatest number of other rules that the search for ties compares with a rule: the first declared.
+"""The maximum number of other rules that the search for ties compares with a rule: those declared first.
 
 Without a limit the time would grow with the square of the number of rules; ``policy.conflicts()`` compares them all.
 """
@@ -156,12 +156,12 @@ def _never_wins(policy: Policy) -> Iterator[Finding]:
                 "never-wins",
                 rule.name,
                 f"rule {rule.name} runs only when {few(w.rule.name for w in losers if w is not None)} resigns: the same "
-                f"signals trigger both, and its utility is no greater; {advice}",
+                f"signals trigger both, and its utility is not greater; {advice}",
             )
 
 
 def _winners(policy: Policy) -> dict[tuple[int, int], list[Clause]]:
-    """Return the clauses that wait for their signals alone, by slot and rarest signal; the best first."""
+    """Return the clauses that wait only for their signals, by slot and rarest signal; the best first."""
     found: dict[tuple[int, int], list[Clause]] = {}
     for rule in policy.rule_plans:
         for clause in rule.clauses:

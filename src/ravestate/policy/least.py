@@ -7,8 +7,8 @@ independent choices do not multiply. In a chain, a ring or a tree, a step or two
 causes to that of the effect.
 
 A choice among causes with common causes is the weighted set cover problem, for which no quick method is known. If a
-step leaves more sets than there is room for, the search follows the cheapest. Up to there the result is exact. That
-holds for policies of any size, unless dozens of their choices depend on each other.
+step leaves more sets than there is room for, the search follows the cheapest. Otherwise the result is exact: for
+policies of any size, unless dozens of their choices depend on each other.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ A search divides a tenth of the rest among its steps.
 """
 
 FREE = 100
-"""The number of sets that each search may examine in any case."""
+"""The number of sets that each search may always examine."""
 
 
 class Least:

@@ -1,9 +1,9 @@
-"""Rules that set each other off without time passing (L23).
+"""Rules that trigger each other without time passing (L23).
 
 In a loop, each rule has a clause whose signals come from rules of the loop, and at least one rule or constraint is
 detached. Without detachment the causal group ends the loop (L19). A clause with a ``min_age``, a predicate or a gate
-is no part of a loop here, because it may end one. Neither is a rule that awaits something, or a plain function that
-calls code outside of its context, because it takes time.
+is not part of a loop here, because it may end one. Neither is a rule that takes time: a rule that awaits something, and a
+plain function that calls code outside its context.
 """
 
 from __future__ import annotations

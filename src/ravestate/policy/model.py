@@ -2,7 +2,7 @@
 
 Compiling numbers signals, slots, rules and clauses once, in declaration order, and fills the records in.
 Nothing changes them afterwards, so any number of engines share them. A signal's record lists the needs that
-hear it: a spike costs by what it concerns, never by how many rules there are.
+hear it: the cost of a spike depends on the rules that it concerns, never on the number of all rules.
 """
 
 from __future__ import annotations
@@ -48,9 +48,9 @@ class SignalPlan:
     listeners: tuple[Need, ...] = ()
     """The needs of rule conditions, in declaration order."""
     uncontested: tuple[Need, ...] = ()
-    """The listeners that are in none of the contests."""
+    """The listeners that take part in no contest."""
     contests: tuple[tuple[Clause, ...], ...] = ()
-    """Groups of clauses of which only one can have a spike, the best clause first."""
+    """Groups of clauses in which only one can have a given spike, the best clause first."""
     watchers: tuple[Need, ...] = ()
     """The needs of `until` conditions (L21)."""
     retain: float = -1.0

@@ -18,7 +18,7 @@ class Names:
     """The signals and slots that modules declare, in declaration order.
 
     Attributes:
-        signals: The numbered signals, those of slots included.
+        signals: The numbered signals, including those of slots.
         slots: The numbered slots.
         faults: The list for faults: names that occur twice, and unknown names.
     """
@@ -65,7 +65,7 @@ class Names:
 
     def twice(self, what: str, name: str, first: str, second: str) -> None:
         """Add the fault that two signals, slots or rules (`what`) have one name, with the places of both."""
-        if self._modules[name.split(":")[0]] < 2:  # else the fault is the name of the modules
+        if self._modules[name.split(":")[0]] < 2:  # otherwise the fault is that two modules have one name
             self.faults.append(f"two {what}s are named {name!r}: {first} and {second}; rename one")
 
     def signal(self, signal: Signal[Any], where: str) -> SignalPlan | None:

@@ -14,7 +14,7 @@ from ravestate.errors import nearest
 
 
 class Numbers:
-    """The values of the numbers of rules under some settings.
+    """The numbers of rules, with the values of some settings.
 
     Attributes:
         refers: Whether any number so far was a setting.
@@ -55,7 +55,8 @@ class Numbers:
         return float(number)
 
     def _setting(self, rule: Rule[Any, Any], ref: SettingRef, where: str) -> float | None:
-        """Return the value of a setting: of the class that it comes from, else of the rule's own module."""
+        """Return the value of a setting. It belongs to the settings class that it names, otherwise to the rule's own
+        module."""
         own = self._named.get(rule.name.split(":")[0])
         module = own
         if ref.owner is not None and (own is None or own.settings is not ref.owner):

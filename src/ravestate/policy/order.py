@@ -12,7 +12,7 @@ def in_order(given: Iterable[Module], faults: list[str]) -> list[Module]:
     """Return the given modules and all that they require, in order.
 
     Args:
-        given: The modules in the order of the user.
+        given: The modules in the user's order.
         faults: The list for faults: cycles of `requires`, and names that two modules share.
     """
     ordered: dict[Module, None] = {core: None}

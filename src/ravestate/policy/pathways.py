@@ -1,8 +1,8 @@
 """All pathways of a clause (L8), for explanations.
 
 The pathways of a signal are, for each of its alternatives, the signal and every union of pathways of the
-alternative's signals. A cycle ends at a signal that is on the way already, so its signals have pathways of their own
-for each way. Nothing but an explanation needs the pathways one by one: `Completion` counts rules by reachability, and
+alternative's signals. A cycle ends at a signal that is already on the path, so its signals have different pathways for
+each path. Nothing but an explanation needs the pathways one by one: `Completion` counts rules by reachability, and
 `Least` searches for the least pathway.
 """
 
@@ -17,16 +17,16 @@ from ravestate.policy.completion import Completion
 from ravestate.policy.model import Clause, Need
 
 MAX_PATHWAYS = 256
-"""The greatest number of pathways of a clause, and of a signal: the cheapest. There may be exponentially many."""
+"""The maximum number of pathways of a clause, and of a signal: the cheapest. There may be exponentially many."""
 
 MAX_UNIONS = 200_000
-"""The greatest number of unions for one clause. A clause that needs more shows its least pathway alone."""
+"""The maximum number of unions for one clause. A clause that needs more shows its least pathway alone."""
 
 Costs = dict[int, int]
 """Sets of signals, with the information of each."""
 
 Search = Generator["Search", Costs, Costs]
-"""A computation that yields others and receives their results, so that a depth of causes is no depth of calls."""
+"""A computation that yields others and receives their results, so that deep causes need no deep recursion."""
 
 
 class _Entangled(Exception):

@@ -30,7 +30,7 @@ class Policy:
     Attributes:
         modules: The modules, each after those that it requires.
         rules: The rules by qualified name, in declaration order.
-        signals: The signals by qualified name, those of slots included.
+        signals: The signals by qualified name, including those of slots.
         slots: The slots by qualified name.
     """
 
@@ -71,8 +71,8 @@ class Policy:
     def utility(self, rule: str | Rule[Any, Any]) -> float:
         """Return the utility of a rule in nats, without weight and cooldown: the greatest over its clauses (L9).
 
-        It may be somewhat too great if dozens of signals on a pathway each have several causes with common causes; else
-        it is exact (``policy/least.py``).
+        The result is exact, unless dozens of signals on a pathway each have several causes with common causes; then it
+        may be slightly too high (``policy/least.py``).
 
         Args:
             rule: The rule, or its qualified name.
@@ -180,7 +180,7 @@ class Policy:
         from ravestate.policy.compile import build
 
         if not isinstance(rule, Rule):  # pyright: ignore[reportUnnecessaryIsInstance]  # users may not type-check
-            fault = f"{rule!r} is no rule: write @module.rule(when=...) above the function"
+            fault = f"{rule!r} is not a rule: write @module.rule(when=...) above the function"
             raise DeclarationErrors([DeclarationError(fault)])
         if rule.name in self.rules:
             fault = f"rule {rule.name} ({rule.origin}) is in the policy already; give the new one another name=..."

@@ -9,7 +9,8 @@ from ravestate.policy.wording import few
 def check_reachable(causes: Causes, faults: list[str]) -> None:
     """Refuse rules that wait for their own effects, directly or not, with no way in from outside.
 
-    Slots, which code outside may write, and detached effects, which make loops on purpose, lead to findings instead.
+    Two cases lead to findings instead: slots, because code outside may write them, and detached effects, because they
+    make loops on purpose.
     """
     given = {s.index for s in causes.signals if s.input or s.slot is not None}
     given |= {signal for rule in causes.rules if rule.detached for signal in rule.raises}

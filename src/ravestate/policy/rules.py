@@ -23,7 +23,7 @@ come back, and so on, all in one instant.
 
 
 class Rules:
-    """The rules of a policy, in the order of their addition.
+    """The rules of a policy, in the order in which they were added.
 
     Attributes:
         plans: The records of the rules.

@@ -1,8 +1,8 @@
 """The source of a rule's function: reads, writes and emits that its declaration lacks, and a forgotten ``await``.
 
 A name in the source counts only if the function's globals or its closure hold a slot or a signal by that name.
-Names that the function binds itself, and everything else, are left to the run (L3). So is a branch that a variable
-of an enclosing function decides: that function may make several rules with different declarations.
+Everything else, such as names that the function binds itself, is checked when the rule runs (L3). So is a branch on a
+variable of an enclosing function: that function may make several rules with different declarations.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ class Acts:
 
 
 def acts_of(rule: RulePlan, source: Source) -> Acts:
-    """Find the acts of a rule's function; none if there is no source, or if a decorator stands around the function."""
+    """Find the acts of a rule's function; none if there is no source, or if another decorator wraps the function."""
     acts = Acts()
     function = rule.rule.function
     if not isinstance(function, FunctionType) or hasattr(function, "__wrapped__"):
@@ -103,11 +103,11 @@ class _Reader:
         for node in ast.walk(tree):
             for name in _bound(node):
                 if name == self._context and node is not arguments[0]:
-                    self._context = ""  # another value takes its name
+                    self._context = ""  # another value has taken its name
                 self._names.pop(name, None)
 
     def note(self, node: ast.AST, acts: Acts) -> None:
-        """Enter the act that a node of the function is, if it is one."""
+        """Record the act at a node of the function, if there is one."""
         match node:
             case ast.Subscript(value=ast.Name(id=self._context), slice=slot, ctx=ast.Load()):
                 self._enter(slot, Slot, acts.reads)

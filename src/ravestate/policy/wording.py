@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 SHOWN = 8
-"""The greatest number of names in a list."""
+"""The maximum number of names in a list."""
 
 
 def few(names: Iterable[str]) -> str:
-    """Return names in a row, each once; after the first eight, a count.
+    """Join names into a list, each once; after the first eight, add a count.
 
     Example:
         >>> few(["m:a", "m:b", "m:a"]), few(f"m:r{number}" for number in range(100))
@@ -17,6 +17,6 @@ def few(names: Iterable[str]) -> str:
     """
     found = list(dict.fromkeys(names))
     more = len(found) - SHOWN
-    if more <= 1:  # one name is no longer than "and 1 more"
+    if more <= 1:  # one more name is as short as "and 1 more"
         return ", ".join(found)
     return f"{', '.join(found[:SHOWN])} and {more} more"

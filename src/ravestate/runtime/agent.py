@@ -1,4 +1,4 @@
-"""An agent apart from any conversation; each conversation gets a context of its own."""
+"""An agent, independent of any conversation; each conversation gets its own context."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ class Agent:
     """A policy and its settings, read and checked once, and shared by all contexts of the agent.
 
     Args:
-        modules: As for `Context`.
-        options: As for `Context`.
+        modules: See `Context`.
+        options: See `Context`.
 
     Raises:
         DeclarationErrors: The modules, or the settings, do not fit.
@@ -33,7 +33,7 @@ class Agent:
         """Return a new context, to be started once.
 
         Args:
-            options: As for `Context`, except ``settings``; they go before the agent's own.
+            options: See `Context`, except ``settings``; they override the agent's own.
         """
         merged: Any = self._options | options
         return Context(self.policy, **merged)

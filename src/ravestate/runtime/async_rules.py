@@ -14,10 +14,10 @@ from ravestate.runtime.eager_task import EagerTask
 from ravestate.runtime.rule_context import RuleContext
 
 GRACE = 5.0
-"""Seconds that a cancelled rule has for its cleaning up before its run counts as ended."""
+"""Seconds that a cancelled rule has to clean up before its run counts as ended."""
 
 CLEANING = 10
-"""Turns of the loop that a cancelled rule has for its last writes before any other rule goes on."""
+"""Turns of the loop that a cancelled rule has for its last writes before any other rule continues."""
 
 log = logging.getLogger("ravestate")
 
@@ -40,7 +40,7 @@ class AsyncRules:
         proceed: Callable[[], None],
     ) -> None:
         self.cleaning: list[asyncio.Task[Any]] = []
-        """Tasks that have just been cancelled. No other effect is performed before their last writes."""
+        """Tasks that have just been cancelled. Their last writes come before any other effect."""
         self._loop = loop
         self._finish = finish
         self._give_up = give_up
@@ -82,11 +82,11 @@ class AsyncRules:
         self._grace[ctx] = self._loop.call_later(GRACE, self._grace_is_over, ctx)
 
     async def close(self, reason: str, *, at_once: bool) -> None:
-        """Cancel all runs and wait for them, though no longer than `GRACE`; end those that refuse.
+        """Cancel all runs and wait for them for at most `GRACE` seconds; end those that refuse.
 
         Args:
             reason: Why they end.
-            at_once: Whether not to wait.
+            at_once: Whether to return without waiting.
         """
         for ctx, task in self._tasks.items():
             ctx.cancelled = reason

@@ -17,7 +17,7 @@ BLOCKING = 0.1
 """Seconds that one step of an async rule may take before a warning names it: nothing else runs meanwhile."""
 
 FRESH = 0.01
-"""Seconds for which one reading of the thread's CPU time serves as the start of further steps."""
+"""Seconds for which one reading of the thread's CPU time serves as the start time of further steps."""
 
 ASLEEP = 0.05
 """Mean seconds per sleep above which a step counts as sleeping. A thread that waits for the interpreter's lock sleeps
@@ -31,11 +31,11 @@ class StepTimer:
 
     A step blocks the loop if it computes, or sleeps, for longer than `BLOCKING`. Time in which the thread waits for a
     processor or for the interpreter's lock does not count: a busy machine raises no alarm. The system counts how often
-    the thread slept by its own choice, and how often it had to make room for another. If it had to, the step gets the
+    the thread slept voluntarily, and how often the scheduler preempted it. If it was preempted, the step gets the
     benefit of the doubt. On systems without these counts (Windows, macOS), only computing counts.
 
     Reading the CPU time costs as much as a short rule. One reading serves all steps that begin within `FRESH` seconds,
-    so a reported time may be that much too long.
+    so a reported time may be too long by that much.
     """
 
     __slots__ = ("_cpu", "_fresh_until", "_sleeps")
@@ -76,7 +76,7 @@ class StepTimer:
 
 
 def _sleeps() -> tuple[int, int]:
-    """Return how often this thread slept by its own choice, and how often it made room for another."""
+    """Return how often this thread slept voluntarily, and how often the scheduler preempted it."""
     if resource is None or not hasattr(resource, "RUSAGE_THREAD"):
         return 0, 0
     usage = resource.getrusage(resource.RUSAGE_THREAD)

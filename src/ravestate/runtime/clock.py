@@ -6,7 +6,7 @@ import asyncio
 
 
 class Clock:
-    """The seconds since a context started, without the time in which the clock was halted.
+    """The seconds since a context started, not counting the time in which the clock was halted.
 
     Args:
         loop: The loop whose time the clock follows.

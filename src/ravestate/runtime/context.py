@@ -39,7 +39,7 @@ class Context:
 
     Args:
         modules: Modules to compile, or one compiled `Policy` to share.
-        settings: The settings of each module, by its name; they go before the environment's.
+        settings: The settings of each module, by its name; they override the environment's.
         seed: The seed of all random choices that rules make through ``ctx.random``; different every time by default.
         patience: Seconds that a rival under pressure has, unless its rule says otherwise (L16).
         trace: Whether to keep records of what happens, for ``trace`` and ``explain``; or a function that takes them.
@@ -47,7 +47,7 @@ class Context:
 
     Raises:
         DeclarationErrors: The modules, or the settings, do not fit.
-        DeclarationError: The patience is no number of seconds.
+        DeclarationError: The patience is not a number of seconds.
 
     Example:
         >>> import asyncio, ravestate as rs
@@ -100,7 +100,7 @@ class Context:
         """Start the context, as ``async with`` does; `stop` ends it.
 
         Args:
-            hooks: Functions that follow what happens, e.g. for a simulation.
+            hooks: Functions that observe the context, e.g. for a simulation.
 
         Raises:
             EngineError: The context was started before.
@@ -119,11 +119,11 @@ class Context:
         await self.stop()
 
     async def stop(self, grace: float = 5.0) -> None:
-        """End the context in order.
+        """End the context cleanly.
 
         The context raises ``rs.shutdown``. Rules that start from then on have `grace` seconds to finish. Then all rules
-        are cancelled, and may clean up. A rule that runs for ever does not delay this if it says ``background=True``.
-        If this is cancelled, it waits for nothing any more.
+        are cancelled, and may clean up. A rule that runs for ever does not delay this if it has ``background=True``. If
+        this is cancelled, it stops waiting.
         """
         runner = self._running()
         self.ask_to_stop()
@@ -148,10 +148,10 @@ class Context:
 
         Raises:
             RavestateError: A rule has given this error as the reason (``ctx.stop(failure)``).
-            EngineError: The engine has failed, which is a fault of this library's.
+            EngineError: The engine has failed, which is a bug in this library.
         """
         runner = self._running()
-        assert self._stopping is not None  # made together with the runner
+        assert self._stopping is not None  # created together with the runner
         await self._stopping.wait()
         if runner.fault is not None:
             raise runner.fault
@@ -169,8 +169,8 @@ class Context:
     def pause(self) -> None:
         """Halt the context's clock; call this, `step` and `resume` on the context's loop only.
 
-        The context still takes events from outside. No rule starts, nothing falls due, and ``ctx.sleep`` does not end. A
-        rule that computes, or waits for something else, goes on.
+        The context still takes events from outside. No rule starts, no deadline passes, and ``ctx.sleep`` does not end.
+        A rule that computes, or waits for something else, continues.
         """
         self._running().pause()
 
@@ -255,10 +255,10 @@ class Context:
     # ------------------------------------------------------------------------------------ looking in
 
     def observe(self, observer: Callable[[Record], None]) -> Callable[[], None]:
-        """Call a function with every record of what happens from now on, and return a function that ends this.
+        """Call a function with every record from now on, and return a function that ends this.
 
         The observer runs on the context's loop, in the middle of an event. It must be quick, must not raise, and must not
-        act on the context. Without observers the engine makes no records, so a context pays only for what is observed.
+        act on the context. Without observers the engine makes no records, so observation has no cost until it is used.
         """
         self._observers.append(observer)
         self._attach()
@@ -291,7 +291,7 @@ class Context:
         return self._running().now
 
     def read(self, slot: Slot[T]) -> T:
-        """Return the present value of a slot.
+        """Return the current value of a slot.
 
         Raises:
             UndeclaredError: The policy does not have the slot.

@@ -41,17 +41,17 @@ class EagerTask:
         self._context = contextvars.copy_context()
         self._clean = self._context.copy()
         host = self._main()
-        host.send(None)  # now the host meets a cancellation that comes before the task's first step
+        host.send(None)  # now a cancellation before the task's first step reaches the host
         self.task: asyncio.Task[Any] = loop.create_task(host, context=self._context)
 
     def first_step(self, coroutine: Coroutine[Any, Any, Any], rule: Rule[Any, Any]) -> None:
         """Drive a coroutine to its end or to its first suspension, where the task adopts it.
 
         Raises:
-            StopIteration: It has ended. The spare is free for another coroutine, unless it is `spoilt`.
-            BaseException: The coroutine has failed; likewise.
+            StopIteration: It has ended. The spare task is free for another coroutine, unless it is `spoilt`.
+            BaseException: The coroutine has failed. The spare task is free, as above.
         """
-        around = asyncio.current_task(self._loop)  # a task may step a paused context by hand
+        around = asyncio.current_task(self._loop)  # a task may have called `step` on a paused context
         if around is not None:
             asyncio.tasks._leave_task(self._loop, around)  # pyright: ignore[reportPrivateUsage]
         asyncio.tasks._enter_task(self._loop, self.task)  # pyright: ignore[reportPrivateUsage]  # documented for task implementations
@@ -84,7 +84,7 @@ class EagerTask:
         self.task.cancel()
 
     async def _main(self) -> Any:
-        return await self._host()  # a task wants a coroutine, and the host wants to yield what it likes
+        return await self._host()  # a task needs a coroutine, and the host must be free to yield anything
 
     @types.coroutine
     def _host(self) -> Generator[Any, Any, Any]:
@@ -125,7 +125,7 @@ class EagerTask:
                     pending = coroutine.throw(thrown)
             except StopIteration as stop:
                 return stop.value
-            except SystemExit as exit:  # would end the loop, and all other rules with it
+            except SystemExit as exit:  # it would end the loop, and all other rules with it
                 return exit
             finally:
                 self._timer.end(rule, began)

@@ -20,7 +20,7 @@ def ending(run: int, rule: Rule[Any, Any], outcome: Any, raised: bool) -> Finish
         run: The number of the run.
         rule: Its rule.
         outcome: The value that the function returned, or the exception that it raised.
-        raised: Whether the outcome was raised.
+        raised: Whether `outcome` is an exception that the function raised.
     """
     if outcome is None:
         return Finish(run, "done")

@@ -1,4 +1,4 @@
-"""Functions through which another part of the library follows a context."""
+"""Functions through which another part of the library observes a context."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ class Hooks:
     """Functions that a context calls on its loop; `Context.start` takes them.
 
     Attributes:
-        on_ended: Called with each run that has been settled.
+        on_ended: Called with each run that has ended.
         on_failed: Called with the name of each rule that fails, and with its exception.
         on_endless: Called with the rule that ran last, if an instant of virtual time does not end. The context's time
             is virtual if this is given; plain functions then run one after another, so that threads do not race.

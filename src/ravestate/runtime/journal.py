@@ -12,13 +12,13 @@ from ravestate.engine.events import Event
 
 @dataclass(slots=True)
 class Taken:
-    """The runner took the engine's effects. An engine decides only then, so the journal must tell whether this happened
-    between two events."""
+    """The runner took the engine's effects. The engine decides only at that moment, so the journal records it among the
+    events."""
 
 
 @dataclass(frozen=True, slots=True)
 class Entry:
-    """An event, or the taking of effects, with its time (seconds since the context started)."""
+    """An event, or a `Taken`, with its time (seconds since the context started)."""
 
     time: float
     event: Event | Taken

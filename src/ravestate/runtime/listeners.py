@@ -14,7 +14,7 @@ class Listeners:
 
     Args:
         watched: The engine's table of signals whose spikes it reports.
-        functions: Functions that stay for good. Each is called with the payload of every spike of its signal.
+        functions: Permanent functions. Each is called with the payload of every spike of its signal.
     """
 
     def __init__(self, watched: dict[str, int], functions: Mapping[str, Callable[[Any], None]]) -> None:
@@ -51,7 +51,7 @@ class Listeners:
                 future.set_result(spiked.payload)
 
     def fail(self, error: Callable[[str], BaseException]) -> None:
-        """Wake all tasks that wait, each with an error made of its signal's name."""
+        """Wake all waiting tasks, each with an error that is made from its signal's name."""
         for signal, futures in self._futures.items():
             for future in futures:
                 if not future.done():

@@ -51,11 +51,11 @@ class PlainRules:
             self._alarm = self._loop.call_later(STARVED, self._watch)
 
     def abandon(self, ctx: RuleContext) -> None:
-        """Leave a function alone, which goes on: a thread cannot be stopped."""
+        """Abandon a function, which keeps running: a thread cannot be stopped."""
         self._queue.abandon(self.runs.pop(ctx))
 
     def close(self) -> None:
-        """Leave all functions alone; those that have not begun are not called any more."""
+        """Abandon all functions; those that have not begun are never called."""
         self.runs.clear()
         self._queue.close()
         if self._alarm is not None:

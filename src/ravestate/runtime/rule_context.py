@@ -53,7 +53,7 @@ class Host(Protocol):
         ...
 
     async def quiet(self) -> None:
-        """Wait until no rule of the foreground runs or is kept waiting."""
+        """Wait until no foreground rule runs or waits."""
         ...
 
 
@@ -61,7 +61,7 @@ class RuleContext:
     """The argument of a rule function: the function reads, writes and emits through it.
 
     ``ctx[slot]`` reads a slot: its value when the rule started, or the rule's own last write. ``ctx[slot] = value``
-    writes it; the write takes effect, and signals, at once.
+    writes it; the write takes effect, and raises its signals, at once.
     """
 
     __slots__ = ("_host", "_payloads", "_values", "cancelled", "ended", "rule", "run")
@@ -180,7 +180,7 @@ class RuleContext:
         await self._host.clock.sleep(seconds)
 
     async def quiet(self) -> None:
-        """Wait until no rule, apart from those in the background, runs or is kept waiting."""
+        """Wait until no foreground rule runs or waits."""
         await self._host.quiet()
 
     def stop(self, failure: RavestateError | None = None) -> None:
@@ -224,7 +224,7 @@ class RuleContext:
             )
         if what != "emits" and not isinstance(value, Slot):
             raise UndeclaredError(
-                f"rule {self.rule.name} ({self.rule.origin}) {did} {name}, which is no slot: write ctx[slot]"
+                f"rule {self.rule.name} ({self.rule.origin}) {did} {name}, which is not a slot: write ctx[slot]"
             )
         own = getattr(self.rule, what)
         line = self._spelt(value)
@@ -241,7 +241,7 @@ class RuleContext:
 class Items(Mapping[str, V], Generic[V]):
     """A collection in a rule: a mapping of keys to items, with `add` and `remove`.
 
-    It shows the rule's own changes. An iteration goes over the items as they were when it began.
+    It shows the rule's own changes. An iteration visits the items that were there when it began.
     """
 
     __slots__ = ("_ctx", "_slot")
@@ -255,7 +255,7 @@ class Items(Mapping[str, V], Generic[V]):
         return self._ctx._values[self._slot.name]  # pyright: ignore[reportPrivateUsage]
 
     def add(self, key: str, item: V) -> None:
-        """Set an item. This signals ``added`` if the key is new, and ``changed`` if the item differs.
+        """Set an item. This raises ``added`` if the key is new, and ``changed`` if the item differs.
 
         Raises:
             UndeclaredError: The rule does not declare ``writes`` of the collection.
@@ -264,7 +264,7 @@ class Items(Mapping[str, V], Generic[V]):
         self._ctx._host.receive(Store(self._slot.name, key, item, self._ctx.run))  # pyright: ignore[reportPrivateUsage]
 
     def remove(self, key: str) -> None:
-        """Remove an item if it is there. This signals ``removed`` and ``changed``.
+        """Remove an item if it is there. This raises ``removed`` and ``changed``.
 
         Raises:
             UndeclaredError: The rule does not declare ``writes`` of the collection.

@@ -19,22 +19,22 @@ from ravestate.runtime.context import Context
 log = logging.getLogger("ravestate")
 
 INPUT = "rawio:input"
-"""The slot of the user's words. An agent that has it is mostly meant to be talked with."""
+"""The slot of the user's words. An agent with this slot is usually meant for conversation."""
 
 UNABLE = (NotImplementedError, RuntimeError, ValueError)
-"""Errors of `add_signal_handler` on platforms that lack it, and outside of the main thread."""
+"""Errors of `add_signal_handler` on platforms that lack it, and outside the main thread."""
 
 
 def run(*modules: Module | ModuleType | Policy, **options: Any) -> None:
-    """Run an agent until a rule calls ``ctx.stop()``, or until Ctrl-C; then shut it down in order.
+    """Run an agent until a rule calls ``ctx.stop()``, or until Ctrl-C; then shut it down cleanly.
 
     It runs as one context. If a platform among the modules serves many users, each user gets a context of their own.
 
     A warning is logged if the modules use `rawio`, but no platform among them lets a user talk.
 
     Args:
-        modules: As for `Context`.
-        options: As for `Context`.
+        modules: See `Context`.
+        options: See `Context`.
 
     Raises:
         DeclarationErrors: The modules, or the settings, do not fit.
@@ -67,7 +67,7 @@ def warn_if_mute(policy: Policy) -> None:
 
 
 async def run_context(context: Context) -> None:
-    """Run a context until something asks it to stop. SIGINT and SIGTERM do; a second one breaks off the shutdown."""
+    """Run a context until something asks it to stop. SIGINT and SIGTERM do; a second one aborts the shutdown."""
     with asked_by_signals(context.ask_to_stop):
         async with context:
             await context.until_stopped()
@@ -95,9 +95,9 @@ async def run_servers(agent: Agent, servers: Sequence[Callable[[Agent], Coroutin
 
 @contextlib.contextmanager
 def asked_by_signals(stop: Callable[[], None]) -> Generator[None]:
-    """Call a function at the first SIGINT or SIGTERM, and break off the body at the next one, without an error.
+    """Call a function at the first SIGINT or SIGTERM; at the second, abort the body without an error.
 
-    A cancellation from elsewhere goes on as usual.
+    A cancellation from elsewhere works as usual.
     """
     loop = asyncio.get_running_loop()
     main = asyncio.current_task()

@@ -31,10 +31,10 @@ from ravestate.runtime.rule_context import RuleContext
 from ravestate.runtime.waits import Waits
 
 ENDLESS = 200_000
-"""Rounds of effects in one instant of virtual time after which the instant counts as endless."""
+"""Rounds of effects after which an instant of virtual time counts as endless."""
 
 BATCH = 512
-"""Rounds of effects after which the loop gets a turn, so that a busy agent still hears and sees."""
+"""Rounds of effects after which the loop gets a turn, so that a busy agent still takes input."""
 
 TURN = 0.02
 """Real seconds after which the loop gets a turn, even if the rounds were few."""
@@ -55,7 +55,7 @@ class Runner:
         settings: The settings of each module.
         seed: The seed of the random numbers that rules use.
         stop: Called when a rule asks the context to end, or when the engine fails.
-        hooks: Functions that follow what happens.
+        hooks: Functions that observe the context.
         journal: Called with each event before the engine takes it, and with `Taken` before effects are taken.
     """
 
@@ -92,7 +92,7 @@ class Runner:
         self._pumping = False
         self._closing = False
         self._instant = -1.0
-        self._rounds = 0  # of effects in this very instant
+        self._rounds = 0  # rounds of effects in the current instant
         self._last_run = ""
         self._timer: asyncio.TimerHandle | None = None
         self._timer_due = 0.0
@@ -126,13 +126,13 @@ class Runner:
             self._schedule()
 
     def _receive_late(self, event: Event) -> None:
-        """Take an event of another thread; its run may have ended on the way."""
+        """Take an event from another thread; its run may have ended in the meantime."""
         run = getattr(event, "run", None)
         if run is None or run in self._contexts:
             try:
                 self.receive(event)
             except Exception:  # no caller could catch it, and the designer must see it
-                log.exception("what another thread asked for was refused: %s", short(event))
+                log.exception("refused a request from another thread: %s", short(event))
 
     def add_rule(self, rule: Rule[Any, Any]) -> None:
         """Add a rule to the engine's policy; from any thread. The loop makes the new policy, so no rule is lost.
@@ -171,7 +171,7 @@ class Runner:
             self.waits.check()
 
     def _is_busy(self) -> bool:
-        """Whether effects are still to be performed."""
+        """Whether some effects have not been performed yet."""
         return bool(self._scheduled or self._pumping or self._todo or self._async.cleaning)
 
     def _held(self) -> bool:
@@ -179,7 +179,7 @@ class Runner:
         return bool((self._is_virtual and self._plain.runs) or (self._async.cleaning and not self.clock.halted))
 
     def _work_off(self, rounds: int) -> bool:
-        """Take and perform effects, for so many rounds at most; return whether there were any."""
+        """Take and perform effects, for at most `rounds` rounds; return whether there were any."""
         engine, cleaning = self._engine, self._async.cleaning
         began = self.clock.now()
         if began != self._instant:
@@ -195,7 +195,7 @@ class Runner:
         try:
             for _ in range(rounds):
                 if (self._is_virtual or cleaning) and self._held():
-                    break  # go on when they have ended
+                    break  # continue when they have ended
                 self._rounds += 1
                 if not self._todo:
                     if self._journal is not None:
@@ -215,7 +215,7 @@ class Runner:
                     break
             else:
                 self._schedule()
-        except BaseException:  # a rule has interrupted the process: the others go on as long as the loop does
+        except BaseException:  # a rule has interrupted the process: the others continue as long as the loop does
             self._schedule()
             raise
         finally:
@@ -239,12 +239,12 @@ class Runner:
     def _failed(self, effect: Failed) -> None:
         if self._hooks.on_failed is not None:
             self._hooks.on_failed(effect.rule, effect.exception)
-        # The message of a platform error says what to mend in the world; a place in the code would not help.
+        # The message of a platform error says what to fix outside the code; a traceback would not help.
         trace = None if isinstance(effect.exception, PlatformError) else effect.exception
         log.error("rule %s failed: %s", effect.rule, said(effect.exception), exc_info=trace)
 
     def _break(self, error: Exception) -> None:
-        """End the context and say why: the engine itself has failed, and nothing would work any more."""
+        """End the context and say why: the engine itself has failed, and nothing can work any more."""
         self.fault = EngineError(f"the engine has failed, which is a fault of ravestate's: {error!r}")
         self.fault.__cause__ = error
         self.closed = True
@@ -284,23 +284,23 @@ class Runner:
             if self._timer is not None:
                 self._timer.cancel()
                 self._timer = None
-            self._schedule()  # not at once: the caller may be a task, and rules start outside of any task
+            self._schedule()  # not at once: the caller may be a task, and rules start outside any task
 
     def engine_now(self) -> Engine:
-        """Return the engine, to look at, with all that is due by now."""
+        """Return the engine for inspection, after everything that is due."""
         self._engine.advance(max(self._engine.now, self.clock.now()))
         return self._engine
 
     def read(self, slot: str) -> Any:
-        """Return the present value of a slot."""
+        """Return the current value of a slot."""
         return self._engine.read(self.policy.slot_of[slot].index)
 
     def trace(self, tracer: Callable[[Record], None] | None) -> None:
-        """Call a function with every record of what happens from now on; None ends that."""
+        """Call a function with every record from now on; None ends that."""
         self._engine.tracer = tracer
 
     def _arm(self) -> None:
-        """Set the one timer, unless it is early enough already: an early one does no harm."""
+        """Set the timer, unless it is early enough already: an early timer is harmless."""
         due = self._engine.next_deadline()
         if due is None or (self._timer is not None and self._timer_due <= due):
             return
@@ -369,16 +369,17 @@ class Runner:
     # ------------------------------------------------------------------------------------ the end
 
     async def quiet(self, slot: str | None = None) -> None:
-        """Wait until no foreground rule runs or waits for consent; with a slot, no such rule that may lead to its write."""
+        """Wait until no foreground rule runs or waits for consent. With a slot, consider only rules that may lead to a
+        write of it."""
         await self.waits.until(lambda: self.waits.is_quiet(slot))
 
     def stop(self, failure: RavestateError | None) -> None:
-        """Ask the context to end; the first failure given is its fault."""
+        """Ask the context to end; the first failure given is the reason."""
         self.fault = self.fault or failure
         self._ask_to_stop()
 
     async def close(self, *, at_once: bool = False) -> None:
-        """Cancel all runs and let them clean up, or do not wait for that (`at_once`). No rule starts any more."""
+        """Cancel all runs and let them clean up; with `at_once`, do not wait for that. No rule starts any more."""
         self._closing = True
         await self._async.close(ENDED, at_once=at_once)
         self.closed = True

@@ -15,7 +15,7 @@ class Waits:
 
     Args:
         engine: The engine.
-        is_busy: Whether effects are still to be performed.
+        is_busy: Returns whether some effects have not been performed yet.
         schedule: Make the loop perform effects, and `check` afterwards.
     """
 
@@ -55,7 +55,7 @@ class Waits:
         self.futures.clear()
 
     def is_quiet(self, slot: str | None = None) -> bool:
-        """Return whether no foreground rule runs or waits; with a slot, no such rule that may lead to a write of it."""
+        """Return whether no foreground rule runs or waits. With a slot, consider only rules that may lead to its write."""
         alive = [activation.clause.rule for activation in (*self._engine.running.values(), *self._engine.waiting)]
         if slot is not None and alive:
             policy = self._engine.policy
@@ -68,13 +68,12 @@ class Waits:
         return {a.id: a for a in (*self._engine.running.values(), *self._engine.waiting)}
 
     async def until_others_end(self, known: Mapping[int, Activation], seconds: float) -> None:
-        """Wait until no activation but the `known` ones runs or waits, and no spike of ``rs.shutdown`` has yet to age.
+        """Wait until only `known` activations run or wait, and no rule waits for ``rs.shutdown`` to grow older.
 
-        A rule in the background that was at work before may begin again for ever. It counts only if it handles
-        ``rs.shutdown``.
+        A background rule that was already running may restart endlessly. It counts only if it handles ``rs.shutdown``.
 
         Args:
-            known: Activations that do not count, by their numbers.
+            known: The numbers of the activations to ignore.
             seconds: How long to wait at most.
         """
         engine = self._engine

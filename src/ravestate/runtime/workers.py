@@ -3,7 +3,7 @@
 All contexts of a process share one pool of threads, and no context may take them all. The threads are daemons: a
 function that hangs must not keep the process from ending. (The standard library's pool joins its threads at exit.)
 
-The end of the process still waits a while for functions at work. A thread may be inside a C++ library, loading a model
+At its end, the process still waits a while for running functions. A thread may be inside a C++ library, loading a model
 for instance; if the interpreter ends it there, the whole process may crash.
 """
 
@@ -18,13 +18,13 @@ from dataclasses import dataclass, field
 from time import monotonic
 
 LAST_GRACE = 5.0
-"""Seconds for which the end of the process waits for functions at work."""
+"""Seconds that the process waits at its end for running functions."""
 
 SHARE = 32
-"""Functions of one context that are at work at once; further ones wait until one of them ends."""
+"""The maximum number of functions of one context that run at once; others wait until one of them ends."""
 
 THREADS = 256
-"""Threads of the process; if all are busy, further jobs wait for one."""
+"""The maximum number of threads in the process; if all are busy, further jobs wait for one."""
 
 IDLE = 30.0
 """Seconds after which a thread with nothing to do ends."""
@@ -41,7 +41,7 @@ class Job:
 
     Attributes:
         made: When it was submitted (seconds on the monotonic clock).
-        began: When a thread took it (likewise); None before.
+        began: When a thread took it (seconds on the same clock); None before.
     """
 
     queue: JobQueue
@@ -70,7 +70,7 @@ class ThreadPool:
         self._number = 0
 
     def take(self, job: Job) -> None:
-        """Do a job soon; the caller holds `change`.
+        """Queue a job; the caller holds `change`.
 
         Raises:
             RuntimeError: The system refuses a thread, and the pool has none that could do the job later.
@@ -92,7 +92,7 @@ class ThreadPool:
                 self._free += 1
 
     def is_full(self) -> bool:
-        """Whether there are more jobs than free threads; the caller holds `change`."""
+        """Return whether there are more jobs than free threads; the caller holds `change`."""
         return len(self._jobs) > self._free
 
     def _live(self) -> None:
@@ -106,7 +106,7 @@ class ThreadPool:
                     self._jobs.extend(job.queue.done(job))  # this thread is free for it
                     if not self.at_work:
                         self.rest.notify_all()
-                del job  # it may hold a context
+                del job  # do not keep it alive: it may refer to a context
 
     def _next(self) -> Job | None:
         """Wait for a job; return None if the thread is to end."""
@@ -151,7 +151,7 @@ class JobQueue:
             self._pool.contexts += 1
 
     def submit(self, call: Callable[[], None], name: str = "") -> Job:
-        """Do a job soon.
+        """Queue a job.
 
         Raises:
             RuntimeError: The system has no more threads.
@@ -166,7 +166,7 @@ class JobQueue:
         return job
 
     def abandon(self, job: Job) -> None:
-        """Give the place of a job to the next one: nothing waits for its end any more, and it may hang."""
+        """Give a job's place to the next one: nothing waits for the job any more, and it may hang."""
         with self._pool.change:
             if job in self._waiting:
                 self._waiting.remove(job)

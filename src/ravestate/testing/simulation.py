@@ -33,18 +33,18 @@ OUTPUT = "rawio:output:changed"
 
 
 class Simulation:
-    """Modules in virtual time: no real waiting, the same result every time. Use it as a context manager.
+    """Modules in virtual time: no real waiting, and the same result every time. Use it as a context manager.
 
     Args:
-        modules: As for `Context`.
-        settings: As for `Context`.
+        modules: See `Context`.
+        settings: See `Context`.
         seed: The seed of random choices; fixed, so that tests repeat.
-        patience: As for `Context` (seconds).
+        patience: See `Context` (seconds).
         trace: Whether to keep every decision.
-        journal: As for `Context`.
+        journal: See `Context`.
 
     Attributes:
-        context: The context, with everything that has no shortcut here.
+        context: The context, for everything that has no shortcut here.
         said: The values that were written to ``rawio.output``, in order.
         fired: The rules that ran and did not resign, in the order in which they finished.
         failures: The rules that failed: (name of the rule, exception).
@@ -96,13 +96,13 @@ class Simulation:
 
         Args:
             path: The agent file. Its modules are relative to its folder.
-            settings: Settings by module, before the environment's and the file's.
-            seed: The seed of random choices; by default the file's, else 0.
-            patience: As for `Context` (seconds); by default the file's.
+            settings: Settings by module. They override the environment's and the file's.
+            seed: The seed of random choices; by default the file's, otherwise 0.
+            patience: See `Context` (seconds); by default the file's.
             trace: Whether to keep every decision.
 
         Raises:
-            UsageError: The file or something in it is wrong. The message has all mistakes.
+            UsageError: The file or something in it is wrong. The message lists all mistakes.
         """
         spec = AgentSpec.from_file(Path(path))
         platforms = {name for name, folder in BUILT_IN.items() if folder == "platform"}
@@ -178,7 +178,7 @@ class Simulation:
         self.settle()
 
     def advance(self, seconds: float) -> None:
-        """Let virtual seconds pass; settle before and after."""
+        """Let virtual seconds pass; before and after, do everything that is due."""
         if seconds < 0:
             raise ValueError(f"advance({seconds!r}): time does not run backwards")
         loop = self._running()
@@ -201,7 +201,7 @@ class Simulation:
         return self.context.trace
 
     def read(self, slot: Slot[T]) -> T:
-        """Return the present value of a slot."""
+        """Return the current value of a slot."""
         return self.context.read(slot)
 
     def explain(self, rule: str | Rule[Any, Any]) -> Explanation:

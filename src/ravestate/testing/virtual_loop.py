@@ -12,7 +12,7 @@ from typing import Any
 from ravestate.errors import EngineError
 
 REAL_LIMIT = 30.0
-"""Real seconds that a plain function may keep virtual time waiting."""
+"""Real seconds for which a plain function may delay virtual time."""
 
 
 class _Timer(asyncio.TimerHandle):
@@ -78,7 +78,7 @@ class VirtualLoop(asyncio.SelectorEventLoop):
         return timer
 
     def give_up(self, rule: str) -> None:
-        """Stop because an instant does not end; `run_to` then raises an error that names the rule."""
+        """Stop because an instant is endless; `run_to` then raises an error that names the rule."""
         self._endless = rule
         self.stop()
 

@@ -1,1 +1,1 @@
-"""Meta modules: what helps other modules, whatever they are about."""
+"""Meta modules: general services for other modules."""

@@ -1,1 +1,1 @@
-"""Skill modules: what an agent can do; they know modalities and meta modules, never a platform."""
+"""Skill modules: the abilities of an agent. They know modalities and meta modules, never a platform."""

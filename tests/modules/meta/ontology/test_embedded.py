@@ -285,7 +285,7 @@ def test_a_property_does_not_change_its_kind(file: Path, tmp_path: Path, open_he
     assert "has Person.shoe_size as text, and the types say number: write shoe_size: text" in said
     types.write_text("Person: {has: {shoe_size: date}}")  # kept as a text too, so it comes out when it is read
     memory = open_here(path=file, types=(types,))
-    with pytest.raises(RuleError, match=r"memory has Person\.shoe_size = '38 or so', which is no date"):
+    with pytest.raises(RuleError, match=r"memory has Person\.shoe_size = '38 or so', which is not a valid date"):
         memory.find("Person").result()
 
 

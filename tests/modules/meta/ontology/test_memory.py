@@ -297,9 +297,9 @@ def test_a_refused_merge_changes_nothing(memory: Memory) -> None:
     before = memory.export().result()
     with pytest.raises(RuleError, match="cannot be merged with itself"):
         memory.merge(ada, ada).result()
-    with pytest.raises(RuleError, match="a Agent is no Person; merge them the other way round"):
+    with pytest.raises(RuleError, match="a Agent is not a Person; merge them the other way round"):
         memory.merge(agent, ada).result()
-    with pytest.raises(RuleError, match=r"a City is no Person$"):
+    with pytest.raises(RuleError, match=r"a City is not a Person$"):
         memory.merge(city, ada).result()
     with pytest.raises(RuleError, match="memory does not know"):
         memory.merge(ada, Node("Person")).result()
@@ -374,8 +374,8 @@ def test_everything_is_exported_and_loaded(memory: Memory, open_here: Open, tmp_
 @pytest.mark.parametrize(
     ("document", "said"),
     [
-        ({}, "no document of memory"),
-        ({"format": 2, "nodes": [], "relations": []}, "no document of memory"),
+        ({}, "not a document of memory"),
+        ({"format": 2, "nodes": [], "relations": []}, "not a document of memory"),
         ({"format": 1, "nodes": {}, "relations": []}, "'nodes' must be a list"),
         ({"format": 1, "nodes": [1], "relations": []}, "has no keys and values"),
         ({"format": 1, "nodes": [{"type": "Person"}], "relations": []}, "needs a text as 'id'"),

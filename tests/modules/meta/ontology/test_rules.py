@@ -125,7 +125,7 @@ def test_without_the_package_everything_else_goes_on(
     [warned] = [record for record in caplog.records if record.name == "ravestate.ontology.open_up"]
     assert warned.levelname == "WARNING"
     assert warned.getMessage() == (
-        "there is no long-term memory in this talk: ontology needs ladybug: pip install 'ravestate[ontology]'"
+        "there is no long-term memory in this conversation: ontology needs ladybug: pip install 'ravestate[ontology]'"
     )
 
 
@@ -134,7 +134,9 @@ def test_an_error_in_a_file_of_types_is_an_error_of_the_context(tmp_path: Path) 
     types.write_text("Boat:\n  is: Thnig\n")
     with pytest.raises(rs.DeclarationErrors) as refused:
         simulate(ontology, settings=at(tmp_path / "m.lbug", types=(types,)))
-    assert f"{types}:2: Boat is a 'Thnig', which is no type; did you mean 'Thing'?" in str(refused.value.exceptions[0])
+    assert f"{types}:2: Boat is a 'Thnig', which is not a type; did you mean 'Thing'?" in str(
+        refused.value.exceptions[0]
+    )
 
 
 # ------------------------------------------------------------------------------------ bound slots

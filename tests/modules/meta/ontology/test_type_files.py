@@ -74,20 +74,20 @@ def test_the_types_that_come_with_it_are_complete() -> None:
 @pytest.mark.parametrize(
     ("text", "line", "said"),
     [
-        ("- Boat", 1, "a file of types maps types to what they have, and this is no mapping"),
-        ("Boat:\n  [x]", 2, "Boat has keys and values, and this is no mapping"),
+        ("- Boat", 1, "a file of types maps types to what they have, and this is not a mapping"),
+        ("Boat:\n  [x]", 2, "Boat has keys and values, and this is not a mapping"),
         ("Boat: {si: Thing}", 1, "Boat has no 'si'; did you mean 'is'? (a type has: is, has, relations)"),
-        ("Boat:\n  is: Thnig\nThing:", 2, "Boat is a 'Thnig', which is no type; did you mean 'Thing'?"),
+        ("Boat:\n  is: Thnig\nThing:", 2, "Boat is a 'Thnig', which is not a type; did you mean 'Thing'?"),
         ("A: {is: B}\nB: {is: C}\nC: {is: A}", 1, "A is a B is a C is a A: types form no ring"),
         ("A: {is: A}", 1, "A is a A: types form no ring"),
         ("A: {is: [B]}\nB:", 1, "the parent of A is one type, and this is a sequence"),
         (
             "A:\n  has:\n    age: intger",
             3,
-            "A.age: 'intger' is no kind; did you mean 'integer'? (kinds: text, ",
+            "A.age: 'intger' is not a kind; did you mean 'integer'? (kinds: text, ",
         ),
         ("A:\n  has: {age: [text]}", 2, "A.age has a kind, and this is a sequence"),
-        ("A: {has: [age]}", 1, "A has properties by name, and this is no mapping"),
+        ("A: {has: [age]}", 1, "A has properties by name, and this is not a mapping"),
         ("A: {has: {id: text}}", 1, "A.id: every node has an id already"),
         ("A: {has: {Id: text}}", 1, "A.Id: every node has an id already"),
         ("A: {has: {shoe size: text}}", 1, "'shoe size' is not a name for a property"),
@@ -104,10 +104,10 @@ def test_the_types_that_come_with_it_are_complete() -> None:
         ("A: {has: {age: text}}\nB: {has: {Age: text}}", 2, "B.Age is text, and age is text at FILE:1"),
         ("A:\nA:", 2, "A is here twice"),
         ("A: {has: {x: text, x: text}}", 1, "x is here twice"),
-        ("A:\n  relations:\n    to_b: B", 3, "to_b goes to 'B', which is no type"),
+        ("A:\n  relations:\n    to_b: B", 3, "to_b goes to 'B', which is not a type"),
         ("A: {relations: {knows: {form: A}}}", 1, "knows has no 'form'"),
         ("A: {relations: {knows: {has: {x: text}}}}", 1, "knows leads nowhere: write knows: {to: Thing}"),
-        ("A: {relations: [knows]}", 1, "relations map names to types, and this is no mapping"),
+        ("A: {relations: [knows]}", 1, "relations map names to types, and this is not a mapping"),
         ("A: {has: {age: text}", 1, "not valid YAML"),
         ("A: *nowhere", 1, "not valid YAML"),
         ("A:\n\tis: B", 2, "not valid YAML"),
@@ -138,7 +138,7 @@ def test_a_file_that_cannot_be_read(tmp_path: Path) -> None:
     with pytest.raises(PlatformError, match="cannot be read"):
         read_types([tmp_path])
     (tmp_path / "types.yaml").write_bytes(b"\xff\xfe")
-    with pytest.raises(DeclarationError, match="no text in UTF-8"):
+    with pytest.raises(DeclarationError, match="not UTF-8 text"):
         read_types([tmp_path / "types.yaml"])
     (tmp_path / "types.yaml").write_text("[" * 5000)
     with pytest.raises(DeclarationError, match="nested more than 50 levels"):

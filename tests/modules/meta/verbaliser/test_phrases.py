@@ -1,4 +1,4 @@
-"""Books of phrases: read, merged, chosen from, and every mistake told with its line."""
+"""Phrase books: reading, merging and choosing; every mistake is reported with its line."""
 
 import random
 import re
@@ -158,10 +158,10 @@ def test_impossible_intents(intent: str, parameters: dict[str, object], message:
     ("text", "line", "message"),
     [
         ("greet: [Hello", 1, "not valid YAML"),
-        ("greet:\n  en: Hello: you", 2, "not valid YAML .*wants quotes"),
+        ("greet:\n  en: Hello: you", 2, "not valid YAML .*[Pp]ut quotes"),
         ("a: b\n\x07", 2, "a control character"),
         ("a: b\n---\nc: d", 2, "not valid YAML .*another document"),
-        ("- Hello!", 1, "maps intents to languages, and this is no mapping"),
+        ("- Hello!", 1, "maps intents to languages, and this is not a mapping"),
         ("Hello!", 1, "maps intents to languages"),
         ("greet:\n  en:\n  de: Hallo", 2, "a phrase is empty"),
         ("greet:\n  en: ['', x]", 2, "a phrase is empty"),
@@ -169,7 +169,7 @@ def test_impossible_intents(intent: str, parameters: dict[str, object], message:
         (
             "greet:\n  en:\n    - {name}, hello",
             3,
-            "a phrase is a text, and this is a mapping.*wants quotes|not valid YAML",
+            "a phrase is a text, and this is a mapping.*[Pp]ut quotes|not valid YAML",
         ),
         ("greet:\n  en:\n    - {name}", 3, "a phrase is a text, and this is a mapping"),
         ("greet:\n  en:\n    - [a]", 3, "a phrase is a text, and this is a sequence"),
@@ -182,10 +182,10 @@ def test_impossible_intents(intent: str, parameters: dict[str, object], message:
         ("a: !add {en: b}", 1, r"goes in front of phrases: write en: !add"),
         ("a: !!python/object/apply:os.getcwd []", 1, "there are no phrases"),
         ("a: hi {", 1, "name no parameter .*write {name}"),
-        ("a: hi {}", 1, "{} is no parameter"),
-        ("a: hi {0}", 1, r"\{0\} is no parameter"),
-        ("a: hi {x.y}", 1, "{x.y} is no parameter"),
-        ("a: hi {x!r:>3}", 1, "{x!r:>3} is no parameter"),
+        ("a: hi {}", 1, "{} is not a parameter"),
+        ("a: hi {0}", 1, r"\{0\} is not a parameter"),
+        ("a: hi {x.y}", 1, "{x.y} is not a parameter"),
+        ("a: hi {x!r:>3}", 1, "{x!r:>3} is not a parameter"),
     ],
 )
 def test_errors_name_file_and_line(tmp_path: Path, text: str, line: int, message: str) -> None:
@@ -210,7 +210,7 @@ def test_a_file_that_cannot_be_read(tmp_path: Path) -> None:
     with pytest.raises(PlatformError, match=f"{re.escape(repr(str(tmp_path)))} cannot be read: "):
         PhraseBook.load([tmp_path])
     (tmp_path / "latin.yaml").write_bytes(b"a: caf\xe9")
-    with pytest.raises(DeclarationError, match=r"latin.yaml: this is no text in UTF-8 .*at byte 6"):
+    with pytest.raises(DeclarationError, match=r"latin.yaml: this is not UTF-8 text .*at byte 6"):
         PhraseBook.load([tmp_path / "latin.yaml"])
 
 

@@ -20,7 +20,7 @@ CALM: dict[str, Any] = {"shy": 0.0, "surprised": 0.0, "happy": 0.0, "affectionat
 
 
 def module(name: str = "skill", seconds: float = 0.0, **declared: Any) -> rs.Module:
-    """A skill that answers everything with "Yes." after some seconds."""
+    """A skill that answers everything with "Yes." after a few seconds."""
     skill = rs.Module(name, requires=[rawio, emotion])
 
     @skill.rule(when=rawio.input.changed, writes=rawio.output, **declared)

@@ -1,4 +1,4 @@
-"""The log of a chat never stands between its lines."""
+"""The log never appears between the lines of a chat."""
 
 import logging
 import os

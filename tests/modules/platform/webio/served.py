@@ -1,4 +1,4 @@
-"""The page of an agent in a process of its own, on a real port; and visitors that come over the network."""
+"""An agent's page in a separate process, on a real port, with visitors that come over the network."""
 
 import json
 import os
@@ -50,7 +50,7 @@ class Served:
         self.end()
 
     def end(self, how: signal.Signals = signal.SIGINT) -> int:
-        """End it in order; its exit code."""
+        """End it cleanly, and return its exit code."""
         if self.process.poll() is None:
             self.process.send_signal(how)
             try:

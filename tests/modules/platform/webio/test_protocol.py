@@ -128,7 +128,7 @@ def test_what_parsers_stumble_over(text: str) -> None:
     [
         ("hello", 'not JSON: \'hello\'; a frame is an object: {"type": "hello", "v": 1}'),
         (b"{}", "a frame is a text message, not a binary one"),
-        ("[1]", '\'[1]\' is no object: write {"type": "hello", "v": 1}'),
+        ("[1]", '\'[1]\' is not an object: write {"type": "hello", "v": 1}'),
         ("{}", "\"type\": 'None' is none of hello, say, writing, bye, ping"),
         ('{"type": "hallo"}', "'hallo' is none of hello, say, writing, bye, ping; did you mean 'hello'?"),
         ('{"type": ["say"]}', "is none of hello, say, writing, bye, ping"),

@@ -1,4 +1,4 @@
-"""Conversations: apart from each other, taken up again, kept for a while, ended in order, bounded in number."""
+"""Conversations: separate from each other, resumed, kept for a while, ended cleanly, limited in number."""
 
 import asyncio
 import logging

@@ -19,7 +19,7 @@ def agent(name: str = "guide") -> rs.Module:
 
 
 def with_times(sim: Simulation, seconds: float) -> list[tuple[int, str]]:
-    """Return what is said within some seconds, with the second of each."""
+    """Return what is said within a few seconds, with the second of each."""
     heard: list[tuple[int, str]] = []
     for _ in range(int(seconds)):
         before = len(sim.said)
@@ -226,7 +226,7 @@ def test_while_the_talk_has_a_topic_nothing_is_pursued() -> None:
         sim.put(agenda.topics, {"quiz": "a quiz"})
         sim.advance(60.0)
         assert sim.said == []
-        assert "the talk is about quiz" in str(sim.explain("agenda:take_initiative"))
+        assert "the conversation is about quiz" in str(sim.explain("agenda:take_initiative"))
         sim.put(agenda.topics, {})
         sim.advance(6.0)
         assert sim.said == ["A game?"]

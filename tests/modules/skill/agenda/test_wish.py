@@ -38,7 +38,7 @@ def test_goals_of_words_alone_are_pursued_like_any_other() -> None:
         ({"name": "a"}, "agenda.goals.0.say"),
         ({"name": "a", "say": ""}, "agenda.goals.0.say"),
         ({"name": "a", "say": []}, "agenda.goals.0.say"),
-        ({"name": "a", "say": "x", "done": "("}, "is no regular expression"),
+        ({"name": "a", "say": "x", "done": "("}, "is not a regular expression"),
         ({"name": "a", "say": "x", "done": True}, 'write "yes"'),
         ({"name": "a", "say": "x", "refused": False}, 'write "no"'),
         ({"name": "a", "say": "x", "priority": 0}, "agenda.goals.0.priority = 0"),

@@ -15,7 +15,7 @@ def asked(utterance: str, **more: bool) -> list[str]:
     ("said", "why"),
     [
         ("what is my name", "about the user"),
-        ("you are nice", "no question"),
+        ("you are nice", "not a question"),
         ("?!", "nothing is said"),
         ("is he your father", "about somebody else"),
         ("why do you like music", "asks for a reason"),

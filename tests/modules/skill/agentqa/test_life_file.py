@@ -66,7 +66,7 @@ def test_asides_are_added_and_may_be_a_topic_of_their_own(tmp_path: Path) -> Non
     life = life_of("topics: {thanks: {asides: merci}, hm: {asides: ['h?m+'], phrases: Well.}}", tmp_path)
     assert life.topics["thanks"].asides == (*read_life().topics["thanks"].asides, "merci")
     assert life.topics["hm"].asides == ("h?m+",)
-    with pytest.raises(rs.DeclarationError, match=r"'\(hm' is no regular expression"):
+    with pytest.raises(rs.DeclarationError, match=r"'\(hm' is not a regular expression"):
         life_of("topics: {hm: {asides: ['(hm'], phrases: Well.}}", tmp_path)
 
 
@@ -115,13 +115,13 @@ def test_an_empty_file_changes_nothing(text: str, tmp_path: Path) -> None:
         ("facts: [a]", "mine.yaml:1: facts have names"),
         (
             "facts:\n  born: yesterday",
-            "mine.yaml:2: born: 'yesterday' is no date: write for example 2024-03-01",
+            "mine.yaml:2: born: 'yesterday' is not a date: write for example 2024-03-01",
         ),
         ("facts:\n  name: ~", "the agent needs a name"),
         ("facts:\n  age: 3", "mine.yaml:2: age is computed, and cannot be written here: write born:"),
         ("facts:\n  name: [a, b]", "name is one text"),
         ("facts:\n  a: 1\n  a: 2", "mine.yaml:3: 'a' is here a second time"),
-        ("facts:\n  my thing!: 1", "is no name"),
+        ("facts:\n  my thing!: 1", "is not a name"),
         ("facts:\n  likes: [[a]]", "this must be a text, not a sequence"),
         ("facts:\n  likes: [a, ~]", "this must be a text, and it is empty"),
         ("topics:\n  shoes: {phrases: No.}", "mine.yaml:2: the topic shoes has no questions"),
@@ -129,17 +129,17 @@ def test_an_empty_file_changes_nothing(text: str, tmp_path: Path) -> None:
         ("topics:\n  shoes: {question: x}", "'question' means nothing here; did you mean 'questions'"),
         (
             "topics:\n  grief: {remarks: [sad, (lonely]}",
-            "mine.yaml:2: '(lonely' is no regular expression (missing )",
+            "mine.yaml:2: '(lonely' is not a regular expression (missing )",
         ),
         ("topics:\n  home: {questions: []}", "there are no questions"),
         (
             "topics:\n  home:\n    phrases:\n      - I live.\n      - 'In {hom}.'",
-            "mine.yaml:5: {hom} in 'In {hom}.' is no fact; did you mean 'home'",
+            "mine.yaml:5: {hom} in 'In {hom}.' is not a fact; did you mean 'home'",
         ),
         ("topics:\n  home: {phrases: 'a } b'}", "the braces in 'a } b' name no fact"),
-        ("topics:\n  home: {phrases: '{home!r}'}", "is no fact"),
+        ("topics:\n  home: {phrases: '{home!r}'}", "is not a fact"),
         ("topics:\n  likes: {named: {shoes: 'Yes, {it}.'}}", "'shoes' means nothing here"),
-        ("topics:\n  likes: {named: {likes: 'Yes, {what}.'}}", "{what} in 'Yes, {what}.' is no fact"),
+        ("topics:\n  likes: {named: {likes: 'Yes, {what}.'}}", "{what} in 'Yes, {what}.' is not a fact"),
         ("facts: {a: b", "not valid YAML"),
         ("facts: \x07", "not valid YAML (a control character)"),
         ("[" * 5000, "nested more than 50 levels"),
@@ -153,7 +153,7 @@ def test_a_mistake_is_told_with_its_line(text: str, told: str, tmp_path: Path) -
 
 def test_a_file_that_cannot_be_read_says_why(tmp_path: Path) -> None:
     (tmp_path / "robin.yaml").write_bytes(b"facts: {name: \xff}")
-    with pytest.raises(DeclarationError, match="no text in UTF-8"):
+    with pytest.raises(DeclarationError, match="not UTF-8 text"):
         read_life(tmp_path / "robin.yaml")
     with pytest.raises(PlatformError, match=r"does not exist; did you mean 'robin\.yaml'"):
         read_life(tmp_path / "robn.yaml")
@@ -166,5 +166,5 @@ def test_a_mistake_is_told_before_anything_runs(tmp_path: Path) -> None:
     file.write_text("facts: {born: soon}")
     with pytest.raises(DeclarationErrors) as caught, simulate(agentqa, settings={"agentqa": {"life": file}}):
         pass
-    assert "robin.yaml:1: born: 'soon' is no date" in str(caught.value.exceptions[0])
+    assert "robin.yaml:1: born: 'soon' is not a date" in str(caught.value.exceptions[0])
     assert isinstance(agentqa.module, rs.Module)

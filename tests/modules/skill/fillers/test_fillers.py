@@ -1,4 +1,4 @@
-"""fillers fills a pause, and takes nobody's turn."""
+"""fillers fills a pause, and takes no other rule's turn."""
 
 import ravestate as rs
 from ravestate.modules import fillers, idle, rawio

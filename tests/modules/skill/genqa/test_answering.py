@@ -164,7 +164,7 @@ def test_an_index_that_is_none_is_told_each_time(tmp_path: Path) -> None:
     (tmp_path / "index.sqlite").write_text("Dear diary, today I had an idea for an index.", encoding="utf-8")
     answerer = Answerer(tmp_path / "index.sqlite")
     for _ in range(2):
-        with pytest.raises(rs.PlatformError, match="it is no index"):
+        with pytest.raises(rs.PlatformError, match="it is not an index"):
             answerer.answer("What is the capital of Peru?")
 
 

@@ -162,7 +162,7 @@ def test_another_program_s_file_is_refused(tmp_path: Path) -> None:
 @pytest.mark.parametrize("content", [b"Dear diary, " * 100, b"SQLite format 3\0" + b"\xff" * 4096])
 def test_a_file_that_is_none_is_refused(tmp_path: Path, content: bytes) -> None:
     (tmp_path / "index.sqlite").write_bytes(content)
-    with pytest.raises(rs.PlatformError, match="it is no index, or damaged"):
+    with pytest.raises(rs.PlatformError, match="it is not an index, or damaged"):
         Index(tmp_path / "index.sqlite")
     assert (tmp_path / "index.sqlite").read_bytes() == content
 

@@ -177,7 +177,7 @@ def test_an_encrypted_pdf(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("content", [b"", b"%PDF-1.4\ngarbage", b"no PDF at all"])
 def test_a_damaged_pdf(tmp_path: Path, content: bytes) -> None:
-    assert why(write(tmp_path / "a.pdf", content)).startswith("it is no PDF, or damaged")
+    assert why(write(tmp_path / "a.pdf", content)).startswith("it is not a PDF, or damaged")
 
 
 def test_a_pdf_that_is_cut_off(tmp_path: Path) -> None:
@@ -192,11 +192,11 @@ def test_a_pdf_of_pictures(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("line", "said"),
     [
-        ("{", "line 2 is no JSON"),
+        ("{", "line 2 is not JSON"),
         ('{"title": "x"}', "line 2 has no text"),
         ('["text"]', "line 2 has no text"),
         ('{"text": 3}', "line 2 has no text"),
-        ("\udce9".encode("utf-8", "surrogateescape"), "line 2 is no JSON"),
+        ("\udce9".encode("utf-8", "surrogateescape"), "line 2 is not JSON"),
     ],
 )
 def test_a_line_that_is_no_document(tmp_path: Path, line: str | bytes, said: str) -> None:
@@ -280,7 +280,7 @@ def test_articles_of_a_zim_file(tmp_path: Path, archive: list[SimpleNamespace]) 
 
 def test_a_file_that_is_no_zim(tmp_path: Path, archive: list[SimpleNamespace]) -> None:
     assert archive == []
-    assert why(write(tmp_path / "a.zim", b"PK\x03\x04")) == "it is no ZIM file, or damaged (Invalid magic number)"
+    assert why(write(tmp_path / "a.zim", b"PK\x03\x04")) == "it is not a ZIM file, or damaged (Invalid magic number)"
 
 
 def test_every_kind_has_its_reader() -> None:

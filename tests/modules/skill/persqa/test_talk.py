@@ -1,4 +1,4 @@
-"""The state of the talk, step by step."""
+"""The state of the conversation, step by step."""
 
 from ravestate.modules.skill.persqa.talk import Question, Talk
 

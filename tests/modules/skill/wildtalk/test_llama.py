@@ -187,8 +187,8 @@ def test_loading_that_is_cancelled_leaves_no_process() -> None:
 @pytest.mark.parametrize(
     ("content", "message"),
     [
-        (b"hello", r"is no GGUF file \(it begins with b'hell'\): fetch the model in GGUF format"),
-        (b"", r"is no GGUF file \(it is empty\)"),
+        (b"hello", r"is not a GGUF file \(it begins with b'hell'\): fetch the model in GGUF format"),
+        (b"", r"is not a GGUF file \(it is empty\)"),
         (b"GGUF", "cannot load the model .*: .*The file is cut short or damaged"),
         (b"GGUF" + b"\xff" * 999, "cannot load the model .*version.*Name a chat model in GGUF format"),
         (b"GGUF\3\0\0\0" + bytes(16), "cannot load the model .*architecture"),

@@ -310,12 +310,12 @@ def test_a_server_that_is_not_there(converse: Conversation) -> None:
 
 @pytest.mark.parametrize("url", ["", "localhost:11434/v1", "http://", "ftp://x/v1"])
 def test_an_address_that_is_none(url: str) -> None:
-    with pytest.raises(PlatformError, match=f"base_url '{url}' is no web address: write for example"):
+    with pytest.raises(PlatformError, match=f"base_url '{url}' is not a web address: write for example"):
         OpenAIBackend(url, "tiny")
 
 
 def test_an_address_with_an_impossible_port(converse: Conversation) -> None:
-    with pytest.raises(PlatformError, match="is no web address"):
+    with pytest.raises(PlatformError, match="is not a web address"):
         converse(hello, base_url="http://127.0.0.1:port/v1")
 
 

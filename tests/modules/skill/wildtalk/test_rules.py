@@ -214,7 +214,7 @@ def test_a_failing_model_is_logged_once_and_the_conversation_goes_on(
     ("settings", "message"),
     [
         ({"model_path": "/nowhere/big.gguf"}, "wildtalk: the model '/nowhere/big.gguf' does not exist"),
-        ({"backend": "openai", "base_url": "here"}, "base_url 'here' is no web address"),
+        ({"backend": "openai", "base_url": "here"}, "base_url 'here' is not a web address"),
     ],
 )
 def test_an_impossible_model_is_logged_once_at_the_start(

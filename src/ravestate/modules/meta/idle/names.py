@@ -18,11 +18,12 @@ class Settings(rs.Settings):
     bored_after: Seconds = 5.0
     """Seconds without activity after which the agent is bored."""
     answer_time: Seconds = 12.0
-    """Seconds of silence after a question of the agent's, if that is longer."""
+    """Seconds of silence after a question from the agent, if that is longer."""
     writing_time: Seconds = 20.0
     """Seconds of silence after the last key of an unsent line."""
     remarks: Annotated[int, Field(ge=0)] = 2
-    """The most remarks in a row that the agent makes out of boredom without a word or a key from the user."""
+    """The maximum number of remarks in a row that the agent makes out of boredom without a word or a key from the
+    user."""
     impatient_after: Seconds = 1.0
     """Seconds that a ready rule waits before the agent is impatient."""
 
@@ -30,10 +31,10 @@ class Settings(rs.Settings):
 module = rs.Module("idle", requires=[rawio], settings=Settings)
 
 bored = module.signal("bored")
-"""Nothing happens for ``bored_after`` seconds: once for each silence, the first after startup included.
+"""Nothing happens for ``bored_after`` seconds. Raised once for each silence, including the one after startup.
 
-A rule that acts on it ends the silence. After ``remarks`` unanswered remarks, after a wish for quiet and after a goodbye,
-the agent stays quiet until the user speaks again.
+A rule that reacts to it ends the silence. After ``remarks`` unanswered remarks, a wish for quiet or a goodbye, the
+agent stays quiet until the user speaks again.
 """
 
 hushed = module.signal("hushed")

@@ -40,7 +40,7 @@ async def notice_silence(ctx: rs.RuleContext) -> rs.Resign | None:
     background=True,
 )
 async def notice_user(ctx: rs.RuleContext) -> None:
-    """Count remarks from zero again: the user is there."""
+    """Reset the count of remarks: the user is there."""
     ctx[remarked] = True
     ctx[unanswered] = 0
 

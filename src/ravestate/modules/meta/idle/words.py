@@ -46,7 +46,7 @@ def asks_for_quiet(text: str) -> bool:
 
 
 def takes_leave(text: str) -> bool:
-    """Return whether the user says goodbye, with little after it.
+    """Return whether the user says goodbye and little else.
 
     Example:
         >>> takes_leave("Okay, bye!"), takes_leave("Bye the way, who are you?")

@@ -37,7 +37,7 @@ class Analysis:
 
 
 def analyse(text: str, pipeline: Pipeline, agent_names: Iterable[str] = ()) -> Analysis:
-    """Analyse `text`. Blocks for some milliseconds.
+    """Analyse `text`. Blocks for a few milliseconds.
 
     Args:
         text: Any text; the analysis covers the beginning of a long one.

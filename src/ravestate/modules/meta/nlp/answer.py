@@ -15,7 +15,7 @@ from .word_set import word_set
 
 @dataclass(frozen=True, slots=True)
 class YesNo:
-    """The meaning of a text as an answer. All three are None for a text that is no answer.
+    """The meaning of a text as an answer. All three are None for a text that is not an answer.
 
     Example:
         >>> yesno_of("probably not")
@@ -23,9 +23,9 @@ class YesNo:
     """
 
     yes: int | None = None
-    """0 no, 1 weakly, 2 surely."""
+    """0: no, 1: weakly, 2: surely."""
     no: int | None = None
-    """0 no, 1 weakly, 2 surely."""
+    """0: no, 1: weakly, 2: surely."""
     unsure: bool | None = None
     """Whether the speaker does not know."""
 

@@ -173,7 +173,7 @@ UNKNOWNS = word_set("if whether what how where why who when which about on yet e
 """Words that may follow *I don't know*: *I don't know if I want that*, but not *I don't know my father*."""
 
 STATERS = word_set("i you he she it we they my your his her our their this that these those there the a an")
-"""Words that begin a statement after a hedge: *maybe I should go* is no answer."""
+"""Words that begin a statement after a hedge: *maybe I should go* is not an answer."""
 
 FOLLOWERS = word_set(
     "i you he she it we they my your his her our their this that these those there the a an not because",

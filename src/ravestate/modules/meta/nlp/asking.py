@@ -73,7 +73,7 @@ def kind_at(words: Sequence[Word], index: int) -> QuestionWord | None:
 
 
 def _asks_what_for(rest: Sequence[Word]) -> bool:
-    """Return whether a *for* that is not the verb's own ends the clause: *what do you need that for*."""
+    """Return whether the clause ends with a *for* that does not belong to the verb: *what do you need that for*."""
     clause: list[Word] = []
     for word in rest:
         if word.pos == "PUNCT":

@@ -33,7 +33,7 @@ _DIRECT = (
     "acomp",
     "oprd",
     "pobj",
-)  # the tagger sometimes takes a verb for a preposition
+)  # the tagger sometimes mistakes a verb for a preposition
 _FEELINGS = word_set(
     "interested tired bored married divorced scared excited worried surprised pleased disappointed confused retired ",
     "annoyed satisfied",
@@ -42,7 +42,7 @@ _PURSUITS = word_set("hobby job passion dream goal plan interest pastime task ha
 """Subjects before a gerund that names them: *my hobby is reading*."""
 _SENSES = word_set("be feel look seem sound taste smell")
 _STATES = word_set("better worse well fine good bad great ok okay awful hard")
-"""Adjectives that the tagger takes for adverbs."""
+"""Adjectives that the tagger mistakes for adverbs."""
 
 Part = str | QuestionWord
 

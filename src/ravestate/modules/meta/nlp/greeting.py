@@ -64,7 +64,7 @@ def says_hi(text: str) -> bool:
 
 
 def says_bye(text: str) -> bool:
-    """Return whether the text takes leave.
+    """Return whether the text says goodbye.
 
     Example:
         >>> says_bye("thanks, see you tomorrow"), says_bye("I have to go to work on Mondays")
@@ -97,7 +97,7 @@ def _parts(text: str) -> list[list[str]]:
 def _without_openers(words: list[str], known: frozenset[Phrase]) -> list[str]:
     while not _beginning(words, known) and (
         length := _beginning(words, _OPENERS)
-    ):  # "good" opens, "good night" does not
+    ):  # "good" begins a greeting, "good night" does not
         words = words[length:]
     return words
 

@@ -1,7 +1,7 @@
 """Recognise questions and their kinds.
 
-The functions use words, their order, and question marks. They ignore the dependency tree, which is unreliable for
-questions without capitals and punctuation, as from speech recognition.
+The functions use words, their order, and question marks. They ignore the dependency tree. It is unreliable for
+questions without capitals and punctuation, such as those from speech recognition.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ _OPENINGS = [
 _OPENINGS.sort(key=len, reverse=True)
 
 _PERFORMED = word_set("joke story tale poem riddle secret lie fairytale anecdote goodnight")
-"""Things to perform, such as jokes: a request for one is no question."""
+"""Things to perform, such as jokes: a request for one is not a question."""
 
 
 def question_of(tree: Tree) -> QuestionWord | None:

@@ -24,7 +24,8 @@ class Settings(rs.Settings):
 module = rs.Module("nlp", requires=[rawio, interloc], settings=Settings)
 
 text: rs.Slot[str] = module.slot("text", "", always=True)
-"""The last analysed utterance. Rules that need the text and its analysis wait for this slot, not for ``rawio.input``."""
+"""The last analysed utterance. Rules that need both the text and its analysis wait for this slot, not for
+``rawio.input``."""
 
 lock: rs.Slot[ContextLock] = module.slot("lock", ContextLock())
 """Analysis takes one utterance at a time: a later one may correct an earlier one (*no, Bremen*)."""
@@ -45,7 +46,7 @@ entities: rs.Slot[tuple[Entity, ...]] = module.slot("entities", (), always=True)
 """The named entities: persons, places, dates, numbers."""
 
 triples: rs.Slot[tuple[Triple, ...]] = module.slot("triples", (), always=True)
-"""The statements as subject, predicate and object; a question's unknown is a `QuestionWord`."""
+"""The statements as subject, predicate and object. The unknown of a question is a `QuestionWord`."""
 
 question: rs.Slot[QuestionWord | None] = module.slot("question", None, always=True)
 """The kind of the first question; None if nothing is asked."""
@@ -66,4 +67,4 @@ intent_hi = module.signal("intent_hi")
 """The user greets."""
 
 intent_bye = module.signal("intent_bye")
-"""The user takes leave."""
+"""The user says goodbye."""

@@ -43,7 +43,7 @@ class _Order:
 
 
 class Pipeline:
-    """A parser of texts, safe for threads: one thread parses the texts of all that wait."""
+    """A thread-safe parser of texts: one thread parses all waiting texts."""
 
     def __init__(self, name: str = "") -> None:
         """`name`: an installed pipeline, or its path; empty for the first installed one of `DEFAULTS`."""
@@ -129,7 +129,7 @@ class Pipeline:
                 continue
             try:
                 return spacy.load(name)
-            except Exception as error:  # pipelines of other versions raise all kinds
+            except Exception as error:  # pipelines of other versions raise all kinds of exceptions
                 raise PlatformError(
                     f"nlp: the pipeline {name!r} cannot be loaded: {_first_line(error)}. "
                     "Check it: python -m spacy validate"
@@ -143,7 +143,7 @@ class Pipeline:
 
 
 def _found(text: str, doc: Any) -> tuple[Tree, tuple[Entity, ...]]:
-    # The tree leaves out white space, on which no word depends.
+    # The tree leaves out white space, because no word depends on it.
     numbers: dict[int, int] = {}
     for token in doc:
         if not token.is_space:

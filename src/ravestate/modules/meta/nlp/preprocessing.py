@@ -5,7 +5,8 @@ from __future__ import annotations
 import re
 
 READ_AS = {"have": "like"}
-"""Replaced lemmas. The small pipelines often take *like* for a preposition in short sentences; they know *have*."""
+"""Replaced lemmas. In short sentences, the small pipelines often mistake *like* for a preposition; they handle *have*
+correctly."""
 
 # Control characters, and surrogates, which cannot be encoded.
 _UNREADABLE = dict.fromkeys((*range(0x20), *range(0x7F, 0xA0), *range(0xD800, 0xE000)), " ")

@@ -1,6 +1,6 @@
-"""Correct regular errors of the pipeline in short sentences. Each repair shows its case in the docstring.
+"""Correct systematic errors of the pipeline in short sentences. The docstring of each repair shows an example.
 
-A repair recognises its case by words and labels, and changes the tree. It leaves correct trees alone.
+A repair recognises the error by words and labels, and changes the tree. It leaves correct trees alone.
 """
 
 from __future__ import annotations

@@ -7,7 +7,7 @@ from .tree import Tree
 from .triple import Triple
 
 MOST = 64
-"""The most triples of one text; enumerations multiply."""
+"""The maximum number of triples from one text, because enumerations multiply."""
 
 
 def triples_of(tree: Tree) -> tuple[Triple, ...]:

@@ -12,7 +12,7 @@ VERBAL = ("VERB", "AUX")
 
 PLACES = word_set("here there home abroad outside inside upstairs downstairs away everywhere nowhere somewhere")
 _MOTION = word_set("come go travel fly drive run move stay")
-"""Verbs with an infinitive of purpose, which is an action of its own."""
+"""Verbs with an infinitive of purpose, which is a separate action."""
 _GERUND_TAKERS = word_set("like love hate enjoy prefer dislike start stop begin continue keep practise practice try")
 NEGATIONS = frozenset(["not", "n't", "nt", "never"])
 _BE = frozenset(["be", "am", "is", "are", "was", "were", "m", "s", "re", "'s", "'m", "'re"])

@@ -44,7 +44,7 @@ class BoltStore:
             url: The address: ``bolt://localhost:7687``, or ``neo4j+s://...`` with encryption.
             user: The user name.
             password: Empty for a server without passwords.
-            database: Its name on the server; None for the default one.
+            database: The database's name on the server; None for the default one.
             timeout: Seconds to wait for each answer.
 
         Raises:
@@ -55,7 +55,7 @@ class BoltStore:
                 import neo4j
         except ImportError as error:
             raise PlatformError(f"ontology needs neo4j for the server {url}: pip install 'ravestate[neo4j]'") from error
-        # The driver warns of queries for a property that no node has yet, which is no fault.
+        # The driver warns of queries for a property that no node has yet, which is not a fault.
         logging.getLogger("neo4j.notifications").setLevel(logging.ERROR)
         self._neo4j: Any = neo4j  # the driver is only partly typed
         self._place = url
@@ -184,7 +184,7 @@ class BoltStore:
         """Close the connections."""
         try:
             if self._driver is not None:
-                with contextlib.suppress(PlatformError):  # a server that does not answer has closed them
+                with contextlib.suppress(PlatformError):  # if the server does not answer, it has already closed them
                     self._wait(self._driver.close())
         finally:
             self._loop.run_until_complete(self._loop.shutdown_asyncgens())

@@ -1,4 +1,4 @@
-"""Slots that are bound to memory: a write to the slot is a write to the graph."""
+"""Slots that are bound to memory: writing the slot also writes the graph."""
 
 from __future__ import annotations
 

@@ -9,7 +9,7 @@ Rows = list[list[Any]]
 
 
 def copy_database(source: Any, target: Any) -> None:
-    """Copy all tables, nodes and relations in one transaction, also those that no type declares.
+    """Copy all tables, nodes and relations in one transaction, including those that no type declares.
 
     Args:
         source: A connection to the database to copy.

@@ -1,4 +1,4 @@
-"""Opening a ladybug database. A damaged file can end the process that opens it, so a trial takes one of its own."""
+"""Opening a ladybug database. A damaged file can crash the process that opens it, so a separate process tries first."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ from pathlib import Path
 from typing import Any
 
 BUFFER = 256 * 2**20
-"""Bytes of memory that pages of the file may take at most."""
+"""The maximum number of bytes of memory for pages of the file."""
 
 EMPTY = 4 * 4096
 """The most bytes of a database that never had a table."""
 
 LARGEST = 2**36
-"""Bytes of address space for the file, which cannot grow beyond."""
+"""Bytes of address space for the file. The file cannot grow larger."""
 
 PATIENCE = 60.0
 """Seconds that a trial may take."""
@@ -25,7 +25,7 @@ def connect(path: Path, *, whole_log: bool = True) -> tuple[Any, Any]:
     """Open a database and return it with a connection.
 
     Args:
-        path: The file; made where it is missing.
+        path: The file; created if it is missing.
         whole_log: False to read a damaged log up to the damage, and to cut off the rest.
 
     Raises:
@@ -40,7 +40,7 @@ def connect(path: Path, *, whole_log: bool = True) -> tuple[Any, Any]:
         buffer_pool_size=BUFFER,
         max_db_size=LARGEST,
         max_num_threads=1,
-        auto_checkpoint=False,  # the store does it, where it may fail
+        auto_checkpoint=False,  # the store handles it, where opening may fail
         throw_on_wal_replay_failure=whole_log,
     )
     connection = ladybug.Connection(database, num_threads=1)
@@ -54,13 +54,13 @@ def connect(path: Path, *, whole_log: bool = True) -> tuple[Any, Any]:
 
 
 def survives(path: Path, *, whole_log: bool = True) -> bool:
-    """Return whether a process that opens the file and reads all of it lives on; an exception does no harm."""
+    """Return whether a process survives opening the file and reading all of it. An exception counts as survival."""
     command = [sys.executable, "-P", __file__, str(path), "whole" if whole_log else "part"]
     try:
         return subprocess.run(command, capture_output=True, timeout=PATIENCE, check=False).returncode >= 0
     except subprocess.TimeoutExpired:
         return False
-    except OSError:  # there is no such interpreter: an application in one file, say
+    except OSError:  # there is no such interpreter, for example in a single-file application
         return True
 
 
@@ -76,4 +76,4 @@ if __name__ == "__main__":
     try:
         _read_all(Path(sys.argv[1]), whole_log=sys.argv[2] == "whole")
     finally:
-        os._exit(0)  # nothing is written on the way out
+        os._exit(0)  # write nothing at exit

@@ -37,7 +37,7 @@ def read_document(document: Mapping[str, Any], types: Types) -> tuple[list[Node]
         RuleError: The document is invalid; the message names the first wrong entry.
     """
     if not isinstance(document, Mapping) or document.get("format") != FORMAT:  # pyright: ignore[reportUnnecessaryIsInstance]  # a file may hold anything
-        raise RuleError(f"this is no document of memory of format {FORMAT}: write one with ravestate memory export")
+        raise RuleError(f"this is not a document of memory of format {FORMAT}: write one with ravestate memory export")
     nodes: dict[str, Node] = {}
     for entry in _entries(document, "nodes"):
         type, id = _text(entry, "type"), _text(entry, "id")
@@ -86,6 +86,6 @@ def _values(kinds: Mapping[str, Kind], entry: Mapping[str, Any]) -> dict[str, Va
             elif kinds.get(name) == "time":
                 value = datetime.fromisoformat(value)
         except (TypeError, ValueError):
-            raise RuleError(f"{name} = {value!r} of {dict(entry)} is no {kinds[name]} as of ISO 8601") from None
+            raise RuleError(f"{name} = {value!r} of {dict(entry)} is not a valid {kinds[name]} in ISO 8601") from None
         found[name] = value
     return found

@@ -43,18 +43,18 @@ log = logging.getLogger("ravestate.ontology")
 
 
 class EmbeddedStore:
-    """A file that ladybug keeps, in this process alone.
+    """A database file of ladybug, open in this process alone.
 
     Committed writes are in the write-ahead log, on disk. After a write to that log fails, ladybug would hang in the
-    next write and end the process when it closes. So each write first looks at the free space. If a write fails
-    all the same, its torn record is cut off. Then nothing is written or closed until the files can be written again.
+    next write and end the process when it closes. So each write first looks at the free space. If a write fails anyway,
+    its incomplete record is cut off. Then nothing is written or closed until the files can be written again.
     """
 
     def __init__(self, path: Path) -> None:
         """Open a file, or make a new one.
 
         Args:
-            path: The file; its folder is made where it is missing, for the user alone.
+            path: The file. If its folder is missing, it is created for the user alone.
 
         Raises:
             PlatformError: The package is missing, or the file is in use, broken, newer, or cannot be written.
@@ -82,7 +82,7 @@ class EmbeddedStore:
             self._check_space(0)
             self._set_orphans_aside(self._files.logs())
             self._open()
-        self._files.remove_rewrite()  # of a process that was killed while it purged
+        self._files.remove_rewrite()  # left by a process that was killed during a purge
 
     # ------------------------------------------------------------------------------------ statements
 
@@ -104,7 +104,7 @@ class EmbeddedStore:
         if self._within:
             yield
             return
-        if self._stuck:  # otherwise each write checks the space by itself
+        if self._stuck:  # otherwise each write checks the space
             self._be_writable(0)
         self._execute("BEGIN TRANSACTION")
         self._within, self._purge_due = True, False
@@ -130,7 +130,7 @@ class EmbeddedStore:
         try:
             result: Any = self._connection.execute(statement, dict(parameters or {}))
             return result.get_all()
-        except Exception as error:  # reading a damaged page raises whatever is at hand
+        except Exception as error:  # reading a damaged page may raise any exception
             said = said_by(error)
             if is_failed_write(said):
                 self._get_stuck(said)
@@ -138,7 +138,7 @@ class EmbeddedStore:
                     f"memory {self._path} cannot be written: {reason(said)}. Make room on the disk; what was acknowledged is "
                     "safe, and memory goes on when there is"
                 ) from error
-            if "Cannot open file" in said:  # the log, in a read-only folder for example
+            if "Cannot open file" in said:  # for example the log, in a read-only folder
                 raise PlatformError(why_not_opened(self._path, said, self._files.present())) from error
             if is_damage(error):
                 raise PlatformError(why_broken(self._path, said, self._files.present())) from error
@@ -184,12 +184,12 @@ class EmbeddedStore:
             return ENDS_PROCESS
         try:
             self._database, self._connection = connect(self._path, whole_log=whole_log)
-        except Exception as error:  # a damaged file raises whatever is at hand
+        except Exception as error:  # a damaged file may raise any exception
             return said_by(error)
         return ""
 
     def _open_in_part(self) -> str:
-        """Open with a damaged log, of which a power failure has mostly torn the end; return why that failed.
+        """Open with a damaged log, whose end a power failure has usually cut off; return why that failed.
 
         The log is read up to the damage, or not at all if that is not possible. A copy of it is kept.
         """
@@ -237,7 +237,7 @@ class EmbeddedStore:
     def purge(self) -> None:
         """Rewrite the file without what was deleted: ladybug leaves the bytes in it.
 
-        If that fails, the deleted nodes are forgotten all the same; a warning says that the file still has their bytes.
+        If that fails, the deleted nodes are still forgotten; a warning says that the file still has their bytes.
         """
         if self._within:
             self._purge_due = True  # after the transaction
@@ -266,7 +266,7 @@ class EmbeddedStore:
                 self._files.seal()
             finally:
                 self._open()
-        except Exception as error:  # copying a damaged page raises whatever is at hand
+        except Exception as error:  # copying a damaged page may raise any exception
             log.warning(
                 "memory %s: the forgotten nodes are gone, but the file still has their bytes: %s",
                 self._path,
@@ -282,7 +282,7 @@ class EmbeddedStore:
             )
 
     def tidy(self) -> None:
-        """Move the log into the file: until then ladybug holds some megabytes for each table written to."""
+        """Move the log into the file. Until then, ladybug holds a few megabytes for each table that was written."""
         self._shorten_log(limit=0)
 
     def close(self) -> None:
@@ -341,7 +341,7 @@ class EmbeddedStore:
     def _get_stuck(self, said: str) -> None:
         self._stuck = reason(said)
         with contextlib.suppress(OSError):
-            os.truncate(self._files.log, self._log_good)  # the next opening stops at a torn record
+            os.truncate(self._files.log, self._log_good)  # the next opening stops at an incomplete record
         for held in (self._connection, self._database):  # collecting them would end the process
             ctypes.pythonapi.Py_IncRef(ctypes.py_object(held))
 

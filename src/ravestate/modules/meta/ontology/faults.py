@@ -16,7 +16,7 @@ _DAMAGE = re.compile(
 
 
 def said_by(error: BaseException) -> str:
-    """Return the message of an exception, its type if it has none."""
+    """Return the message of an exception, or its type if it has none."""
     return str(error).strip() or type(error).__name__
 
 
@@ -26,7 +26,7 @@ def is_failed_write(said: str) -> bool:
 
 
 def is_foreign_log(said: str) -> bool:
-    """Return whether the log belongs to another database: to one that was deleted, say."""
+    """Return whether the log belongs to another database, for example to a deleted one."""
     return "does not match" in said and "Database ID" in said
 
 

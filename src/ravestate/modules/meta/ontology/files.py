@@ -19,7 +19,7 @@ _SIDE_FILE = re.compile(
 
 
 class MemoryFiles:
-    """The database at a path with its side files. They are about people, so only the user may read them."""
+    """The database at a path with its side files. They contain personal data, so only the user may read them."""
 
     def __init__(self, path: Path) -> None:
         self.path = path
@@ -44,7 +44,7 @@ class MemoryFiles:
         return [file for file in self.present() if (match := self._match(file)) and match["kept"]]
 
     def logs(self) -> list[Path]:
-        """Return the files that hold data besides the database: logs, and an unfinished rewrite."""
+        """Return the other files that hold data: logs, and an unfinished rewrite."""
         others = {self.path, self.probe, self._sum, *self.kept()}
         return [file for file in self.present() if file not in others and file.stat().st_size]
 
@@ -60,13 +60,13 @@ class MemoryFiles:
         return self.path.exists() and (not self.path.is_file() or self.path.stat().st_size > 0)
 
     def make_private(self, *suffixes: str) -> None:
-        """Create files that are missing for the user alone: ladybug would let everybody read them."""
+        """Create missing files so that only the user can read them; ladybug would let everybody."""
         for suffix in suffixes:
-            with contextlib.suppress(OSError):  # ladybug says what is wrong
+            with contextlib.suppress(OSError):  # ladybug reports the problem
                 os.close(os.open(self.beside(suffix), os.O_CREAT | os.O_RDWR, 0o600))
 
     def restrict(self) -> None:
-        """Make all files that exist readable for the user alone."""
+        """Make all existing files readable only by the user."""
         for file in self.present():
             with contextlib.suppress(OSError):  # another user's file
                 file.chmod(0o600)
@@ -121,7 +121,7 @@ class MemoryFiles:
             self._sum.write_text(self._checksum(), encoding="ascii")
 
     def is_sealed(self) -> bool:
-        """Return whether the database is as `seal` found it, and no log is to be read."""
+        """Return whether the database has not changed since `seal`, and there is no log to read."""
         try:
             return not self.log_size() and self._sum.read_text(encoding="ascii") == self._checksum()
         except (OSError, ValueError):

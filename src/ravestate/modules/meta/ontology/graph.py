@@ -15,11 +15,11 @@ from .types import Types
 T = TypeVar("T")
 
 AGENT = "Agent"
-"""The type of persons and robots: the agent may know more of them than one user told."""
+"""The type of people and robots. The agent may know more about them than one user has told it."""
 
 
 class Graph:
-    """A store, used according to the types."""
+    """The operations on a store, checked against the types."""
 
     def __init__(self, store: Store, types: Types) -> None:
         self._store = store
@@ -150,7 +150,7 @@ class Graph:
         if not self._types.is_a(keep.type, duplicate.type):
             hint = " the other way round" if self._types.is_a(duplicate.type, keep.type) else ""
             raise RuleError(
-                f"{keep.id} cannot take over what {duplicate.id} has: a {keep.type} is no {duplicate.type}"
+                f"{keep.id} cannot take over what {duplicate.id} has: a {keep.type} is not a {duplicate.type}"
                 + (f"; merge them{hint}" if hint else "")
             )
         with self._store.transaction():

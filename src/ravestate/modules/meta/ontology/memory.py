@@ -32,7 +32,7 @@ class Memory:
     """
 
     def __init__(self, worker: StoreWorker, read_types: Callable[[], Types]) -> None:
-        """Begin to open memory. Operations may be called at once; they wait until it is open.
+        """Start to open memory. You may call operations at once; they wait until it is open.
 
         Args:
             worker: The store's thread; `close` releases it.
@@ -109,7 +109,7 @@ class Memory:
         """Set properties of a node in memory, and remove those that are None.
 
         Raises:
-            RuleError: Memory does not have the node, among others.
+            RuleError: Memory does not have the node. For other causes, see the class.
         """
         return self._do("update", lambda graph: graph.update(node, properties))
 
@@ -117,7 +117,7 @@ class Memory:
         """Relate two nodes in memory; between related nodes, set the relation's properties.
 
         Raises:
-            RuleError: Memory does not have one of them, among others.
+            RuleError: Memory does not have one of them. For other causes, see the class.
 
         Example:
             ::
@@ -171,7 +171,7 @@ class Memory:
         return self._do("only_about", lambda graph: graph.only_about(node))
 
     def together(self, operations: Callable[[Graph], T], /) -> Reply[T]:
-        """Run several operations as one: all take effect, or none. In a file, no other operation comes between them.
+        """Run several operations as one: all take effect, or none. In a file, no other operation runs between them.
 
         Args:
             operations: A function of the graph, called in memory's thread. The graph has the operations of this class,
@@ -200,7 +200,7 @@ class Memory:
         """Save all nodes and relations of a document from `export`, or none; return the number of nodes.
 
         Raises:
-            RuleError: It is not such a document, among others.
+            RuleError: It is not such a document. For other causes, see the class.
         """
         return self._do("load", lambda graph: graph.load(document))
 

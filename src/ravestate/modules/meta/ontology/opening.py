@@ -33,7 +33,7 @@ def path_of(settings: Settings) -> Path | None:
 
 
 def open_memory(settings: Settings) -> Memory:
-    """Begin to open memory where the settings say, in its own thread.
+    """Start to open memory where the settings say, in its own thread.
 
     ``memory.opened()`` raises the errors.
     """

@@ -17,7 +17,7 @@ T = TypeVar("T")
 class Reply(Generic[T]):
     """A future result. The operation runs whether or not anyone waits for it.
 
-    If nobody looks at the result, an error goes to the log.
+    If no code looks at the result, an error goes to the log.
 
     Example:
         ::

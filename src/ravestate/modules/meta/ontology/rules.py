@@ -13,19 +13,19 @@ from .opening import open_memory
 
 @module.rule(when=rs.startup.detached(), writes=memory, detached=True, background=True)
 async def open_up(ctx: rs.RuleContext) -> None:
-    """Open memory where the settings say. The slot has it at once: operations wait until it is open."""
+    """Open memory where the settings say. The slot gets the memory at once: operations wait until it is open."""
     opening = open_memory(ctx.settings)
     ctx[memory] = opening
 
     def let_go() -> None:
-        ctx[memory] = None  # the talk goes on without memory
+        ctx[memory] = None  # the conversation goes on without memory
         opening.close()
 
     try:
         await opening.opened()
     except PlatformError as error:  # no rule is at fault
         let_go()
-        ctx.log.warning("there is no long-term memory in this talk: %s", error)
+        ctx.log.warning("there is no long-term memory in this conversation: %s", error)
     except BaseException:
         let_go()
         raise

@@ -58,7 +58,7 @@ def types_in(paths: Iterable[Path]) -> Types:
     return _read(tuple((path.expanduser(), _state_of(path.expanduser())) for path in paths))
 
 
-@lru_cache(maxsize=8)  # each visitor of a page opens memory
+@lru_cache(maxsize=8)  # each visitor to a page opens memory
 def _read(own: tuple[tuple[Path, object], ...]) -> Types:
     built_in = files("ravestate.modules.meta.ontology") / "types.yaml"
     return read_types([built_in, *(path for path, _ in own)])
@@ -68,7 +68,7 @@ def _state_of(path: Path) -> object:
     """Return what changes with a file."""
     try:
         stat = path.stat()
-    except OSError:  # reading it says so
+    except OSError:  # reading the file reports that
         return None
     return stat.st_ino, stat.st_size, stat.st_mtime_ns
 
@@ -112,7 +112,7 @@ class _Reader:
         for child, (parent, place) in self._parents.items():
             if parent not in self._has:
                 raise DeclarationError(
-                    f"{place}: {child} is a {parent!r}, which is no type{nearest(parent, self._has)}"
+                    f"{place}: {child} is a {parent!r}, which is not a type{nearest(parent, self._has)}"
                 )
         for child, (_, place) in self._parents.items():
             line = [child]
@@ -124,7 +124,7 @@ class _Reader:
             for (_, target), place in ends.items():
                 if target not in self._has:
                     raise DeclarationError(
-                        f"{place}: {name} goes to {target!r}, which is no type{nearest(target, self._has)}"
+                        f"{place}: {name} goes to {target!r}, which is not a type{nearest(target, self._has)}"
                     )
         return Types(
             {
@@ -177,7 +177,7 @@ class _Reader:
                 raise fault(
                     file,
                     value,
-                    f"{owner}.{name}: {kind!r} is no kind{nearest(kind, KINDS)} (kinds: {', '.join(KINDS)})",
+                    f"{owner}.{name}: {kind!r} is not a kind{nearest(kind, KINDS)} (kinds: {', '.join(KINDS)})",
                 )
             spelt, known, where = self._kinds.setdefault((relation, name.lower()), (name, found, line_of(file, key)))
             if (spelt, known) != (name, found):
@@ -191,7 +191,7 @@ class _Reader:
     def _name(
         self, file: str, node: yaml.Node, name: str, among: Mapping[str, object], others: Mapping[str, object]
     ) -> None:
-        """Take the name of a type or relation: all of them differ, not by capitals alone."""
+        """Register the name of a type or relation. Names must differ by more than capitals."""
         _check_name(file, node, name, "type or relation")
         for other in (*among, *others):
             if other.lower() == name.lower() and (other != name or other in others):
@@ -212,7 +212,7 @@ def _entries(file: str, node: yaml.Node, meaning: str) -> Iterator[tuple[yaml.No
         raise fault(
             file,
             node,
-            f"{meaning}, and this is no mapping: write for example\nBoat:\n  has: {{length: number}}",
+            f"{meaning}, and this is not a mapping: write for example\nBoat:\n  has: {{length: number}}",
         )
     seen: set[str] = set()
     for key, value in node.value:

@@ -61,7 +61,7 @@ class Types:
     """All types and relations, with checks. ``read_types`` reads them from files."""
 
     def __init__(self, types: Mapping[str, Type], relations: Mapping[str, Relating]) -> None:
-        """Take types whose parents and ends exist and form no ring."""
+        """Take valid types: all parents and ends exist, and there are no cycles."""
         self._types = dict(types)
         self._relations = dict(relations)
         self._lines = {name: tuple(self._line(name)) for name in self._types}
@@ -229,7 +229,7 @@ def _as_stored(what: str, kind: Kind, value: Value) -> Any:
     if kind == "time" and isinstance(value, datetime) and value.tzinfo is not None:
         try:
             return value.astimezone(UTC).isoformat(timespec="microseconds")
-        except OverflowError:  # at the very first or last hours of the calendar
+        except OverflowError:  # in the first or last hours that the calendar can express
             pass
     if kind == "date" and isinstance(value, date) and not isinstance(value, datetime):
         return value.isoformat()
@@ -255,5 +255,5 @@ def _as_loaded(what: str, kind: Kind, value: Any) -> Value:
         if kind == "number":
             return float(value)
     except (TypeError, ValueError):
-        raise RuleError(f"memory has {what} = {value!r}, which is no {kind}: set it again") from None
+        raise RuleError(f"memory has {what} = {value!r}, which is not a valid {kind}: set it again") from None
     return value

@@ -14,7 +14,7 @@ T = TypeVar("T")
 
 _shared: dict[str, StoreWorker] = {}
 _closing: dict[str, Future[None]] = {}
-"""Stores that are closing; the next opening waits for that."""
+"""Stores that are closing; the next opening waits for them."""
 _lock = threading.Lock()
 
 
@@ -76,7 +76,7 @@ class StoreWorker:
         return future
 
     def release(self) -> Future[None]:
-        """Give up one use. The last one closes the store after all queued jobs."""
+        """Release one use. The last release closes the store after all queued jobs."""
         done: Future[None] = Future()
         with _lock:
             self._users -= 1

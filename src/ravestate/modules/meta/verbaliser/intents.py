@@ -21,8 +21,8 @@ class Intent:
     parameters: Mapping[str, object] = field(default_factory=dict[str, object])
     """Values for the parameters of phrases; None counts as missing."""
     package: str | None = None
-    """The package with the file ``phrases.yaml``, mostly the rule's ``__package__``."""
+    """The package that contains ``phrases.yaml``, usually the rule's ``__package__``."""
     file: Path | None = None
-    """A file with the phrases, for a rule outside of packages."""
+    """A file with the phrases, for a rule outside packages."""
     phrases: Mapping[str, Sequence[str]] | None = None
-    """Its phrases by language, for a rule that has them itself; no file is read then."""
+    """The phrases by language, for a rule that provides them itself; then no file is read."""

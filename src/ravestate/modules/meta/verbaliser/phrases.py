@@ -11,7 +11,7 @@ greet:
 farewell: Goodbye!           # without a language: the default one
 ```
 
-Several files make one book. The phrases of a later file *replace* those of earlier files for the same intent and
+Several files make one phrase book. The phrases of a later file *replace* those of earlier files for the same intent and
 language. With ``!add`` they are added:
 
 ```yaml
@@ -247,7 +247,7 @@ def _template(text: str) -> Template:
                 continue
             if not name.isidentifier() or form or conversion:
                 whole = name + (f"!{conversion}" if conversion else "") + (f":{form}" if form else "")
-                raise ValueError(f"{{{whole}}} is no parameter")
+                raise ValueError(f"{{{whole}}} is not a parameter")
             names.add(name)
     except ValueError as error:
         raise DeclarationError(
@@ -268,7 +268,7 @@ def _added(name: str, node: yaml.Node) -> bool:
 
 def _entries(name: str, node: yaml.Node, meaning: str) -> Iterator[tuple[yaml.Node, yaml.Node]]:
     if kind_of(node) != "mapping":
-        raise fault(name, node, f"{meaning}, and this is no mapping: write for example\ngreet:\n  en: [Hello!]")
+        raise fault(name, node, f"{meaning}, and this is not a mapping: write for example\ngreet:\n  en: [Hello!]")
     if _added(name, node):
         raise fault(name, node, "!add goes in front of phrases: write en: !add [...]")
     seen: set[str] = set()

@@ -1,4 +1,4 @@
-"""Spontaneous feelings: now and then, at an occasion."""
+"""Spontaneous feelings: random ones that certain words may trigger."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ OCCASIONS: tuple[tuple[Feeling, re.Pattern[str]], ...] = (
 def by_chance(
     text: str, likely: Mapping[Feeling, float], rng: random.Random, names: Iterable[str] = ()
 ) -> Feeling | None:
-    """Return a spontaneous feeling at `text`, or None.
+    """Return a spontaneous feeling in response to `text`, or None.
 
     Args:
         text: The user's words.
-        likely: The probability of each feeling at its occasion.
+        likely: The probability of each feeling on its occasion.
         rng: The source of chance.
         names: The agent's names.
 

@@ -18,13 +18,13 @@ class Settings(rs.Settings):
     """The agent's temperament, and its emoji."""
 
     shy: Probability = 0.1
-    """The probability to be shy when the user talks about the agent."""
+    """The probability that the agent is shy when the user talks about it."""
     surprised: Probability = 0.03
-    """The probability to be surprised by a question."""
+    """The probability that a question surprises the agent."""
     happy: Probability = 0.25
-    """The probability to be happy about a greeting or thanks."""
+    """The probability that a greeting or thanks makes the agent happy."""
     affectionate: Probability = 0.25
-    """The probability to be affectionate at a goodbye."""
+    """The probability that a goodbye makes the agent affectionate."""
     names: tuple[str, ...] = ()
     """The agent's names. Default: ``interloc.agent``. "Rosie is clever" means the same as "you are clever"."""
     emoji: bool = True

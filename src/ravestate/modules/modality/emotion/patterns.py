@@ -114,7 +114,7 @@ SORROW = _patterns(
     r"(?<!like )(?:you are|you look|you sound) (?:(?!not |never |no )\w+ ){0,4}(?:stupid|dumb|idiots?|morons?|useless|worthless|ugly|pathetic|annoying|"
     r"rubbish|trash|garbage|junk|crap|shit|asshole|bastard|bitch|loser|disgusting|horrible)",
 )
-"""Sorrow of the user's, and insults."""
+"""The user's sorrow, and insults."""
 
 SURPRISE = _patterns(
     r"wo+w+|woa+h+|who+a+|oh my(?: god| gosh| goodness)?|my goodness|goodness(?: me| gracious)?|good (?:heavens|grief|lord)|gosh|gee|blimey|crikey|"
@@ -147,4 +147,4 @@ DESPITE_NOT = _patterns(
     r"(?:no one|nobody|never met|no other|nothing|never|not) .*(?:like you|as you|than you|robot|machine|assistant|listener)",
     r"without you|no idea|nowhere|second to none|^(?:oh )?no$|is that not .*",
 )
-"""Expressions whose negations deny nothing."""
+"""Expressions in which a negation denies nothing."""

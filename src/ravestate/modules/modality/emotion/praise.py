@@ -10,7 +10,7 @@ from .sentiment import polarity, valence
 from .utterance import is_denied
 
 KIND = 1.5
-"""The least valence of a word of praise."""
+"""The minimum valence of a word of praise."""
 
 SPOILT = -0.1
 """The polarity that spoils a compliment: "nice and stupid"."""
@@ -21,7 +21,7 @@ NO_PRAISE = re.compile(
     "play|rich|party|dear|merry|pleased|calm|relaxed|satisfied|friends|friend|love|wanted|winning|help|"
     "helping|hoping|agreed|respected|sharing"
 )
-"""Words that VADER calls positive and that are no compliment after "you are"."""
+"""Words that VADER calls positive and that are not compliments after "you are"."""
 
 PRAISE_TOO = re.compile(
     "polite|patient|witty|genius|star|legend|gem|hero|pro|champion|expert|clever|smart|wise|quick|"
@@ -35,7 +35,7 @@ AFTER_PRETTY = {"", "and", "today", "tonight", "in", "with", "when", "robot", "g
 """The words after a "pretty" that does not mean "quite"."""
 
 NO_GOOD = {"to", "for", "enough", "luck"}
-"""The words after a "good" that is no praise: "you are good to go"."""
+"""The words after a "good" that is not praise: "you are good to go"."""
 
 WINDOW = 7
 """The number of words that may hold the praise."""
@@ -87,7 +87,7 @@ def is_kind(word: str) -> bool:
 
 
 def _begins_kindly(words: Sequence[str], *, does: bool) -> bool:
-    """Return whether the first word that counts is kind; of an act (`does`), any of the first words."""
+    """Return whether the first word that counts is kind. For an act (`does`), any of the first words may be."""
     for word, after in zip(words[:WINDOW], (*words[1:], ""), strict=False):
         if (word == "pretty" and after not in AFTER_PRETTY) or (word == "kind" and after == "of"):
             continue  # "pretty clever", "kind of slow"

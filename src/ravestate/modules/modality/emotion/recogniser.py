@@ -26,7 +26,7 @@ from .sentiment import polarity
 from .utterance import LONGEST, Sentence, is_denied, sentences
 
 DELIGHT = 0.5
-"""The least polarity of a joyful exclamation or sentence about oneself."""
+"""The minimum polarity of a joyful exclamation or sentence about oneself."""
 
 SAD = -0.5
 """The polarity that spoils joy: "I got my results, and I failed"."""
@@ -92,7 +92,7 @@ def saddens(sentence: Sentence) -> bool:
 
 
 def rejoices(sentence: Sentence) -> bool:
-    """Return whether the user has joy or good news."""
+    """Return whether the user is happy or has good news."""
     return not sentence.asks and _has(sentence, JOY, of=IMAGINED) and polarity(sentence.text) > SAD
 
 
@@ -124,7 +124,7 @@ SIGNS: tuple[tuple[Feeling, Callable[[Sentence], bool]], ...] = (
 
 
 def _has(sentence: Sentence, pattern: re.Pattern[str], of: re.Pattern[str] = _CONDITION) -> bool:
-    """Return whether a clause has the pattern, without a negation and without `of` before it."""
+    """Return whether a clause has the pattern, with neither a negation nor `of` before it."""
     return any(
         not of.search(clause[: found.start()])
         and (not is_denied(clause, found.end()) or DESPITE_NOT.search(found[0]) is not None)

@@ -22,7 +22,8 @@ SIGNALS: dict[Feeling, rs.Signal[None]] = {
 
 @module.rule(when=rawio.input.changed, reads=interloc.agent, emits=SIGNALS.values())
 def be_moved(ctx: rs.RuleContext) -> None:
-    """Raise the feeling that fits the user's words, or a spontaneous one. It may read a lexicon, so it runs in a thread."""
+    """Raise the feeling that fits the user's words, or a spontaneous one. This may read a lexicon, so it runs in a
+    thread."""
     settings: Settings = ctx.settings
     heard = ctx.payload(rawio.input.changed)
     names = settings.names or (ctx[interloc.agent],)
@@ -55,7 +56,7 @@ for each in FEELINGS:
 @module.rule(
     when=felt.changed.max_age(None).detached(),  # an answer to the same words is a write of its own (L10, L19)
     writes=rawio.output,
-    until=rawio.input.changed | felt.changed,  # the moment is over, or a later feeling shows
+    until=rawio.input.changed | felt.changed,  # it is too late, or a later feeling shows
     detached=True,
     background=True,
 )

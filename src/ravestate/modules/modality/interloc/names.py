@@ -9,7 +9,7 @@ import ravestate as rs
 module = rs.Module("interloc")
 
 agent: rs.Slot[str] = module.slot("agent", "Ravestate", type=str, input=True)
-"""The agent's name. A module that knows better writes it: `agentqa` has the name from the file of the agent's life."""
+"""The agent's name. A module that knows the name writes it: `agentqa` takes it from the agent's life file."""
 
 users: rs.Collection[Any] = module.collection("users", input=True)
 """The users present: a key that the platform chooses, and the user's name, or None while it is unknown."""

@@ -100,7 +100,7 @@ class Console:
 
     @property
     def interactive(self) -> bool:
-        """Whether a person types the lines. Otherwise all lines may come at once, and then the end."""
+        """Whether a person types the lines. If not, all lines and the end may arrive at once."""
         return self._screen.interactive
 
     async def __aenter__(self) -> Console:
@@ -136,7 +136,7 @@ class Console:
         """Print `text` and a line end.
 
         If `text` begins with the streamed pieces, only the rest is printed behind them. Otherwise the streamed line
-        ends first, and later pieces go on in a line of their own.
+        ends first, and later pieces continue on a new line.
         """
         text = printable(text)
         if self._streamed and text.startswith(self._streamed):
@@ -155,7 +155,7 @@ class Console:
             self._safely(lambda: self._screen.stream(piece))
 
     def end(self) -> None:
-        """End the streamed text; without one this does nothing."""
+        """End the streamed text; if there is none, do nothing."""
         self._streamed = ""
         self._end_line()
 
@@ -169,7 +169,7 @@ class Console:
             return
         try:
             write()
-        except (OSError, ValueError) as error:  # mostly a broken pipe, a closed file
+        except (OSError, ValueError) as error:  # usually a broken pipe or a closed file
             self.ending = "closed"
             if isinstance(error, OSError) and error.errno in _FULL:
                 self.failure = PlatformError(f"conio: the agent's words cannot be written: {error.strerror}")
@@ -178,7 +178,7 @@ class Console:
 def prepare() -> None:
     """Load the library for a terminal. This takes a while, and would block the event loop."""
     if _is_terminal(sys.stdin, sys.stdout):
-        with contextlib.suppress(ImportError):  # the console says so
+        with contextlib.suppress(ImportError):  # the console reports it
             importlib.import_module(".terminal", __package__)
 
 
@@ -205,5 +205,5 @@ def _screen(
 
 
 def history_file() -> Path:
-    """Return the file that keeps typed lines from session to session, in the user's folder for state."""
+    """Return the file in the user's state folder that keeps typed lines from session to session."""
     return user_folder("state") / "history"

@@ -1,4 +1,4 @@
-"""The log of a chat on a terminal goes to a file, so that no log line stands between the lines of the chat."""
+"""The log of a chat on a terminal goes to a file, so that no log line appears between the lines of the chat."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from pathlib import Path
 from ravestate.modules._folders import user_folder
 
 LARGEST = 1_000_000
-"""Bytes of a log file after which a new one is begun; one old file is kept."""
+"""The size in bytes after which a new log file begins; one old file is kept."""
 
 
 def log_file() -> Path:
-    """Return the file for the log of chats, in the user's folder for state."""
+    """Return the log file for chats, in the user's state folder."""
     return user_folder("state") / "log"
 
 
@@ -33,7 +33,7 @@ def log_to_file(file: Path) -> Generator[None]:
         return
     try:
         file.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
-        os.close(os.open(file, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o600))  # for the user's eyes alone
+        os.close(os.open(file, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o600))  # readable only by the user
         handler = RotatingFileHandler(file, maxBytes=LARGEST, backupCount=1, encoding="utf-8", errors="replace")
     except OSError:
         yield

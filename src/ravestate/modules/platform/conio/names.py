@@ -14,7 +14,7 @@ class Settings(rs.Settings):
     prompt: str = "> "
     """The text before the line that the user types."""
     history: bool = True
-    """Whether typed lines are kept from session to session, in the user's folder for state."""
+    """Whether typed lines are kept from session to session, in the user's state folder."""
     name: str | None = None
     """The name of the user at the console, if it is known."""
 

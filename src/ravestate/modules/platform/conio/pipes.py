@@ -27,7 +27,7 @@ class Pipes:
         Args:
             stdin: The source of lines; None, for a closed standard input, is an input that has ended.
             stdout: The target of lines; None is a closed output.
-            longest_line: Bytes of a line that are read; the rest of the line is left out.
+            longest_line: The maximum number of bytes to read of a line; the rest of the line is left out.
         """
         self._stdin = stdin
         self._stdout = stdout
@@ -43,7 +43,7 @@ class Pipes:
         return self
 
     async def __aexit__(self, *_: object) -> None:
-        self._loop = None  # no task wants the lines that are still read
+        self._loop = None  # no task wants the remaining lines
         self._wanted.release()
 
     async def read(self) -> str:
@@ -98,14 +98,14 @@ class Pipes:
             raise
 
     def _silence(self) -> None:
-        """Send Python's own flush at its end nowhere; it would print a second error."""
+        """Discard Python's own flush at exit; it would print a second error."""
         if self._stdout is not None and self._stdout is sys.stdout:
             with contextlib.suppress(OSError, ValueError):
                 nowhere = os.open(os.devnull, os.O_WRONLY)
                 os.dup2(nowhere, self._stdout.fileno())
                 os.close(nowhere)
 
-    # In the thread.
+    # Runs in the thread.
 
     def _read_all(self, stdin: TextIO) -> None:
         rest, ended, skipping = b"", False, False

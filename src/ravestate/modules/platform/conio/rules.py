@@ -18,10 +18,10 @@ USER = "conio"
 
 
 @module.rule(
-    when=rs.startup.detached(),  # so that it keeps no slot from other platforms
+    when=rs.startup.detached(),  # so that it does not block slots for other platforms
     writes=(screen, rawio.input, interloc.users),
     emits=rawio.typing,
-    detached=True,  # each line is a cause of its own
+    detached=True,  # each line is a separate cause
     background=True,
 )
 async def listen(ctx: rs.RuleContext) -> None:
@@ -33,10 +33,10 @@ async def listen(ctx: rs.RuleContext) -> None:
         ctx.emit(rawio.typing)
 
     try:
-        # Off the loop, too: it takes long while other threads load models.
+        # Off the loop as well, because it takes long while other threads load models.
         console = await asyncio.to_thread(Console, prompt=ctx.settings.prompt, history=history, on_key=tell)
     except PlatformError as error:
-        ctx.stop(error)  # else the agent would run on, and nobody could talk with it
+        ctx.stop(error)  # otherwise the agent would keep running, and nobody could talk to it
         return
     async with contextlib.AsyncExitStack() as stack:
         stack.enter_context(log_to_file(log_file()))
@@ -48,11 +48,11 @@ async def listen(ctx: rs.RuleContext) -> None:
                 if line.strip():
                     ctx[rawio.input] = line
                 if not console.interactive:
-                    await ctx.quiet()  # all lines may be there at once, and each wants its own answer
+                    await ctx.quiet()  # all lines may arrive at once, and each needs its own answer
             if console.ending == "end of input":
-                await ctx.quiet()  # a user who leaves in order hears the answer
+                await ctx.quiet()  # a user who leaves normally hears the answer
             else:
-                ctx.wipe(rawio.input.changed)  # a user who breaks off does not
+                ctx.wipe(rawio.input.changed)  # a user who interrupts does not
             ctx[interloc.users].remove(USER)
             await ctx.quiet()  # a farewell
         finally:

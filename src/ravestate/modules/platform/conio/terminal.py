@@ -25,8 +25,8 @@ from prompt_toolkit.utils import get_cwidth
 from ravestate.modules._text import without_controls
 
 LONGEST = 10_000
-"""Characters in a line after which keys add nothing. Every key can be undone, and may cost as much memory as the line.
-Pasted text is taken whole."""
+"""The length of a line after which keys add nothing. Every key can be undone, which may cost as much memory as the
+line. Pasted text is always accepted whole."""
 
 _OPEN = "…"
 """The mark behind a streamed line that the user has interrupted by typing another."""
@@ -35,7 +35,7 @@ _OPEN = "…"
 class Terminal:
     """Reads lines by prompt_toolkit, and prints without disturbing the line that the user types.
 
-    A finished line is printed above the prompt. A streamed line is the first row of the prompt until it is finished or
+    A finished line appears above the prompt. A streamed line is the first row of the prompt until it is finished or
     full. It can grow while the user types below it.
     """
 
@@ -110,7 +110,7 @@ class Terminal:
 
     def stream(self, piece: str) -> None:
         """See `Screen.stream`."""
-        if self._left_open:  # only its end tells whether the line has interrupted it
+        if self._left_open:  # only its end shows whether the line has interrupted it
             self._late += piece
             return
         *lines, self._streamed = (self._streamed + piece).split("\n")
@@ -126,7 +126,7 @@ class Terminal:
         """See `Screen.end`."""
         late, self._late, self._left_open = self._late, "", False
         line, self._streamed = self._streamed, ""
-        if late and not late.endswith(_OPEN):  # else it ended where it was left; these pieces came too late
+        if late and not late.endswith(_OPEN):  # otherwise it ended where it was left; these pieces came too late
             line += late
         if line:
             self.show(line)

@@ -35,7 +35,7 @@ CONSOLES = ("conio",)
 """Platforms for a single user; each visitor's context would have one."""
 
 MOST_LOGGED = 100
-"""The most sites that the log names, each once, so that strangers cannot fill it."""
+"""The maximum number of sites that the log names, each once, so that strangers cannot fill it."""
 
 log = logging.getLogger("ravestate.webio")
 
@@ -85,7 +85,7 @@ class AccessMiddleware:
     """Middleware that refuses requests without access, and adds headers that restrict scripts and frames.
 
     The log names sites that try to embed the page without permission: their visitors see an empty frame only. One instance
-    guards the whole application; a second one guards the board, which no other site may reach.
+    guards the whole application; a second instance guards the board, which no other site may reach.
 
     Args:
         app: The application to guard.

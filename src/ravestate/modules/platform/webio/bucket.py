@@ -4,10 +4,10 @@ from __future__ import annotations
 
 
 class Bucket:
-    """A rate limit: a burst, then so many a second.
+    """A rate limit: a burst, then a fixed number a second.
 
     Args:
-        burst: The most events at once.
+        burst: The maximum number of events at once.
         rate: Events per second after that.
         now: The time (seconds).
 
@@ -28,7 +28,7 @@ class Bucket:
         self._time = now
 
     def wait(self, now: float) -> float:
-        """Count an event in any case; return the seconds until the limit allows it."""
+        """Count an event even beyond the limit; return the seconds until the limit allows it."""
         self._fill(now)
         self._level -= 1
         return max(0.0, -self._level / self._rate)

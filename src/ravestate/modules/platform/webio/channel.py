@@ -12,7 +12,8 @@ from starlette.websockets import WebSocket, WebSocketDisconnect
 from .protocol import CLOSING_CODES, Error, ProtocolError, serialise
 
 LONGEST = 128 * 1024
-"""The most bytes of a frame: the longest text has 10,000 characters, and JSON may need twelve bytes for each."""
+"""The maximum number of bytes of a frame: the longest text has 10,000 characters, and JSON may need twelve bytes for
+each."""
 
 SILENT = 10.0
 """Seconds that a client has for its hello."""
@@ -22,8 +23,9 @@ class Channel:
     """A WebSocket that carries frames as text.
 
     Args:
-        socket: A WebSocket that nobody has accepted yet.
-        replies: The most replies that may wait for the client. A client that asks on without reading is dropped.
+        socket: A WebSocket, not accepted yet.
+        replies: The maximum number of replies that may wait for the client. A client that keeps asking without reading
+            is dropped.
     """
 
     def __init__(self, socket: WebSocket, replies: int) -> None:
@@ -82,7 +84,7 @@ class Channel:
         if message["type"] == "websocket.disconnect":
             raise WebSocketDisconnect(message.get("code", 1006))
         text: str | bytes = message.get("text") or message.get("bytes") or ""
-        if len(text) > LONGEST:  # most servers refuse it themselves
+        if len(text) > LONGEST:  # most servers refuse such frames themselves
             raise ProtocolError("too-large", f"a frame has at most {LONGEST:,} bytes, not {len(text):,}")
         return text
 
@@ -103,5 +105,5 @@ class Channel:
             await self.send(self._replies.popleft())
 
     async def end(self) -> None:
-        """Close the WebSocket in order."""
+        """Close the WebSocket cleanly."""
         await self._socket.close(CLOSING_CODES["ended"], "ended")

@@ -38,11 +38,11 @@ if TYPE_CHECKING:
     from .sessions import Sessions
 
 BURST, RATE = 20, 5.0
-"""Frames that a client may send at once, and each second after that. The server reads further frames later, and loses none.
-`Writing` has a limit of its own with the same numbers; the server ignores the rest."""
+"""Frames that a client may send at once, and each second after that. The server delays further frames, and loses none.
+`Writing` has a separate limit with the same numbers; the server ignores the rest."""
 
 REPLIES = 32
-"""The most replies that may wait for a client."""
+"""The maximum number of replies that may wait for a client."""
 
 HELLO = f'{{"type": "hello", "v": {VERSION}}}'
 
@@ -51,7 +51,7 @@ class Connection:
     """Carries the protocol over one WebSocket.
 
     Args:
-        socket: A WebSocket that nobody has accepted yet.
+        socket: A WebSocket, not accepted yet.
         sessions: The conversations.
         access: The access check.
         title: The agent's name on the page; None for its own name.
@@ -186,8 +186,8 @@ class Connection:
 
 
 def _common(one: str, other: str) -> int:
-    """Return the length of the common beginning of two texts."""
-    if other.startswith(one):  # the usual case: it grows
+    """Return the length of the common prefix of two texts."""
+    if other.startswith(one):  # the usual case: the text grows
         return len(one)
     return next((n for n, (a, b) in enumerate(zip(one, other, strict=False)) if a != b), min(len(one), len(other)))
 

@@ -11,10 +11,10 @@ from .protocol import Message
 Speaker = Literal["user", "agent"]
 
 MESSAGES = 500
-"""The most messages that a history keeps."""
+"""The maximum number of messages that a history keeps."""
 
 CHARACTERS = 200_000
-"""The most characters that a history keeps."""
+"""The maximum number of characters that a history keeps."""
 
 
 class History:

@@ -35,7 +35,8 @@ FOREIGN = (
     "Invalid UTF-8 sequence received from client.",
     "Unsupported upgrade request.",
 )
-"""Uvicorn's messages about faults of clients. The clients get them; in the log they would let strangers fill the disk."""
+"""Uvicorn's messages about faults of clients. The clients get them; in the log, they would let strangers fill the
+disk."""
 
 log = logging.getLogger("ravestate.webio.limits")
 log.setLevel(logging.WARNING)
@@ -46,8 +47,8 @@ class LimitedHTTP(H11Protocol):
     """HTTP with a limit on connections, in total and per address, and with time limits.
 
     Args:
-        per_address: The most connections from one address, including WebSockets.
-        most: The most connections in total.
+        per_address: The maximum number of connections from one address, including WebSockets.
+        most: The maximum number of connections in total.
     """
 
     def __init__(self, *args: Any, per_address: int, most: int, **kwargs: Any) -> None:
@@ -102,7 +103,7 @@ class LimitedHTTP(H11Protocol):
         self.loop.call_later(TIMEOUT, self._check)
 
     def _is_late(self, request: RequestResponseCycle) -> bool:
-        """Return whether a request is too slow on the whole, through no fault of the server's."""
+        """Return whether a request is too slow overall, and not because of the server."""
         due = LOWEST_RATE * TIMEOUT
         behind = self._late[1] if self._late[0] is request else 0.0
         waits = self.flow.read_paused or not request.more_body
@@ -126,10 +127,10 @@ class LimitedWebSocket(WebSocketsSansIOProtocol):
             raise ClientDisconnected
         await super().send(message)
         if self.close_sent:
-            self.handshake_complete = True  # uvicorn would log a refusal as an oversight
+            self.handshake_complete = True  # uvicorn would log the missing answer as an error
 
     async def run_asgi(self) -> None:
-        """Run the application, and hang up later on a client that does not close."""
+        """Run the application; later, hang up on a client that does not close."""
         await super().run_asgi()
         self.loop.call_later(TIMEOUT, self._end_late)
 

@@ -45,9 +45,9 @@ class Settings(rs.Settings):
     keep: float = pydantic.Field(600.0, ge=0, allow_inf_nan=False)
     """Seconds for which the server keeps a conversation after its visitor has disconnected."""
     sessions: int = pydantic.Field(1000, ge=1)
-    """The most conversations at a time."""
+    """The maximum number of conversations at a time."""
     per_address: int = pydantic.Field(100, ge=1)
-    """The most connections at a time from one address."""
+    """The maximum number of connections at a time from one address."""
 
     @pydantic.field_validator("token")
     @classmethod

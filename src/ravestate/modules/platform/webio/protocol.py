@@ -32,10 +32,10 @@ VERSION = 1
 """The version of the protocol. A new frame or field keeps it; any other change raises it."""
 
 LONGEST_NAME = 80
-"""The most characters of a name."""
+"""The maximum number of characters of a name."""
 
 LONGEST_TEXT = 10_000
-"""The most characters that a visitor may say at once."""
+"""The maximum number of characters that a visitor may say at once."""
 
 GREATEST = 2**53 - 1
 """The greatest whole number that every JSON reader can hold."""
@@ -266,7 +266,7 @@ class Typing:
 
 @dataclass(frozen=True, slots=True)
 class Paused:
-    """Whether somebody has paused the agent's clock, as the board can."""
+    """Whether the agent's clock is paused, for example by the board."""
 
     on: Truth
     type: Literal["paused"] = "paused"
@@ -333,8 +333,8 @@ def parse(text: str | bytes, frames: TypeAdapter[F]) -> F:
         frames: The frames that may come: `CLIENT` or `SERVER`.
 
     Raises:
-        ProtocolError: The text is no such frame. The code is ``version`` for another version, that of `heard_text` for a
-            refused `Say`, else ``malformed``.
+        ProtocolError: The text is not such a frame. The code is ``version`` for another version, that of `heard_text` for
+            a refused `Say`, else ``malformed``.
     """
     if not isinstance(text, str):
         raise _malformed("a frame is a text message, not a binary one")
@@ -344,7 +344,7 @@ def parse(text: str | bytes, frames: TypeAdapter[F]) -> F:
     except (ValueError, RecursionError):
         raise _malformed(f"not JSON: {_short(text)}; a frame is an object: {example}") from None
     if not isinstance(found, dict):
-        raise _malformed(f"{_short(found)} is no object: write {example}")
+        raise _malformed(f"{_short(found)} is not an object: write {example}")
     fields = {key: value for key, value in cast("dict[str, Any]", found).items() if value is not None}
     try:
         return frames.validate_python(fields)

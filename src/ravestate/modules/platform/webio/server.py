@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from .names import Settings
 
 SPARE = 128
-"""Open files of the process that the server leaves to others."""
+"""The number of open files that the server leaves to the rest of the process."""
 
 BACKLOG = 256
 """Connections that the system accepts before the server takes them."""
@@ -48,7 +48,7 @@ class Server:
 
     Args:
         agent: An agent with ``webio`` among its modules; the settings say where to listen.
-        routes, inside: As for `webio.app`.
+        routes, inside: See `webio.app`.
 
     Raises:
         PlatformError: Others can reach the address, and there is no token; or see `make_app`.
@@ -106,8 +106,8 @@ class Server:
     async def __aexit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        """End the conversations in order, and close."""
-        assert self._uvicorn is not None and self._task is not None  # it was entered
+        """End the conversations cleanly, and close."""
+        assert self._uvicorn is not None and self._task is not None  # set by `__aenter__`
         with self._saved:
             await self._app.state.sessions.close()
             self._uvicorn.told.set()
@@ -116,7 +116,7 @@ class Server:
     @property
     def port(self) -> int:
         """The port that the server listens on."""
-        assert self._socket is not None  # it was entered
+        assert self._socket is not None  # set by `__aenter__`
         return int(self._socket.getsockname()[1])
 
     @property
@@ -139,7 +139,7 @@ class Server:
         The token appears only on a terminal: other outputs are often kept in files that others can read.
 
         Args:
-            pages: For the name of each page its path.
+            pages: The path of each page, by its name.
         """
 
         def lines(address: Callable[[str], str]) -> str:
@@ -157,13 +157,13 @@ class Server:
         sys.stdout.flush()
 
     async def until_failed(self) -> None:
-        """Wait until the server ends by itself, which only a failure brings."""
-        assert self._task is not None  # it was entered
+        """Wait until the server ends by itself, which happens only after a failure."""
+        assert self._task is not None  # set by `__aenter__`
         await asyncio.shield(self._task)
 
 
 class _Uvicorn(uvicorn.Server):
-    """A server without a tick and without signal handlers: the runner of the agent has its own."""
+    """A server without a tick and without signal handlers: the agent's runner has its own handlers."""
 
     def __init__(self, config: uvicorn.Config) -> None:
         super().__init__(config)
@@ -187,11 +187,11 @@ def _listen(host: str, port: int) -> socket.socket:
             host.strip("[]"), port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE
         )[0]
     except OSError as error:
-        raise PlatformError(f"webio: host {host!r} is no address of this machine: {error.strerror}") from None
+        raise PlatformError(f"webio: host {host!r} is not an address of this machine: {error.strerror}") from None
     listener = socket.socket(family, kind, protocol)
     try:
         listener.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, UNREAD)  # accepted sockets inherit it
-        if sys.platform != "win32":  # on Windows it would share the port
+        if sys.platform != "win32":  # on Windows, this would share the port
             listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         listener.bind(address)
     except OSError as error:

@@ -31,7 +31,7 @@ async def serve(agent: Agent) -> None:
 
 
 def app(agent: Agent, routes: Iterable[BaseRoute] = (), inside: str | None = None) -> Starlette:
-    """Return an agent's page as an ASGI application, to serve or to mount in another application.
+    """Return an agent's page as an ASGI application, to serve, or to mount in another application.
 
     The application's lifespan ends the conversations. A mounted application has no lifespan of its own: enter
     ``chat.router.lifespan_context(chat)`` in the lifespan of the outer one. The outer server limits the connections.

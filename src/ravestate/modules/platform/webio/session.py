@@ -34,7 +34,7 @@ log = logging.getLogger("ravestate.webio")
 
 
 class Ending(enum.StrEnum):
-    """Why a conversation is over, in words for other people than the visitor."""
+    """Why a conversation is over, in words for people other than the visitor."""
 
     BYE = "the visitor left"
     ABANDONED = "nobody was there"
@@ -98,7 +98,7 @@ class Session:
     # ------------------------------------------------------------------------------------ life
 
     async def live(self) -> None:
-        """Run until the visitor or the agent leaves, or the task is cancelled; then end in order."""
+        """Run until the visitor or the agent leaves, or the task is cancelled; then end cleanly."""
         try:
             async with self.context as context:
                 self._begun = True
@@ -158,7 +158,7 @@ class Session:
             text: The words, checked by `heard_text`.
 
         Returns:
-            Whether the session took them, now or before; False while somebody is `leaving`.
+            Whether the session took them, now or before; False while the visitor or the agent is `leaving`.
         """
         if self.leaving:
             return False
@@ -208,7 +208,7 @@ class Session:
     def show_work(self, grace: float = 0.0) -> None:
         """Show that the agent is working, from `grace` seconds on, until no rule may write an answer any more.
 
-        A filler such as "Let me think…" ends nothing: the rule that makes the answer still runs.
+        A filler such as "Let me think…" does not end this: the rule that makes the answer still runs.
         """
         if self._following is None:
             self._following = asyncio.create_task(self._follow(grace))
@@ -229,12 +229,12 @@ class Session:
 
     @property
     def typing(self) -> bool:
-        """Whether the agent is working on an answer that nobody sees growing."""
+        """Whether the agent is working on an answer, and no part of it shows yet."""
         return self._working and not self.partial and self.ended is None
 
     @property
     def paused(self) -> bool:
-        """Whether the clock of the context stands still."""
+        """Whether the context's clock is paused."""
         return self._begun and self.ended is None and self.context.paused
 
     def notify(self) -> None:

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from ravestate.runtime.agent import Agent
 
 ONLOOKERS = 8
-"""The most windows of one conversation at a time."""
+"""The maximum number of windows of one conversation at a time."""
 
 
 class Sessions:
@@ -21,7 +21,8 @@ class Sessions:
 
     Args:
         agent: The agent; it makes a context for each conversation.
-        limit: The most conversations. Beyond it, one without a window ends first; then new ones are refused.
+        limit: The maximum number of conversations. Beyond it, one without a window ends first; then new ones are
+            refused.
         keep: Seconds for which a conversation without a window is kept.
     """
 
@@ -105,7 +106,7 @@ class Sessions:
         self._timers[session] = asyncio.get_running_loop().call_later(self._keep, self.leave, session, Ending.ABANDONED)
 
     async def _make_room(self) -> None:
-        """End a conversation without a window: one without words if possible, else the one left longest ago."""
+        """End a conversation without a window: one without words if possible, otherwise the one left longest ago."""
         abandoned = min(self._timers, key=lambda session: session.spoken, default=None)
         if abandoned is not None:
             task = self._tasks[abandoned]
@@ -116,5 +117,5 @@ class Sessions:
         try:
             await session.live()
         finally:
-            self.leave(session, Ending.CANCELLED)  # no effect after another reason
+            self.leave(session, Ending.CANCELLED)  # this has no effect if there already is a reason
             self._tasks.pop(session, None)

@@ -1,4 +1,4 @@
-"""Settings of the interpreter for short answers to many visitors."""
+"""Interpreter settings for quick answers to many visitors."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ SWITCH = 0.0005
 default, each turn would wait 5 ms while a thread analyses a sentence."""
 
 COLLECT = (10_000, 10, 10)
-"""The thresholds of the cyclic garbage collector. With Python's default (700, 10, 10) it scans all objects of some hundred
-conversations every few seconds, and no answer is sent meanwhile."""
+"""The thresholds of the cyclic garbage collector. With Python's default (700, 10, 10) it scans all objects of several
+hundred conversations every few seconds, and no answer is sent meanwhile."""
 
 
 @dataclass(slots=True)
@@ -31,7 +31,7 @@ _saved = _Saved()
 
 @contextlib.contextmanager
 def low_latency() -> Generator[None]:
-    """Set the interpreter for short answers, until the last server has ended."""
+    """Tune the interpreter for quick answers, until the last server has ended."""
     if not _saved.users:
         _saved.switch, _saved.collect = sys.getswitchinterval(), gc.get_threshold()
         sys.setswitchinterval(SWITCH)

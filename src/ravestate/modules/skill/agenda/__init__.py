@@ -1,4 +1,4 @@
-"""Goals of the agent: it pursues them in a silence, and drops them when they are reached."""
+"""Goals of the agent: it pursues them during a silence, and drops them when they are reached."""
 
 from __future__ import annotations
 

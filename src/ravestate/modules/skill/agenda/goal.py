@@ -25,7 +25,7 @@ MOMENT = 1.0
 """Seconds for which an opportunity lasts."""
 
 LONGEST = 1000
-"""Characters of the user's words that are searched."""
+"""The number of characters of the user's words to search."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,22 +65,22 @@ def goal(
 ) -> Goal:
     """Declare a goal of the agent.
 
-    The agent pursues it by saying something, when it is bored and no other goal has just had its turn. The goal is over
-    when `done` or `refused` comes, or after the last try. The user goes first: their words interrupt a pursuit, and
-    take the opportunity away.
+    The agent pursues a goal by saying something, when it is bored and no other goal has just had its turn. The goal is
+    over when `done` or `refused` comes, or after the last try. The user goes first: their words interrupt a pursuit,
+    and take the opportunity away.
 
     The goal is a rule, ``module:name``, so ``sim.explain("module:name")`` explains it.
 
     Args:
         module: The goal's module; it must require `agenda`.
         name: The name within the module.
-        say: The words: a text; several, one for each try in turn; or a function of the rule context that returns one,
-            which may be async, and slow.
+        say: The words: a text; several texts, one for each try in turn; or a function of the rule context that returns
+            a text. The function may be async, and slow.
         intent: An intent for the verbaliser, instead of `say`.
         reads: The slots that the function reads.
         when: A further condition, e.g. ``interloc.users.holds(bool)``.
         unless: A condition that prevents it: ``slot.holds(...)`` alone.
-        priority: A factor on the utility (L9); the goal of greater utility goes first.
+        priority: A factor on the utility (L9); the goal with the greatest utility goes first.
         cooldown: Seconds until the next try; also the time for an answer.
         done: Success, whenever it comes: a signal, a condition, or a regular expression of whole words for the user's
             answer. Without it, one try is a success.
@@ -126,9 +126,9 @@ def goal(
         when=condition | goals.changed.where(is_over).detached(),
         reads=reads,
         writes=(rawio.output, goals) if intent is None else (verbaliser.intent, rawio.output, goals),
-        weight=priority,  # and no cooldown option: the goal rests by resigning, with or without a rival
-        until=rawio.input.changed | goals.changed.where(is_over),  # it may be reached while it is worded
-        detached=True,  # an answer to it may be answered: it begins a new causal group
+        weight=priority,  # no cooldown option either: the goal rests by resigning, with or without a rival
+        until=rawio.input.changed | goals.changed.where(is_over),  # the goal may be reached while a function words it
+        detached=True,  # it starts a new causal group, so that rules can react to the user's answer
         name=name,
     )
     async def pursue(ctx: rs.RuleContext) -> rs.Resign | rs.Retire | None:
@@ -211,7 +211,7 @@ def _expression(goal: str, what: str, event: Condition | str | None) -> re.Patte
         return re.compile(rf"(?<!\w)(?:{event})(?!\w)", re.IGNORECASE)
     except re.error as error:
         raise rs.DeclarationError(
-            f"goal {goal}: {what}={event!r} is no regular expression ({error}): write for example {what}='yes|sure'"
+            f"goal {goal}: {what}={event!r} is not a regular expression ({error}): write for example {what}='yes|sure'"
         ) from None
 
 

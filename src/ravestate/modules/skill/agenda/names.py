@@ -25,11 +25,12 @@ class Settings(rs.Settings):
 module = rs.Module("agenda", requires=[rawio, idle, verbaliser], settings=Settings)
 
 opportunity = module.signal("opportunity", payload=float)
-"""One goal may be pursued: nobody is busy, and the last goal is long enough ago. The payload is the time (seconds)."""
+"""One goal may be pursued: neither side is talking, and the last goal is long enough ago. The payload is the time
+(seconds)."""
 
 goals: rs.Collection[GoalState] = module.collection("goals")
 """The state of each goal that was pursued, reached or dropped, by the name of its rule."""
 
 topics: rs.Collection[str] = module.collection("topics", input=True)
-"""The topics of the talk. While there is one, no goal is pursued. A skill adds a name when it begins something, and
-removes it at the end."""
+"""The topics of the conversation. While there is one, no goal is pursued. A skill adds a name when it begins something,
+and removes it at the end."""

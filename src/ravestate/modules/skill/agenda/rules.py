@@ -11,9 +11,9 @@ from .names import Settings, goals, module, opportunity, topics
 
 @module.rule(when=idle.bored, reads=(goals, topics), emits=opportunity)
 async def take_initiative(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Allow one goal, unless another has just had its turn, or the talk has a topic."""
+    """Allow one goal, unless another has just had its turn, or the conversation has a topic."""
     if ctx[topics]:
-        return rs.Resign(f"the talk is about {', '.join(ctx[topics])}")
+        return rs.Resign(f"the conversation is about {', '.join(ctx[topics])}")
     for name, state in ctx[goals].items():
         past = ctx.now - state.since
         if state.tries and past < ctx.settings.gap:
@@ -32,7 +32,7 @@ async def yield_to_the_user(ctx: rs.RuleContext) -> None:
 def adopt_wishes(ctx: rs.RuleContext) -> None:
     """Add the goals from the settings to this context, and to no other that shares the policy.
 
-    It runs in a thread, because each rule costs the loop some milliseconds.
+    It runs in a thread, because each rule costs the loop a few milliseconds.
     """
     settings: Settings = ctx.settings
     own = rs.Module(module.name)

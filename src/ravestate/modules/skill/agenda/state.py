@@ -13,7 +13,7 @@ class GoalState:
     """The state of a goal.
 
     Attributes:
-        status: ``open`` until it is first pursued, then ``pursued``; at last ``done`` or ``dropped``.
+        status: ``open`` until it is first pursued, then ``pursued``; in the end ``done`` or ``dropped``.
         tries: The number of tries.
         since: The last try, in seconds since the context began.
     """

@@ -1,4 +1,4 @@
-"""A goal from an agent's file: words alone."""
+"""A goal from an agent's file, without code."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ def _expression(pattern: str) -> str:
     try:
         re.compile(pattern)
     except re.error as error:
-        raise ValueError(f"{pattern!r} is no regular expression: {error}") from None
+        raise ValueError(f"{pattern!r} is not a regular expression: {error}") from None
     return pattern
 
 
@@ -62,4 +62,4 @@ def _no_twins(wishes: tuple[Wish, ...]) -> tuple[Wish, ...]:
 
 
 without_twins = AfterValidator(_no_twins)
-"""Refuse two goals of one name."""
+"""Refuse two goals with the same name."""

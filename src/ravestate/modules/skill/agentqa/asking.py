@@ -13,9 +13,9 @@ from dataclasses import dataclass
 LONGEST = 2000
 """Characters of an utterance that are read."""
 WORDS = 20
-"""The greatest number of words in a question about the agent."""
+"""The maximum number of words in a question about the agent."""
 SENTENCES = 4
-"""The greatest number of sentences that are considered."""
+"""The maximum number of sentences that are considered."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,7 +25,7 @@ class Asked:
     text: str
     """The plain form."""
     addressed: bool
-    """Whether it has *you* or *your*. *How is it going* has neither, and still asks after the agent's mood."""
+    """Whether it has *you* or *your*. *How is it going* has neither, but still asks about the agent's mood."""
 
 
 def about_agent(
@@ -35,7 +35,7 @@ def about_agent(
     *,
     question: bool = False,
 ) -> tuple[list[Asked], str]:
-    """Return the questions that may be about the agent, and why the last other sentence is none.
+    """Return the questions that may be about the agent, and why the last other sentence is not one.
 
     Args:
         utterance: The user's words.
@@ -92,13 +92,13 @@ def statements(utterance: str, names: Collection[str] = ()) -> list[str]:
 
 
 def _unfit(words: list[str], asks: bool, known: Collection[str]) -> str:
-    """Return why a sentence is no question about the agent; an empty string if it may be one."""
+    """Return why a sentence is not a question about the agent; an empty string if it may be one."""
     if not words:
         return "nothing is said"
     if len(words) > WORDS:
         return f"it is longer than {WORDS} words"
     if not asks and words[0] not in _FIRST and not (words[0] in ("your", "and") and len(words) <= 3):
-        return "it is no question"
+        return "it is not a question"
     if not _USER.isdisjoint(_ABOUT_BOTH.sub(" ", " ".join(words)).split()):
         return "it is about the user"
     if not _SOMEBODY.isdisjoint(words):
@@ -261,4 +261,4 @@ _WRITTEN_OUT: dict[str, str] = {
     }.items()
     for short in shorts.split()
 }
-"""Short forms and common slips in typing, written out."""
+"""Short forms and common typos, written out."""

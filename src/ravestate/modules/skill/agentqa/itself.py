@@ -35,7 +35,7 @@ RELATIONS: Mapping[str, _Relation] = {
 
 
 async def settle(life: Life, memory: Memory) -> Node:
-    """Bring the agent's node in memory in line with the file. Facts that the file does not mention stay.
+    """Update the agent's node in memory to match the file. Facts that the file does not mention stay.
 
     Raises:
         PlatformError: Memory failed.
@@ -59,7 +59,7 @@ async def settle(life: Life, memory: Memory) -> Node:
                 changed = True
                 await memory.relate(node, relation, await memory.ensure(type, name=text))
     if changed:
-        await memory.tidy()  # the first time it wrote a whole life
+        await memory.tidy()  # the first time, it wrote a whole life
     return node
 
 

@@ -18,13 +18,14 @@ class Topic:
     questions: tuple[str, ...]
     """Example questions. Questions with the same meaning are understood as well."""
     phrases: tuple[str, ...]
-    """Answers, with facts in braces. One whose facts are known is chosen."""
+    """Answers, with facts in braces. The agent chooses one whose facts are known."""
     otherwise: tuple[str, ...] = ()
-    """Answers for the case that each of the phrases lacks a fact; without any, other modules answer."""
+    """Answers for when every phrase lacks a fact; if there are none, other modules answer."""
     named: tuple[tuple[str, tuple[str, ...]], ...] = ()
-    """By fact: answers to a question that names one of its values, ``{it}``; ``{that}`` is the other text of a pair."""
+    """For each fact, answers to a question that names one of its values, ``{it}``; ``{that}`` is the other text of a
+    pair."""
     unnamed: tuple[str, ...] = ()
-    """Answers to a question about something particular (*can you dance*) that is no value of a fact."""
+    """Answers to a question about something particular (*can you dance*) that is not a value of a fact."""
     remarks: tuple[str, ...] = ()
     """Regular expressions of whole words, for remarks that no other module should answer."""
     asides: tuple[str, ...] = ()

@@ -54,7 +54,7 @@ def read_life(own: Path | None = None) -> Life:
     except OSError as error:
         raise PlatformError(f"the file {str(own)!r} cannot be read: {error.strerror or error}") from error
     except UnicodeDecodeError as error:
-        raise DeclarationError(f"{own}: this is no text in UTF-8 ({error.reason} at byte {error.start})") from None
+        raise DeclarationError(f"{own}: this is not UTF-8 text ({error.reason} at byte {error.start})") from None
     return _parsed(str(own), text, life)
 
 
@@ -114,7 +114,7 @@ class _Known:
                     raise _fault(
                         self.file,
                         item,
-                        f"{{{parameter}}} in {item.value!r} is no fact{nearest(parameter, known)}; it would stand under "
+                        f"{{{parameter}}} in {item.value!r} is not a fact{nearest(parameter, known)}; it would stand under "
                         f"facts:\n  {parameter or 'hobbies'}: ...",
                     )
         return found
@@ -159,7 +159,7 @@ def _expressions(file: str, node: yaml.Node, part: str) -> tuple[str, ...]:
             raise _fault(
                 file,
                 item,
-                f"{expression!r} is no regular expression ({error}): write for example i am (so )?sad",
+                f"{expression!r} is not a regular expression ({error}): write for example i am (so )?sad",
             ) from None
     return found
 
@@ -181,7 +181,7 @@ def _fact(name: str, key: str, node: yaml.Node) -> Fact | None:
         try:
             date.fromisoformat(text)
         except ValueError:
-            raise _fault(name, node, f"born: {text!r} is no date: write for example 2024-03-01") from None
+            raise _fault(name, node, f"born: {text!r} is not a date: write for example 2024-03-01") from None
     return text
 
 
@@ -211,7 +211,7 @@ def _entries(
         if allowed is not None and word not in allowed:
             raise _fault(name, key, f"{word!r} means nothing here{nearest(word, allowed)}: {', '.join(allowed[:12])}")
         if allowed is None and not word.replace(" ", "_").replace("-", "_").isidentifier():
-            raise _fault(name, key, f"{word!r} is no name: letters, digits and _")
+            raise _fault(name, key, f"{word!r} is not a name: letters, digits and _")
         if word in seen:
             raise _fault(name, key, f"{word!r} is here a second time")
         seen.add(word)

@@ -45,10 +45,11 @@ asked = module.signal("asked", payload=Match)
 """The user asks something about the agent; the payload has the topic."""
 
 remarked = module.signal("remarked", payload=Remark)
-"""The user makes a remark that goes before everything else, such as distress or an insult; the payload has the topic."""
+"""The user makes a remark that takes priority over everything else, such as distress or an insult; the payload has the
+topic."""
 
 life: rs.Slot[Life | None] = module.slot("life", None, type=Life, input=True)
-"""The agent's life, read from the files at startup. Facts of the agent's node in memory go first."""
+"""The agent's life, read from the files at startup. Facts in the agent's memory override them."""
 
 mood: rs.Slot[str] = module.slot("mood", "fine", type=str, input=True)
 """The agent's mood as an adjective: its answer to *how are you*. Any module may write it."""

@@ -11,7 +11,7 @@ from .asking import statements
 from .life import Life
 
 ASIDE = 80
-"""The greatest number of characters in an aside."""
+"""The maximum number of characters in an aside."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,13 +24,13 @@ class Remark:
 
 
 def remark_in(utterance: str, life: Life, names: Collection[str] = (), asked: bool = False) -> Remark | None:
-    """Return the remark in an utterance; among several topics the first of the life.
+    """Return the remark in an utterance. If several topics match, the first in the life counts.
 
     Args:
         utterance: The user's words.
         life: The life; its topics with remarks count.
         names: Further names of the agent.
-        asked: Whether the agent has asked something: then *okay* is an answer, and no aside.
+        asked: Whether the agent has asked something: then *okay* is an answer, not an aside.
 
     Example:
         >>> from ravestate.modules.skill.agentqa.life_file import read_life

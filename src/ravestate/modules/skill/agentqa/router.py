@@ -26,15 +26,15 @@ if TYPE_CHECKING:
 SHARPNESS = 4.0
 """The slope of the similarity of meaning: the vectors of short questions lie close together."""
 SPELLING = 0.1
-"""The weight of similar spelling; similar meaning has the weight 1. It forgives slips in typing."""
+"""The weight of similar spelling; similar meaning has the weight 1. It tolerates typos."""
 COMMON = 0.1
 """The similarity of any two questions; it allows topics of different sizes."""
 RIDGE = 0.1
 """The ridge penalty: it limits the weight of a single example."""
 LEAST = 0.3
-"""A question with a lower score is like none of the examples."""
+"""A question with a lower score resembles none of the examples."""
 UNADDRESSED = 0.9
-"""The least similarity (cosine) of a question without *you* to an example without it: *how is it going*."""
+"""The minimum similarity (cosine) of a question without *you* to an example without it: *how is it going*."""
 OTHERS = ""
 
 
@@ -46,7 +46,7 @@ class Match:
     question: str
     """The question in the plain form."""
     score: float
-    """The score: near 1 for an example, near 0 for a question like none."""
+    """The score: near 1 for an example, near 0 for a question unlike any of them."""
     example: str
     """The nearest example."""
     margin: float
@@ -96,12 +96,12 @@ class Router:
         Raises:
             PlatformError: The sentence model is missing or broken. The message says what to do.
         """
-        if self._learnt is not None:  # no lock for a mere question
+        if self._learnt is not None:  # no lock is needed just to check
             return
         with self._lock:
             if self._learnt is None:
                 with LOADING:
-                    import_module("numpy")  # all below needs it
+                    import_module("numpy")  # everything below needs it
                 pairs = [(plain(q), topic.name) for topic in self.life.topics.values() for q in topic.questions]
                 pairs += [(plain(q), OTHERS) for q in self.life.others]
                 self._learnt = _learnt(tuple(pairs), self._encoder)

@@ -35,10 +35,10 @@ async def be_born(ctx: rs.RuleContext) -> None:
 
 @module.rule(when=life.changed.detached(), background=True)
 def load(ctx: rs.RuleContext) -> None:
-    """Learn the topics in the background, so that the first question need not wait."""
+    """Learn the topics in the background, so that the first question does not have to wait."""
     told = ctx.payload(life.changed)
     if told is not None:
-        with contextlib.suppress(PlatformError):  # the first question raises it again
+        with contextlib.suppress(PlatformError):  # the first question raises the error again
             try:
                 router_of(told).load()
                 give_back()
@@ -48,7 +48,7 @@ def load(ctx: rs.RuleContext) -> None:
 
 @module.rule(when=life.changed.detached(), reads=ontology.memory, background=True)
 async def remember(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Bring memory in line with the file."""
+    """Update memory to match the file."""
     told, memory = ctx.payload(life.changed), ctx[ontology.memory]
     if told is None or memory is None:
         return rs.Resign("there is no memory, or no life")
@@ -59,7 +59,7 @@ async def remember(ctx: rs.RuleContext) -> rs.Resign | None:
     try:
         await settle(told, memory)
     except RuleError as error:
-        return rs.Resign(str(error))  # it was closed meanwhile: the talk is over
+        return rs.Resign(str(error))  # it was closed meanwhile: the conversation is over
     except RavestateError as error:
         ctx.log.warning("the agent's facts in memory may be out of date: %s", error)
     return None
@@ -89,12 +89,12 @@ async def understand(ctx: rs.RuleContext) -> rs.Resign | None:
 
 @module.rule(when=rawio.input.changed, reads=(life, idle.asked), emits=remarked)
 async def heed(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Notice a remark that is no small talk."""
+    """Notice a remark that is not small talk."""
     told = ctx[life]
     said = ctx.payload(rawio.input.changed)
     found = None if told is None else remark_in(said, told, asked=bool(ctx[idle.asked]))
     if found is None:
-        return rs.Resign("it is no such remark")
+        return rs.Resign("it is not such a remark")
     ctx.emit(remarked, found)
     return None
 
@@ -103,18 +103,18 @@ async def heed(ctx: rs.RuleContext) -> rs.Resign | None:
     when=remarked,
     reads=(life, mood, clock),
     writes=verbaliser.intent,
-    weight=25.0,  # few rules of other modules go before it, not even with an answer to a question
+    weight=25.0,  # outranks nearly all rules of other modules, even those that answer a question
 )
 async def respond(ctx: rs.RuleContext) -> None:
     """Answer the remark."""
     told, remark = ctx[life], ctx.payload(remarked)
-    assert told is not None  # `heed` needs a life
+    assert told is not None  # `heed` has run only if there is a life
     phrases = telling(told.topics[remark.topic], remark.text, told.facts, mood=ctx[mood], now=ctx[clock]())
     if phrases is not None:
         ctx[verbaliser.intent] = intent(remark.topic, phrases)
 
 
-@module.rule(when=idle.hushed, writes=verbaliser.intent, weight=20.0)  # before all but such a remark
+@module.rule(when=idle.hushed, writes=verbaliser.intent, weight=20.0)  # outranks everything except such a remark
 async def keep_quiet(ctx: rs.RuleContext) -> None:
     """Promise to be quiet; `idle` keeps the promise."""
     ctx[verbaliser.intent] = Intent("hushed", package=__package__)
@@ -124,12 +124,12 @@ async def keep_quiet(ctx: rs.RuleContext) -> None:
     when=asked,
     reads=(life, mood, clock, ontology.memory),
     writes=verbaliser.intent,
-    weight=1.5,  # before other modules with an answer to the same question
+    weight=1.5,  # outranks other modules that answer the same question
 )
 async def answer(ctx: rs.RuleContext) -> rs.Resign | None:
     """Answer the question."""
     match, told = ctx.payload(asked), ctx[life]
-    assert told is not None  # `understand` needs a life
+    assert told is not None  # `understand` has run only if there is a life
     facts = await known(ctx, told, ctx[ontology.memory])
     phrases = telling(told.topics[match.topic], match.question, facts, mood=ctx[mood], now=ctx[clock]())
     if phrases is None:
@@ -147,9 +147,9 @@ async def answer(ctx: rs.RuleContext) -> rs.Resign | None:
         verbaliser.intent,
         rawio.output,
         prompted,
-    ),  # the output too, so that no goal is pursued at the same time
+    ),  # also writes the output, so that no goal is pursued at the same time
     weight=0.9,
-    detached=True,  # else the intent could not be worded in the same causal group
+    detached=True,  # otherwise the intent could not become words in the same causal group
 )
 async def offer(ctx: rs.RuleContext) -> rs.Resign | None:
     """Invite the user to ask, now and then, in a silence."""
@@ -162,7 +162,7 @@ async def offer(ctx: rs.RuleContext) -> rs.Resign | None:
 
 
 def intent(topic: str, phrases: Sequence[str]) -> Intent:
-    """Return an intent with finished phrases; the braces left in them belong to a fact."""
+    """Return an intent with finished phrases; any braces left in them belong to a fact."""
     texts = [phrase.replace("{", "{{").replace("}", "}}") for phrase in phrases]
     return Intent(f"agentqa:{topic}", phrases={"en": texts})
 
@@ -174,5 +174,5 @@ async def known(ctx: rs.RuleContext, told: Life, memory: ontology.Memory | None)
     try:
         return {**await recall(told, memory), "memory": "my memory"}
     except RavestateError as error:
-        ctx.log.warning("memory does not answer, so the file counts: %s", error)
+        ctx.log.warning("memory does not answer, so the agent uses the file: %s", error)
         return told.facts

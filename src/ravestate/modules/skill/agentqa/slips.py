@@ -1,15 +1,15 @@
-"""Slips in typing, mended by known words."""
+"""Correct typos by means of known words."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 
 SHORTEST = 6
-"""Shorter words are left alone: too many other words are like them."""
+"""The minimum length of a word to correct: too many other words resemble shorter ones."""
 
 
 class Slips:
-    """A set of known words that finds the one meant.
+    """A set of known words that corrects misspelt ones.
 
     Example:
         >>> Slips(["siblings", "friends"]).mended("do you have frends")
@@ -21,9 +21,9 @@ class Slips:
         self._long = sorted(word for word in self._words if len(word) >= SHORTEST)
 
     def mended(self, text: str) -> str:
-        """Return `text` with each unknown word replaced by the only known word one slip away.
+        """Return `text` with each unknown word replaced by a known word one typo away, if there is exactly one.
 
-        A slip is a letter missing, doubled or wrong, or two letters exchanged. The first letter must be right."""
+        A typo is a letter missing, doubled or wrong, or two letters swapped. The first letter must be right."""
         return " ".join(self._meant(word) for word in text.split())
 
     def _meant(self, word: str) -> str:

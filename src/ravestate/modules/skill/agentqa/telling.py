@@ -34,7 +34,7 @@ def telling(
 
 
 def listed(items: Sequence[str]) -> str:
-    """Return texts as an enumeration.
+    """Join texts into an enumeration.
 
     Example:
         >>> listed(["words", "clouds", "chess"])
@@ -104,7 +104,7 @@ def _parameters(phrase: str) -> set[str]:
 _PARTICULAR = re.compile(
     r"(?:can|could|do|are) you (?!(?:[\w-]+ )*(?:have|any|anything|anybody|some|something|everything|what|which|or)\b)"
 )
-"""First words of a question for one thing; its answer is yes or no."""
+"""First words of a question about one thing; its answer is yes or no."""
 _QUESTION_AT_THE_END = re.compile(r"(?<=[.!…])\s+[^.!?…]+\?$")
 _BEGINNING = re.compile(r"^\W*\w|[.!?…:] +\w")
 """The first letter of a sentence, which may belong to a fact."""

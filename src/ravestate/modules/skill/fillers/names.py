@@ -11,10 +11,10 @@ from ravestate.modules import idle, rawio, verbaliser
 
 
 class Settings(rs.Settings):
-    """The patience before a filler."""
+    """How long the agent waits before a filler."""
 
     unanswered_after: Annotated[float, Field(gt=0)] = 2.0
-    """Seconds from the user's words until an answer counts as slow, while none of it is heard."""
+    """Seconds from the user's words until an answer counts as slow, if nothing has been said."""
     answer_within: Annotated[float, Field(gt=0)] = 20.0
     """Seconds from a filler until the agent says that it has lost the answer."""
 
@@ -25,7 +25,7 @@ filled: rs.Slot[float | None] = module.slot("filled", None)
 """The time of the last filler, in seconds since the context began."""
 
 promised = module.flag("promised")
-"""Whether the agent still owes the answer after a filler."""
+"""Whether the agent still owes an answer after a filler."""
 
 lost = module.signal("lost")
-"""An answer after a filler does not come: it took too long, or every rule for it resigned."""
+"""The answer after a filler does not come: it takes too long, or every rule that could answer has resigned."""

@@ -35,7 +35,7 @@ def _silent(speaking: bool) -> bool:
 
 
 @module.rule(
-    when=idle.impatient.max_age(0.0) & rawio.speaking.holds(_silent),  # later the answer may be there
+    when=idle.impatient.max_age(0.0) & rawio.speaking.holds(_silent),  # later, the answer may have come
     reads=filled,
     writes=(verbaliser.intent, filled, promised),
 )

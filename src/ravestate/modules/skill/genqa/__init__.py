@@ -1,4 +1,4 @@
-"""Answers about the world from documents: with their source, or not at all."""
+"""Answers about the world from documents, always with their source."""
 
 from __future__ import annotations
 

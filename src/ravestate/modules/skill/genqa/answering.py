@@ -20,21 +20,22 @@ from .stems import Stems
 from .variants import variants_of
 
 RETRIEVED = 16
-"""The number of passages with some word of a question, and again of those with all; they are compared word by word."""
+"""The number of passages to compare word by word: so many with any word of a question, and as many with all words."""
 READ = (1, 1, 2, 4)
-"""The number of these passages that are read, in batches: each only if the one before has no answer."""
+"""The number of these passages to read, in batches. Each batch is read only if the last one had no answer."""
 GOOD, VERY_GOOD, HOPELESS = 7.5, 9.0, -4.0
-"""Scores that end the reading: `GOOD` an answer among several, `VERY_GOOD` an answer alone, `HOPELESS` the first few."""
+"""Scores that end the reading: `GOOD` for the best of several, `VERY_GOOD` for a single one, `HOPELESS` for the first
+few."""
 ENOUGH = 0.4
-"""The least share of the question's words (0 to 1) in a passage that is read."""
+"""The minimum share of the question's words (0 to 1) in a passage that is read."""
 LEVEL = 0.8
 """Scores that differ by less count as equal."""
 COMMON = 20_000
-"""The greatest number of passages with a word that is searched, unless there is no rarer word."""
+"""The maximum number of passages for a word to be searched, unless there is no rarer word."""
 COMMON_KIND = 2_000
-"""The same limit for words that only say what kind of answer is wanted."""
+"""The same limit for words that describe only the kind of answer."""
 WORDS = 24
-"""The greatest number of words to search for."""
+"""The maximum number of words to search for."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +53,7 @@ class Candidate:
 
 @dataclass(frozen=True, slots=True)
 class Answer:
-    """The answer of the documents; without a text they have none."""
+    """The documents' answer; without a text, there is none."""
 
     question: str
     text: str = ""
@@ -84,7 +85,7 @@ class Answerer:
 
         Args:
             path: The index; it is created if there is none.
-            collection: Whether it shall contain the collection that comes with Ravestate.
+            collection: Whether it should contain the collection that comes with Ravestate.
             reranker: The folder of another reader, see `Reranker`.
         """
         self._path = path
@@ -158,7 +159,7 @@ class Answerer:
         known = index.frequencies(sorted({stem for stems in stem_of.values() for stem in stems}))
 
         def standing(word: str) -> int:
-            """Return the greatest possible number of passages with a word."""
+            """Return the maximum number of passages with a word."""
             return min(known.get(stem, 0) for stem in stem_of[word])
 
         rare = [word for word in stem_of if standing(word) <= (COMMON_KIND if word in question.kinds else COMMON)]
@@ -182,7 +183,7 @@ class Answerer:
             sum(weight for weight, forms in wanted if any(form <= have for form in forms)) / total
             for have in map(set, self._stems(*(f"{each.title} {each.text} {each.hints}" for each in found)))
         ]
-        # The sort is stable: BM25 decides between equals.
+        # The sort is stable, so BM25 decides between equals.
         order = sorted(
             (place for place in range(len(found)) if covered[place] >= ENOUGH),
             key=lambda place: -covered[place],
@@ -206,7 +207,7 @@ class Answerer:
             if best >= (GOOD if len(read) > 1 else VERY_GOOD) or (best <= HOPELESS and len(read) > 2):
                 break
         read.sort(key=lambda candidate: -candidate.score)
-        # Among equals, take the passage with the fewest other words: the life expectancy, not that of women.
+        # Among equals, take the passage with the fewest other words: "life expectancy", not "life expectancy of women".
         level = [c for c in read if c.score > read[0].score - LEVEL and c.covered >= read[0].covered]
         asked = {form for word in question.words for form in variants_of(word.lower())}
         best = min(level, key=lambda candidate: _besides(candidate.text, asked))
@@ -214,7 +215,7 @@ class Answerer:
 
 
 def _readable(found: Found) -> str:
-    """Return a passage for the reader: under its title, unless it names that itself."""
+    """Return a passage for the reader, with its title unless the passage names it."""
     text = found.text if found.title.lower() in found.text.lower() else f"{found.title}: {found.text}"
     return text[:LONGEST]
 
@@ -224,7 +225,7 @@ _RANKS = ("second", "third", "fourth", "fifth", "sixth", "seventh", "eighth", "n
 
 
 def _other_ranks(question: str) -> list[str]:
-    """Return ranks that a passage must not name: a question for the largest is not about the second largest."""
+    """Return ranks that a passage must not name: a question about the largest is not about the second largest."""
     if not _SUPERLATIVE.search(question):
         return []
     asked = set(question.lower().split())
@@ -232,5 +233,5 @@ def _other_ranks(question: str) -> list[str]:
 
 
 def _besides(text: str, asked: set[str]) -> int:
-    """Return the number of words of `text`, outside of brackets, that were not asked for."""
+    """Return the number of words of `text`, outside brackets, that were not asked for."""
     return len(set(re.findall(r"[a-z]{2,}", re.sub(r"\([^)]*\)", "", text.lower()))) - asked)

@@ -44,7 +44,7 @@ class Found:
 def find(paths: Iterable[Path], index: Index) -> Found:
     """Return the files under `paths`: single files, and all readable files of folders.
 
-    Hidden files, and links to folders, are passed over.
+    Hidden files, and links to folders, are skipped.
     """
     found = Found()
     for path in paths:
@@ -63,7 +63,7 @@ def find(paths: Iterable[Path], index: Index) -> Found:
 
 
 def collect(found: Found, index: Index, reading: Reading | None = None) -> Iterator[Outcome]:
-    """Bring `index` up to date, file by file; each file is taken in as a whole, or not at all.
+    """Bring `index` up to date, file by file; each file is added completely, or not at all.
 
     Args:
         found: The files.

@@ -10,7 +10,7 @@ INTERCEPT, SCORE, COVERED = -6.419, 0.634, 5.337
 def confidence(score: float, covered: float) -> float:
     """Return the probability (0 to 1) that a passage answers the question.
 
-    The lead over the next best passage adds nothing: the next best is often right, too.
+    The lead over the next best passage tells nothing more: the next best is often right, too.
 
     Args:
         score: The reader's score of the passage.

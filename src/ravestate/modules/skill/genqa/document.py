@@ -12,7 +12,7 @@ class Passage:
 
     text: str
     hints: str = ""
-    """Further words that a question may use for it: they are searched, and never shown."""
+    """Further words that a question may use for it. The search uses them; they never appear."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,7 +20,7 @@ class Document:
     """A part of a file about one subject."""
 
     title: str
-    """The subject; it gives each passage its sense."""
+    """The subject, which gives each passage its context."""
     source: str
     """The source that an answer names."""
     passages: Iterable[Passage]

@@ -84,7 +84,7 @@ class Index:
             timeout: Seconds to wait for another process that writes.
 
         Raises:
-            PlatformError: It cannot be opened, has a newer version, or is no index.
+            PlatformError: It cannot be opened, has a newer version, or is not an index.
         """
         self.path = path
         self._lock = threading.RLock()
@@ -153,7 +153,7 @@ class Index:
     # ---------------------------------------------------------------------------------- searching
 
     def frequencies(self, stems: Sequence[str]) -> dict[str, int]:
-        """Return the number of passages with each stem, without those in none."""
+        """Return the number of passages with each stem; leave out stems without passages."""
         marks = ", ".join("?" * len(stems))
         with self._lock, self._told():
             return dict(self._base.execute(f"SELECT term, doc FROM words WHERE term IN ({marks})", tuple(stems)))
@@ -163,8 +163,8 @@ class Index:
 
         Args:
             words: Any text; operators of the query language are plain words here.
-            limit: The greatest number of passages.
-            without: Words that leave a passage out.
+            limit: The maximum number of passages.
+            without: Words that exclude a passage.
         """
         return self._matching(_any_of(words), limit, without)
 
@@ -205,7 +205,7 @@ class Index:
         return row - first
 
     def touch(self, file: IndexedFile) -> None:
-        """Save a file's new size and date; its content is the same."""
+        """Save a file's new size and date; its content has not changed."""
         with self._changing():
             self._base.execute(
                 "UPDATE files SET size = ?, modified = ? WHERE path = ?",
@@ -252,7 +252,9 @@ class Index:
         self._base.execute("PRAGMA synchronous = NORMAL")
         if empty:
             with self._changing():
-                if not self._base.execute("SELECT count(*) FROM sqlite_master").fetchone()[0]:  # nobody was faster
+                if not self._base.execute("SELECT count(*) FROM sqlite_master").fetchone()[
+                    0
+                ]:  # no other process was faster
                     for statement in _SCHEMA.split(";\n"):
                         self._base.execute(statement)
 
@@ -285,7 +287,7 @@ class Index:
             elif code.startswith("SQLITE_CANTOPEN"):
                 why = f"it cannot be opened: {_OTHER}"
             elif code.startswith(("SQLITE_NOTADB", "SQLITE_CORRUPT")):
-                why = f"it is no index, or damaged: remove it and index anew, or {_OTHER}"
+                why = f"it is not an index, or damaged: remove it and index anew, or {_OTHER}"
             else:
                 why = str(error)
             raise PlatformError(f"genqa: the index {self.path}: {why}") from error

@@ -24,9 +24,9 @@ class Settings(rs.Settings):
     collection: bool = True
     """Whether to search the collection that comes with Ravestate as well: countries, nature, the calendar."""
     sure: Probability = 0.7
-    """The least confidence of a sure answer."""
+    """The minimum confidence of a sure answer."""
     unsure: Probability = 0.4
-    """The least confidence of an answer with a doubt; below it the module is silent."""
+    """The minimum confidence of an answer with a doubt; below that, the module is silent."""
     wording: Literal["sentence", "model"] = "sentence"
     """``sentence``: the document's own words; ``model``: the words of wildtalk's language model. The prompt has only the
     sentences that were found, and an answer with another name or number is dropped."""

@@ -10,9 +10,9 @@ from ravestate.modules._text import printable
 from .document import Passage
 
 LONGEST = 280
-"""The greatest number of characters in a passage; a longer sentence is cut."""
+"""The maximum number of characters in a passage; a longer sentence is cut."""
 SHORTEST = 12
-"""The least number of characters in a passage; page numbers and captions are shorter."""
+"""The minimum number of characters in a passage; page numbers and captions are shorter."""
 
 _PARAGRAPH = re.compile(r"\n\s*\n")
 _END = re.compile(r"(?<=[.!?…])[\"”’)\]]*\s+(?=[\"“‘(\[]?[^\W_a-z])|(?<=[。！？])")
@@ -20,7 +20,7 @@ _ABBREVIATION = re.compile(
     r"(?:\b(?:Mr|Mrs|Ms|Dr|Prof|St|vs|No|Fig|Vol|pp?|ca|approx|e\.g|i\.e|cf|etc|al|Jan|Feb|Mar|Apr|Jun|Jul|Aug|Sep|"
     r"Sept|Oct|Nov|Dec|Inc|Ltd|Co|U\.S|U\.K)|\b[A-Z]|\s\d{1,2})\.\s*\Z"
 )
-# First words of a sentence that needs the one before it.
+# First words of a sentence that needs the previous one.
 _LEANS = re.compile(r"(?:It|Its|He|She|His|Her|They|Their|This|These|That|Those|There|Here|Such)\b")
 _HYPHEN = re.compile(r"(?<=[a-z])-\n(?=[a-z])")
 
@@ -28,8 +28,8 @@ _HYPHEN = re.compile(r"(?<=[a-z])-\n(?=[a-z])")
 def passages_of(text: str) -> Iterator[Passage]:
     """Yield the passages of `text`, in order.
 
-    An empty line ends a paragraph; a single line break is a space. A sentence that begins with *it*, *she* or *this* stays
-    with the one before, as long as both are short.
+    An empty line ends a paragraph; a single line break is a space. A sentence that begins with *it*, *she* or *this*
+    joins the previous one, if both are short.
 
     Example:
         >>> [p.text for p in passages_of("Delft is a town in Holland. It has 100,000 inhabitants.\\n\\nVermeer lived there.")]
@@ -59,7 +59,7 @@ def _sentences(paragraph: str) -> Iterator[str]:
 
 def _fitting(paragraph: str, start: int, end: int) -> Iterator[str]:
     """Yield the sentence from `start` to `end` in short parts; nothing if it has no letter."""
-    while end - start > LONGEST + SHORTEST:  # else the rest would be too short
+    while end - start > LONGEST + SHORTEST:  # otherwise the rest would be too short
         window = paragraph[start : start + LONGEST]
         cut = max(window.rfind(mark, LONGEST // 3) for mark in ("; ", ": ", ", ")) + 1
         cut = cut or window.rfind(" ", LONGEST // 3) + 1 or LONGEST

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from ravestate.modules._text import printable
 
 LONGEST = 2000
-"""Characters of an utterance; a longer one is no question about the world."""
+"""The maximum length of an utterance in characters; a longer one is not a question about the world."""
 
 _FRONT = re.compile(
     r"^(?:(?:so|and|but|well|ok|okay|oh|hey|hi|hello|hm+|um|uh|please|now|then|actually|by the way|tell me|excuse me|"
@@ -44,7 +44,7 @@ _OPINION = re.compile(
     r"\b(?:best|worst|nicest|better|worse|favou?rite|most beautiful|prettiest|coolest|ugliest|should)\b|"
     r"\bmeaning of life\b"
 )
-# Words of questions without a meaning for the search.
+# Words of questions that mean nothing for the search.
 _EMPTY_WORDS = """
     you i a an the this that these those some any and or but if of in on at by to for from with as into about than then
     is are was were be been being am do does did doing done has have had having can could will would shall should may might must
@@ -53,7 +53,7 @@ _EMPTY_WORDS = """
     say mean kind kinds type types sort thing things something anything someone somebody one ones give get got go goes going come comes
     came make makes made like look looks
 """
-# Words for the kind of answer: they help to find it, but it need not have them.
+# Words for the kind of answer: they help to find a passage, but the passage need not contain them.
 _KIND_WORDS = """
     who whom whose what which when where why how many much old long far name names named call called tell know
     before become became gain gained live lives believe there time year day place way happen happens cause causes average
@@ -113,7 +113,7 @@ def as_question(heard: str) -> Question:
 
 
 def is_vague(question: str) -> bool:
-    """Return whether a question is about an *it* or *they* that it hardly describes.
+    """Return whether a question is about an *it* or *they*, and says little else.
 
     Example:
         >>> is_vague("Can they fly?"), is_vague("When did it start to rain?")

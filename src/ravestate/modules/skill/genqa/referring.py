@@ -1,4 +1,4 @@
-"""Questions that refer to the one before: *and its capital?*, *and of Spain?*."""
+"""Questions that refer to the previous one: *and its capital?*, *and of Spain?*."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ LONGEST = 200
 
 @dataclass(frozen=True, slots=True)
 class Before:
-    """The question before, in a form that needs no other."""
+    """The previous question, in a form that can be understood alone."""
 
     question: str
     title: str

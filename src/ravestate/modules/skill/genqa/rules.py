@@ -21,8 +21,8 @@ from .wording import intent_of, wording_rule
 
 @module.rule(when=rs.startup, background=True)
 def load(ctx: rs.RuleContext) -> None:
-    """Open the index and load the reader in the background, so that the first question need not wait."""
-    with contextlib.suppress(PlatformError):  # the first question raises it again
+    """Open the index and load the reader in the background, so that the first question does not have to wait."""
+    with contextlib.suppress(PlatformError):  # the first question raises the error again
         try:
             answerer_of(ctx.settings).load()
             give_back()
@@ -45,7 +45,7 @@ async def choose_wording(ctx: rs.RuleContext) -> None:
 
 
 REMEMBERED = 120.0
-"""Seconds for which a question may be referred to."""
+"""Seconds for which a later question may refer to this one."""
 
 
 # It runs for every utterance, question or not. A rule that waited for the signal of a question would hold each
@@ -56,7 +56,7 @@ def find(ctx: rs.RuleContext) -> rs.Resign | None:
     settings: Settings = ctx.settings
     short = ctx.payload(nlp.question.changed) is None
     if short and not asks_in_short(ctx.payload(nlp.text.changed)):
-        return rs.Resign("it is no question")
+        return rs.Resign("it is not a question")
     last = ctx[before]
     if last is not None and ctx.now - last.at > REMEMBERED:
         last = None

@@ -1,4 +1,4 @@
-"""The wording of an answer: the document's own, or a language model's under control."""
+"""The wording of an answer: the document's own, or a language model's, which is checked."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from .names import Settings, found
 from .names import module as genqa
 
 TOLD = 3
-"""The greatest number of passages in the prompt."""
+"""The maximum number of passages in the prompt."""
 WORTH_TELLING = 3.0
-"""The greatest distance to the best score of a passage in the prompt."""
+"""The maximum distance to the best score of a passage in the prompt."""
 FAMILIAR = 0.6
-"""The least share of the model's words that the passages and the question have."""
+"""The minimum share of the model's words that the passages and the question have."""
 
 _INSTRUCTION = (
     "You word answers. Answer the question in one short sentence, only with what the quotations between <<< and >>> say. "
@@ -48,8 +48,8 @@ def intent_of(answer: Answer, text: str, settings: Settings) -> verbaliser.Inten
 def wording_rule(settings: Settings) -> rs.Rule[Any, Any]:
     """Return a rule in which the language model words the answer; it resigns if the model adds something.
 
-    It is for a context with wildtalk. It goes before the rule that says the sentence itself, which speaks if this one
-    resigns or fails.
+    The rule is for a context with wildtalk. It outranks the rule that says the sentence itself, which speaks if this
+    one resigns or fails.
     """
     from ravestate.modules import wildtalk
     from ravestate.modules.skill.wildtalk.backend import Message
@@ -96,8 +96,8 @@ def prompt(question: str, passages: Sequence[str]) -> list[tuple[str, str]]:
 def is_supported(text: str, passages: Sequence[str], question: str) -> bool:
     """Return whether `passages` support `text`: its numbers, its names, and most of its words.
 
-    Numbers must stand in the passages, names in the passages or the question. The text has a denial if, and only if, the
-    first passage has one, because that is the answer.
+    Numbers must appear in the passages, and names in the passages or the question. The text must contain a denial if,
+    and only if, the first passage does, because that is the answer.
 
     Example:
         >>> told = ["The capital of Peru is Lima."]

@@ -10,10 +10,10 @@ from .names import module, parted
 from .words import is_farewell, is_greeting
 
 JUST_NOW = 60.0
-"""Seconds for which a goodbye counts: a user who leaves after it hears no second one."""
+"""Seconds for which a goodbye counts: a user who leaves within this time hears no second one."""
 
 
-@module.rule(when=interloc.users.added, writes=verbaliser.intent, weight=1.1)  # before a goodbye in the same moment
+@module.rule(when=interloc.users.added, writes=verbaliser.intent, weight=1.1)  # outranks a simultaneous goodbye
 async def greet_who_comes(ctx: rs.RuleContext) -> None:
     """Greet a user who comes."""
     name = ctx.payload(interloc.users.added).item

@@ -1,4 +1,4 @@
-"""The user as the agent knows them: from this talk, and from memory."""
+"""The user as the agent knows them: from this conversation, and from memory."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from .topics import NAME, in_order
 
 @dataclass(frozen=True, slots=True)
 class Acquaintance:
-    """The user, the facts about them, and the state of the talk. Immutable.
+    """The user, the facts about them, and the state of the conversation. Immutable.
 
     Attributes:
         who: The user's node; None while their name is not known.
         facts: Values by topic, without the name.
-        talk: The state of the talk.
+        talk: The state of the conversation.
     """
 
     who: ontology.Node | None
@@ -38,7 +38,7 @@ class Acquaintance:
         return {NAME: (self.name,), **self.facts} if self.name else self.facts
 
     def recall(self, graph: ontology.Graph) -> Acquaintance:
-        """Return the user with the facts that memory has under their name. Memory is asked once per talk."""
+        """Return the user with the facts that memory has under their name. Memory is asked once per conversation."""
         if self.talk.met or self.who is None:
             return self
         found = graph.get(self.who.id) or records.named(graph, self.who[NAME])
@@ -52,7 +52,7 @@ class Acquaintance:
         )
 
     def noted(self, graph: ontology.Graph) -> Acquaintance:
-        """Save what the user told in this talk; nothing while their name is not known."""
+        """Save what the user told in this conversation; nothing while their name is not known."""
         now = self.recall(graph)
         if now.who is None:
             return now
@@ -64,17 +64,17 @@ class Acquaintance:
 
     @property
     def _once(self) -> Facts:
-        """All facts that this talk may have put into memory, by topic."""
+        """All facts that this conversation may have put into memory, by topic."""
         remembered, once = self.talk.remembered, self.talk.once
         return {topic: remembered.get(topic, ()) + once.get(topic, ()) for topic in {**remembered, **once}}
 
     def renamed(self, graph: ontology.Graph, name: str) -> Acquaintance:
         """Return the user under another name, because the first one was misunderstood.
 
-        A person that this talk created is renamed. A person from memory gets their old facts back, and the facts of this
-        talk go to the new name.
+        A person that this conversation created is renamed. A person from memory gets their old facts back, and the
+        facts of this conversation go to the new name.
         """
-        assert self.who is not None  # their name was understood
+        assert self.who is not None  # the agent understood their name
         if not self.talk.met:
             return replace(self, who=self.who.with_properties(name=name))
         if self.talk.newcomer:
@@ -93,7 +93,7 @@ class Acquaintance:
     def rebased(self, base: Acquaintance, after: Acquaintance) -> Acquaintance:
         """Return this state of the user with the changes from `base` to `after`.
 
-        A field that has changed since `base` stays as it is, because the user has gone on talking."""
+        A field that has changed since `base` stays as it is, because the user has kept talking."""
         same_user = (self.who, self.talk.met) == (base.who, base.talk.met)
         facts = dict(self.facts)
         for topic in {**base.facts, **after.facts}:

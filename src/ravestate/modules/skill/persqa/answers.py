@@ -99,7 +99,7 @@ def refuses(text: str) -> bool:
 
 
 def has_none(text: str) -> bool:
-    """Return whether the user says that there is none.
+    """Return whether the user says that there are none, such as no hobbies.
 
     Example:
         >>> has_none("nothing special"), has_none("nothing compares to chess")

@@ -26,7 +26,7 @@ _OTHERWISE = re.compile(
     r"\b(i|we|you|they|he|she|people|everybody|everyone|who|to) (will |would |always |might |may |could )*)$",
     re.IGNORECASE,
 )
-"""Words before *forget me* that make it no request."""
+"""Words before *forget me* that make it something other than a request."""
 
 
 def wants_to_be_forgotten(text: str) -> bool:
@@ -52,7 +52,7 @@ _OWN = re.compile(r"(?:(?:what|where|who|when|how old|everything|anything|all) )
 
 
 def to_forget(text: str, known: Mapping[str, tuple[str, ...]]) -> list[Fact] | None:
-    """Return the known facts that the user wants forgotten; None if the text is no such request.
+    """Return the known facts that the user wants forgotten; None if the text is not such a request.
 
     Args:
         text: The result of `phrase.plain`.

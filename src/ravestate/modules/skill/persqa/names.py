@@ -33,7 +33,7 @@ class Settings(rs.Settings):
     within: Annotated[float, Field(gt=0)] = 90.0
     """Seconds for which a question waits for its answer."""
     ignored: Annotated[int, Field(ge=1)] = 2
-    """After this many unanswered questions in a row, the agent asks none until the user speaks."""
+    """After this many unanswered questions in a row, the agent asks no more until the user speaks."""
 
 
 module = rs.Module("persqa", requires=[rawio, nlp, ontology, verbaliser, interloc, idle], settings=Settings)
@@ -45,7 +45,7 @@ facts: rs.Collection[tuple[str, ...]] = module.collection("facts")
 """Values by topic (``home``, ``hobby``, ...); an empty tuple means that there are none."""
 
 talk: rs.Slot[Talk] = module.slot("talk", Talk(), type=Talk)
-"""The state of the talk about the user: what was asked, and what they would rather not say."""
+"""The state of the conversation about the user: what was asked, and what they would rather not say."""
 
 reply = module.signal("reply", payload=Intent)
 """The user has told or asked something about themselves; the payload is the reply."""

@@ -90,7 +90,7 @@ def values(rest: str, topic: Topic) -> tuple[str, ...]:
 def _pieces(rest: str, topic: Topic) -> Iterable[str]:
     if not topic.many and topic.kind != "people":
         rest = _TITLE.sub(r"\1", rest)
-        # quotes end a value, but they may also stand around it
+        # quotes end a value, but they may also surround it
         return [MARK.split(rest.lstrip(" .,;:-\"'“„«([{"), maxsplit=1)[0]]
     sentence = re.split(r"[.;:!?…\n()\"]", rest.lstrip(" .,;:-\"'"), maxsplit=1)[0]
     sentence = ENDS[topic.kind].sub("", " " + sentence)

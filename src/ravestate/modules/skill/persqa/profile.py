@@ -70,7 +70,7 @@ def _strike(facts: dict[str, tuple[str, ...]], fact: Fact) -> None:
     if left or (not fact.values and TOPICS[fact.topic].kind not in ("place", "organisation")):
         facts[fact.topic] = left
     else:
-        facts.pop(fact.topic, None)  # there is another one to ask for
+        facts.pop(fact.topic, None)  # there is another value to ask about
 
 
 def _without(values: Iterable[str], others: Iterable[str]) -> tuple[str, ...]:
@@ -79,7 +79,7 @@ def _without(values: Iterable[str], others: Iterable[str]) -> tuple[str, ...]:
 
 
 def merged(remembered: Facts, told: Facts) -> Facts:
-    """Return remembered facts and those of this talk together; this talk goes first."""
+    """Return remembered facts and those of this talk together; this conversation takes precedence."""
     found = dict(remembered)
     for topic, values in told.items():
         before = remembered.get(topic, ()) if TOPICS[topic].many and values else ()
@@ -88,7 +88,7 @@ def merged(remembered: Facts, told: Facts) -> Facts:
 
 
 def told_apart(facts: Facts, remembered: Facts, told: Iterable[str]) -> Facts:
-    """Return the facts that come from this talk alone."""
+    """Return the facts that come from this conversation alone."""
     return {
         topic: _without(facts[topic], remembered.get(topic, ())) if TOPICS[topic].many else facts[topic]
         for topic in told

@@ -11,7 +11,8 @@ from .wording import among
 
 
 def named(graph: ontology.Graph, name: str) -> ontology.Node | None:
-    """Return the person of this name; among several the one with the most relations, then the oldest."""
+    """Return the person with this name. If there are several, prefer the one with the most relations, then the
+    oldest."""
     people = graph.find("Person", {"name": name})
     if len(people) < 2:
         return people[0] if people else None
@@ -35,9 +36,9 @@ def note(
     facts: Mapping[str, tuple[str, ...]],
     once: Mapping[str, tuple[str, ...]],
 ) -> None:
-    """Save the facts about a person. Doing it twice does no harm.
+    """Save the facts about a person. Saving them twice is harmless.
 
-    Where a topic may have several values, values that others saved meanwhile stay.
+    If a topic may have several values, those that other rules have saved in the meantime stay.
 
     Args:
         graph: The memory.
@@ -82,7 +83,7 @@ def _related(graph: ontology.Graph, person: ontology.Node) -> dict[str, list[ont
 
 
 def _thing(graph: ontology.Graph, topic: Topic, value: str, others: Sequence[ontology.Node]) -> ontology.Node:
-    """Return the node that a value names, but none of the `others`: nobody is their own friend."""
+    """Return the node that a value names, but none of the `others`: people are not their own friends."""
     for node in graph.find(topic.type, {"name": value}):
         if node not in others:
             return node

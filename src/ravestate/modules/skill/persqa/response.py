@@ -32,7 +32,7 @@ class Response:
         answer: The reply; None if there is none.
         user: The user after the utterance.
         errand: A task with memory (None where there is none) that comes before the reply. It returns the final response.
-            It raises nothing: a failure of memory stands in ``talk.trouble``.
+            It raises nothing: ``talk.trouble`` has a failure of memory.
     """
 
     answer: Intent | None
@@ -125,7 +125,7 @@ async def _written(user: Acquaintance, name: str | None, memory: ontology.Memory
     """Save the facts about the user, under their new name if they told one."""
     again = name is not None and not (user.name and same(user.name, name))
     try:
-        if user.who is not None:  # else the facts stay in the talk
+        if user.who is not None:  # otherwise only this conversation has the facts
             user = await _at_once(
                 memory, lambda graph: (user.renamed(graph, name) if again and name else user).noted(graph)
             )
@@ -133,7 +133,7 @@ async def _written(user: Acquaintance, name: str | None, memory: ontology.Memory
     except RavestateError as error:
         user = replace(user, talk=replace(user.talk, trouble=str(error)))
     if again:
-        return replace(user, who=ontology.Node("Person", {NAME: name}))  # for as long as the talk lasts
+        return replace(user, who=ontology.Node("Person", {NAME: name}))  # for as long as the conversation lasts
     with contextlib.suppress(RavestateError):  # reading may work where writing fails
         return await _at_once(memory, user.recall)
     return user
@@ -166,7 +166,7 @@ def _of_name(name: str, before: Acquaintance, user: Acquaintance, chance: random
 
 
 def _main(meaning: Meaning, news: News) -> str:
-    """Return the topic to reply to: the one that was asked for, else the first new one."""
+    """Return the topic to reply to: the one that the agent asked about, otherwise the first new one."""
     if meaning.topic in news.topics:
         return meaning.topic
     return next((topic for topic in news.topics if topic in news.new), news.topics[0])

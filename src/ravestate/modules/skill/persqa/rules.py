@@ -25,10 +25,10 @@ from .understanding import Heard, understand
         verbaliser.intent,
         rawio.output,
         talk,
-    ),  # the output too, so that nobody else speaks at the same time
+    ),  # also writes the output, so that no other rule speaks at the same time
     weight=1.2,
     cooldown=20.0,
-    detached=True,  # else the intent could not be worded in the same causal group
+    detached=True,  # otherwise the intent could not become words in the same causal group
 )
 async def ask(ctx: rs.RuleContext) -> rs.Resign | None:
     """Ask the user about themselves, or show that they are remembered."""
@@ -97,7 +97,7 @@ async def listen(ctx: rs.RuleContext) -> None:
         if memory is not None and response.user.talk.trouble not in (
             "",
             base.talk.trouble,
-        ):  # else it was logged before
+        ):  # otherwise it is in the log already
             ctx.log.error("%s", response.user.talk.trouble)
         ctx.emit(noted, Noted(base, response.user, before.name))
     if response.answer is not None and meaning.aloud:
@@ -127,7 +127,7 @@ async def respond(ctx: rs.RuleContext) -> None:
 async def overhear(ctx: rs.RuleContext) -> rs.Resign | None:
     """Notice that the agent said something else after its question: the user's next words may answer that."""
     if not any(letter.isalpha() for letter in ctx.payload(rawio.output.changed)):
-        return rs.Resign("that was no word")  # a sign of emotion beside an answer, say
+        return rs.Resign("that was no word")  # for example an emoji after an answer
     ctx[talk] = ctx[talk].speaking()
     return None
 

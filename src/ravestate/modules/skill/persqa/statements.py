@@ -102,7 +102,7 @@ def relative_in(text: str) -> str:
 
 
 def likings(said: Iterable[str]) -> list[Fact]:
-    """Return activities as hobbies, and all else as likings.
+    """Return activities as hobbies, and everything else as likings.
 
     Example:
         >>> likings(["rock climbing", "pizza"])

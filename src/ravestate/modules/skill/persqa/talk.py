@@ -1,4 +1,4 @@
-"""The state of the talk about the user, and its transitions."""
+"""The state of the conversation about the user, and its transitions."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ FORGET = "forget"
 """The topic of the question whether the user really wants to be forgotten."""
 
 ENOUGH = 1_000
-"""A number of tries after which a topic is never asked again."""
+"""The number of tries after which the agent never asks about a topic again."""
 
 TRIES = 2
-"""The greatest number of questions about one topic in a talk."""
+"""The maximum number of questions about one topic in a conversation."""
 
 CORRECTABLE = 2
-"""Utterances for which "no, Bremen" corrects the last fact."""
+"""The number of utterances during which "no, Bremen" corrects the last fact."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,26 +38,26 @@ class Question:
 
     @property
     def fresh(self) -> bool:
-        """Whether nobody has spoken since."""
+        """Whether neither side has spoken since."""
         return not self.turns and not self.spoken_over
 
 
 @dataclass(frozen=True, slots=True)
 class Talk:
-    """The state of the talk.
+    """The state of the conversation.
 
     Attributes:
         question: The open question.
         tries: The number of questions about each topic.
-        closed: Topics that this talk does not ask about any more.
+        closed: Topics that this conversation does not ask about any more.
         ignored: The number of unanswered questions in a row.
-        told: Topics that the user told about in this talk.
+        told: Topics that the user told about in this conversation.
         last: The topic that was learnt or mentioned last.
         latest: Its values.
         age: The number of utterances since then.
         met: Whether memory was asked about the user.
         remembered: The facts that memory had.
-        once: All values of this talk, also those that no longer hold.
+        once: All values of this conversation, also those that no longer hold.
         newcomer: Whether memory did not know the user.
         reminded: Whether the agent has shown that it remembers.
         trouble: The last failure of memory; empty while it works.
@@ -91,7 +91,7 @@ class Talk:
         )
 
     def pending(self, now: float, within: float) -> Question | None:
-        """Return the question that the user may answer now; None if it is too old or was passed over."""
+        """Return the question that the user may answer now; None if it is too old or the user ignored it."""
         question = self.question
         if question is None or question.turns > 1 or now - question.since > within:
             return None
@@ -118,11 +118,11 @@ class Talk:
         return self if question.turns else replace(self, question=replace(question, spoken_over=True))
 
     def waiting(self) -> Talk:
-        """Give the question up; the user has not answered it."""
+        """Give up the question; the user has not answered it."""
         return replace(self, question=None, ignored=self.ignored + 1)
 
     def closing(self, *topics: str) -> Talk:
-        """Close topics for this talk."""
+        """Close topics for this conversation."""
         return replace(self, question=None, closed=self.closed | set(topics))
 
     def learning(self, topics: Collection[str], last: str, latest: tuple[str, ...]) -> Talk:

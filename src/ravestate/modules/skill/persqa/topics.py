@@ -30,7 +30,7 @@ class Topic:
     many: bool = False
     """Whether there may be several values."""
     only_with: str = ""
-    """The topic that must be known before this one is asked."""
+    """The topic that must be known before the agent asks about this one."""
     asked: bool = True
     """Whether the agent asks for it."""
     nouns: str = ""
@@ -38,7 +38,7 @@ class Topic:
     role: bool = False
     """Whether several topics share the relation; its property ``role`` then tells them apart."""
     besides: tuple[str, ...] = ()
-    """Topics that make the question unnecessary: a birthplace answers the question for the origin."""
+    """Topics that make the question unnecessary: a birthplace answers the question about the origin."""
 
 
 NAME = "name"
@@ -107,7 +107,7 @@ NOT_EMPLOYED = frozenset(["student", "pupil", "retired", "self-employed", "freel
 
 @dataclass(frozen=True, slots=True)
 class Fact:
-    """A fact that somebody has told about themselves.
+    """A fact that the user has told about themselves.
 
     Example: ``Fact("hobby", ("chess", "football"))``.
     """
@@ -115,7 +115,7 @@ class Fact:
     topic: str
     values: tuple[str, ...]
     gone: bool = False
-    """Whether the fact does not hold, or no longer; without values, that there is none."""
+    """Whether the fact is denied. Without values, the user says that there are none."""
 
 
 def favourite(words: str) -> str:
@@ -152,15 +152,15 @@ def due(
 ) -> str:
     """Return the topic to ask about next, or an empty string.
 
-    The follow-up of the `last` topic goes first, then the topic with the fewest tries, in the order of `wanted`.
+    Prefer the follow-up of the `last` topic, then the topic with the fewest tries, in the order of `wanted`.
 
     Args:
         wanted: Names of topics.
         known: The values by topic; an empty tuple means that there are none.
         closed: Topics not to ask about.
         tries: The number of questions about each.
-        last: The topic of the talk.
-        limit: The greatest number of questions about one topic.
+        last: The topic of the conversation.
+        limit: The maximum number of questions about one topic.
 
     Example:
         >>> due(["name", "home"], {"name": ("Ada",)}, [], {}, limit=2)

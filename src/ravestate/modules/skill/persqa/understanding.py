@@ -1,4 +1,4 @@
-"""The meaning of an utterance for the talk about the user."""
+"""The meaning of an utterance for the conversation about the user."""
 
 from __future__ import annotations
 
@@ -66,8 +66,8 @@ class Meaning:
         facts: The facts that they tell, or ask for.
         topic: The topic of the question that they answer.
         leave: Whether they say goodbye.
-        aloud: Whether the agent replies. Questions, goodbyes and games of the user go first: what they tell on the side
-            is learnt in silence.
+        aloud: Whether the agent replies. Questions, goodbyes and games of the user go first: the agent silently learns
+            anything else that they say.
     """
 
     kind: Kind
@@ -82,7 +82,7 @@ def understand(heard: Heard, talk: Talk, known: Mapping[str, tuple[str, ...]], n
 
     Args:
         heard: The utterance.
-        talk: The talk before it.
+        talk: The conversation before it.
         known: The values by topic, with the name.
         now: Seconds since the context began.
         within: Seconds for which a question waits for its answer.
@@ -150,7 +150,7 @@ def may_stand_alone(heard: Heard) -> bool:
     if heard.pos and not _TELLING & set(heard.pos):
         return False
     if len(heard.tokens) < 3:
-        return True  # Bill Gates is no sentence, although a parser may make one of it
+        return True  # Bill Gates is not a sentence, although a parser may make one of it
     for triple in heard.triples:
         subject = str(triple.subject).lower()
         if subject == "you" and triple.predicate.split()[0] not in VERBS:
@@ -187,7 +187,7 @@ def _of_yesno(yesno: nlp.YesNo, topic: str, text: str) -> Kind:
 
 
 def _matters(fact: Fact, known: Mapping[str, tuple[str, ...]], topic: str) -> bool:
-    """Return whether a denial matters: it denies a known fact, or that there is any."""
+    """Return whether a denial matters: it denies a known fact, or says that there are none."""
     if fact.topic == NAME:
         return any(value in known.get(NAME, ()) for value in fact.values)
     if fact.values:

@@ -83,7 +83,7 @@ def joined(values: Sequence[str]) -> str:
 
 
 def spoken(topic: str, values: Sequence[str]) -> str:
-    """Return values as they stand in a sentence.
+    """Return values as they appear in a sentence.
 
     Example:
         >>> spoken("occupation", ["engineer"])

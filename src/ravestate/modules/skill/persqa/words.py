@@ -90,10 +90,10 @@ REMARKS = word_set(
     cool great awesome amazing sorry stop help please maybe perhaps whatever wow oops nonsense next skip pass tell shut go come wait
     interesting raining snowing sunny cloudy windy rainy very too so really nice true false right wrong exactly take see have indeed unfortunately hell whose sort be look can"""
 )
-"""First words of remarks that are no answers, except in names: *New York*, but *no chance*."""
+"""First words of remarks that are not answers, except in names: *New York*, but *no chance*."""
 
 SMALL = word_set("of the and in on upon am an at der die das den von van de da di del la le du y zu near for bei a")
 """Words without a capital inside a name."""
 
 NO_STUDENT = word_set("good bad new old lazy high-school high school college university uni phd exchange")
-"""Words before *student* that are no subject."""
+"""Words before *student* that are not a subject."""

@@ -24,7 +24,7 @@ class Backend(Protocol):
     """A language model. An instance belongs to one event loop."""
 
     async def load(self, progress: Progress | None = None) -> None:
-        """Get ready to answer, once. `stream` does it as well.
+        """Get ready to answer, once. `stream` does this too if needed.
 
         Raises:
             PlatformError: A package, a file or a server is missing or broken. The message says what to do.
@@ -47,13 +47,13 @@ class Backend(Protocol):
 
         Args:
             messages: The conversation, oldest first; the last message is to be answered.
-            max_tokens: The greatest number of tokens (each about three quarters of an English word).
+            max_tokens: The maximum number of tokens (each about three quarters of an English word).
             temperature: The randomness: 0 always takes the likeliest word, 1 is the model's own distribution.
             seed: The same seed and messages give the same answer, where the model allows it.
             stop: Texts before which the model stops.
 
         Raises:
-            PlatformError: The model failed, or its server refused, stalled or broke off.
+            PlatformError: The model failed, or its server refused, stalled or disconnected.
         """
         ...
 

@@ -1,4 +1,4 @@
-"""Questions for facts, which small talk leaves alone."""
+"""Questions about facts, which small talk does not answer."""
 
 from __future__ import annotations
 
@@ -37,8 +37,8 @@ _CHAT = re.compile(
 def asks_for_fact(text: str) -> bool:
     """Guess whether `text` asks for a fact: "Who wrote Hamlet?", not "Who are you?".
 
-    The guess looks at a few words of English and German, and errs on both sides. Modules that know better have rules that
-    come before small talk.
+    The guess looks at a few words of English and German, and may be wrong either way. Modules that know better have
+    rules that come before small talk.
 
     Example:
         >>> asks_for_fact("What is the capital of Peru?"), asks_for_fact("What is your name?")

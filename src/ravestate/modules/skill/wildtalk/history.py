@@ -22,7 +22,7 @@ EXAMPLES = (
 )
 """The default of the setting `examples`."""
 
-# Marks of templates for the speaker. With them a user could speak as the system.
+# Marks of templates for the speaker. With them, a user could pretend to be the system.
 _MARKERS = re.compile(
     r"<\|[^|<>\n]{0,40}\|>|</?s>|\[/?INST\]|<</?SYS>>|</?(?:start|end)_of_turn>|</?think>", re.IGNORECASE
 )
@@ -60,7 +60,7 @@ class History:
         self.add(Message("user", text))
 
     def said(self, text: str) -> None:
-        """Add an utterance of the agent, from whichever module."""
+        """Add an utterance of the agent, from any module."""
         self.add(Message("assistant", text))
 
     def add(self, message: Message) -> None:
@@ -107,6 +107,6 @@ class History:
         return (Message("system", persona.replace("{name}", name)), *shown, *kept)
 
     def _clean(self, text: str) -> str:
-        # Somebody may paste a book: anything far beyond the budget is dropped at once.
+        # A user may paste a book: anything far beyond the budget is dropped at once.
         text = text[: 4 * self._characters]
         return " ".join(_MARKERS.sub(" ", printable(text)).split())

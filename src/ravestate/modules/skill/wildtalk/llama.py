@@ -41,7 +41,7 @@ class LlamaBackend:
         threads: int = 0,
         read_timeout: float = 60.0,
     ) -> None:
-        """Nothing is searched or loaded yet.
+        """This does not look for or load anything yet.
 
         Args:
             model_path: The GGUF file; None takes the bundled SmolLM2-135M-Instruct.
@@ -108,7 +108,7 @@ class LlamaBackend:
         except PlatformError as error:
             if self._process is not process:
                 return  # the backend was closed in the middle of an answer
-            # A broken connection comes some milliseconds before the end of the process.
+            # The connection breaks a few milliseconds before the process ends.
             grace = 0.5 if error.__cause__ is not None else 0.0
             if obituary := await asyncio.to_thread(process.obituary, grace):
                 raise PlatformError(
@@ -187,7 +187,7 @@ def checked_model(path: Path | str | None = None) -> Path:
     if magic != b"GGUF":
         begins = "is empty" if not magic else f"begins with {magic!r}"
         raise PlatformError(
-            f"{named} is no GGUF file (it {begins}): fetch the model in GGUF format (often in a "
+            f"{named} is not a GGUF file (it {begins}): fetch the model in GGUF format (often in a "
             f"repository whose name ends in -GGUF) and write {_OWN_MODEL}"
         )
     return file

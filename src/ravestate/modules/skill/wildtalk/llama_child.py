@@ -1,6 +1,6 @@
 """The process of a model: llama.cpp's server on the loopback interface.
 
-`llama_process` runs it as a file of its own, so it imports nothing of Ravestate. It reads its configuration as one
+`llama_process` runs it as a separate file, so it imports nothing from Ravestate. It reads its configuration as one
 line of JSON from standard input, and writes lines of JSON: ``{"progress": 0.5}``,
 ``{"ready": "http://127.0.0.1:40123"}`` or ``{"error": "..."}``. It ends when standard input ends, and so with its
 parent.
@@ -23,7 +23,7 @@ def _main() -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the parent, who closes this process in order
     config: dict[str, Any] = json.loads(sys.stdin.readline())
     out = os.fdopen(os.dup(1), "w", encoding="utf-8")
-    os.dup2(2, 1)  # the prints of llama.cpp are no messages to the parent
+    os.dup2(2, 1)  # llama.cpp's own prints are not messages to the parent
 
     def say(**message: object) -> None:
         out.write(json.dumps(message) + "\n")
@@ -37,7 +37,7 @@ def _main() -> None:
         say(error=f"{type(error).__name__}: {error}")
         os._exit(1)
     say(ready=server.listening_address)
-    while os.read(0, 4096):  # nothing arrives but the end
+    while os.read(0, 4096):  # the only thing that arrives is the end
         pass
     os._exit(0)
 
@@ -70,8 +70,8 @@ def _load(config: dict[str, Any], say: Any) -> Any:
     parameters.n_parallel = config["parallel"]
     parameters.kv_unified = True
     parameters.cpuparams.n_threads = config["threads"]
-    parameters.cache_ram_mib = 0  # else up to 8 GB of old prompts
-    parameters.warmup = True  # slower to load, faster at the first word
+    parameters.cache_ram_mib = 0  # otherwise it keeps up to 8 GB of old prompts
+    parameters.warmup = True  # loads more slowly, but says the first word sooner
     parameters.verbosity = 1  # errors
     parameters.port = 0
     parameters.api_keys = [config["key"]]

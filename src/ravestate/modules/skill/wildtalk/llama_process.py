@@ -1,7 +1,7 @@
-"""A language model in a process of its own, shared by all contexts of this process.
+"""A language model in a separate process, which all contexts of this process share.
 
 In a thread, loading would stop every event loop for seconds: it holds Python's lock from the first to the last byte.
-And when a model file crashes llama.cpp, the agent lives on.
+Also, if a model file crashes llama.cpp, the agent survives.
 """
 
 from __future__ import annotations
@@ -125,7 +125,7 @@ class LlamaProcess:
             "key": self.secret,
         }
         assert self._process.stdin is not None
-        with contextlib.suppress(OSError):  # it died at once; its exit says more
+        with contextlib.suppress(OSError):  # it died at once; its exit explains why
             self._process.stdin.write(json.dumps(config) + "\n")
             self._process.stdin.flush()
 
@@ -205,7 +205,7 @@ def take(key: ModelKey) -> LlamaProcess:
 
 
 def drop(process: LlamaProcess) -> None:
-    """Remove one user of `process`; the last one ends it, which blocks for some milliseconds."""
+    """Remove one user of `process`; the last one ends it, which blocks for a few milliseconds."""
     with _sharing:
         process.users -= 1
         if process.users:

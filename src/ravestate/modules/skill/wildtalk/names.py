@@ -49,14 +49,14 @@ class Settings(rs.Settings):
     examples: tuple[tuple[str, str], ...] = EXAMPLES
     """Utterances and answers that show the model how to talk; small models need some."""
     facts: bool = False
-    """Whether the model may answer questions for facts, which small models make up."""
+    """Whether the model may answer questions about facts, which small models make up."""
     no_facts: str = "I don't know that, I'm afraid."
-    """The answer to a question for facts otherwise."""
+    """Otherwise, the answer to a question about facts."""
     no_model: str = "I cannot think just now."
     """The answer when the model cannot be loaded, or fails before its first word."""
 
     max_tokens: Annotated[int, Field(ge=1)] = 96
-    """The longest answer, in tokens; ``sentences`` mostly ends it before."""
+    """The longest answer, in tokens; ``sentences`` usually ends it earlier."""
     sentences: Annotated[int, Field(ge=1)] = 2
     """The longest answer, in sentences."""
     temperature: Annotated[float, Field(ge=0, le=2)] = 0.5
@@ -70,10 +70,10 @@ class Settings(rs.Settings):
 module = rs.Module("wildtalk", requires=[rawio, interloc], settings=Settings)
 
 history: rs.Collection[Message] = module.collection("history")
-"""The last messages of everybody, oldest first; the keys begin with the time."""
+"""The last messages of all speakers, oldest first; the keys begin with the time."""
 
 model: rs.Slot[Backend | None] = module.slot("model", None, input=True)
 """The backend. You may write one of your own."""
 
 trouble: rs.Slot[str] = module.slot("trouble", "")
-"""The reason why the model does not answer; empty while it does. It is logged once."""
+"""The reason why the model does not answer; empty while it does. The log has it once."""

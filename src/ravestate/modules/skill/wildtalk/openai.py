@@ -1,4 +1,4 @@
-"""Small talk by any server that speaks OpenAI's protocol: Ollama, llama.cpp, vLLM, LM Studio, a cloud."""
+"""Small talk by any server that supports OpenAI's protocol: Ollama, llama.cpp, vLLM, LM Studio, a cloud."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ class OpenAIBackend:
             extra: More fields of the request, for a particular server.
 
         Raises:
-            PlatformError: `base_url` is no web address.
+            PlatformError: `base_url` is not a web address.
         """
         self._base_url = _checked(base_url)
         self._model = model
@@ -145,7 +145,7 @@ class OpenAIBackend:
             ) from error
         except httpx.InvalidURL as error:
             raise PlatformError(
-                f"wildtalk: base_url {self._place!r} is no web address ({error}): write for example "
+                f"wildtalk: base_url {self._place!r} is not a web address ({error}): write for example "
                 f"wildtalk.base_url=http://localhost:11434/v1"
             ) from error
 
@@ -196,8 +196,8 @@ class OpenAIBackend:
             return
         if kind not in ("text/event-stream", ""):
             raise PlatformError(
-                f"wildtalk: {self._place} answers with {kind!r}, not with a stream of events: it is no "
-                f"OpenAI-compatible API. Such an address mostly ends in /v1"
+                f"wildtalk: {self._place} answers with {kind!r}, not with a stream of events: it is not an "
+                f"OpenAI-compatible API. Such an address usually ends in /v1"
             )
         finished = False
         async with aclosing(self._events(answer)) as events:
@@ -205,7 +205,7 @@ class OpenAIBackend:
                 try:
                     async with asyncio.timeout(
                         self._read_timeout
-                    ):  # a comment that only keeps the connection open is no event
+                    ):  # a comment that only keeps the connection open is not an event
                         event = await anext(events, None)
                 except TimeoutError as error:
                     raise self._stalled() from error
@@ -239,7 +239,7 @@ class OpenAIBackend:
             length = len(rest) + (0 if ended else length)
             if length > _BODY_LIMIT:
                 raise PlatformError(
-                    f"wildtalk: {self._place} sent a line of more than {_BODY_LIMIT} characters: it is no "
+                    f"wildtalk: {self._place} sent a line of more than {_BODY_LIMIT} characters: it is not an "
                     f"OpenAI-compatible API"
                 )
             yield text
@@ -287,7 +287,7 @@ class OpenAIBackend:
         elif status == 404:
             hint = (
                 f"does it know the model {self._model!r} (wildtalk.model; with Ollama: `ollama pull "
-                f"{self._model or 'llama3.2'}`), and is the address right? It mostly ends in /v1"
+                f"{self._model or 'llama3.2'}`), and is the address right? It usually ends in /v1"
             )
         elif status in (300, 301, 302, 303, 307, 308):
             hint = f"it has moved: set wildtalk.base_url to where {answer.headers.get('location', '?')!r} is"
@@ -304,7 +304,7 @@ def _checked(base_url: str) -> str:
     address = base_url.strip().rstrip("/")
     if not address.startswith(("http://", "https://")) or not address.partition("://")[2]:
         raise PlatformError(
-            f"wildtalk: base_url {base_url!r} is no web address: write for example "
+            f"wildtalk: base_url {base_url!r} is not a web address: write for example "
             f"wildtalk.base_url=http://localhost:11434/v1"
         )
     return address.removesuffix("/chat/completions")
@@ -356,6 +356,6 @@ def _withdraw(body: dict[str, object], parameter: str) -> bool:
     if parameter not in ("max_tokens", "temperature", "seed", "stop") or parameter not in body:
         return False
     value = body.pop(parameter)
-    if parameter == "max_tokens":  # its newer name
+    if parameter == "max_tokens":  # the parameter's newer name
         body["max_completion_tokens"] = value
     return True

@@ -9,10 +9,10 @@ from typing import Any, TextIO
 
 
 class ProgressBar:
-    """A progress bar that appears after `delay` seconds, and only for a person.
+    """A progress bar that appears after `delay` seconds, and only on a terminal.
 
-    On a terminal it is a bar of tqdm, removed at the end. It is one line where a prompt owns the terminal, because the
-    prompt prints standard error line by line. Elsewhere it is nothing.
+    On a terminal it is a tqdm bar, removed at the end. Where a prompt owns the terminal, it is a single line, because
+    the prompt prints standard error line by line. Elsewhere nothing appears.
 
     Example:
         ```python

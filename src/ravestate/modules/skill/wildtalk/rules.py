@@ -62,7 +62,7 @@ async def hear(ctx: rs.RuleContext) -> None:
 
 @module.rule(when=rawio.output.changed.max_age(None).detached(), writes=history, background=True)
 async def note(ctx: rs.RuleContext) -> None:
-    """Add the agent's words to the history, from whichever rule."""
+    """Add the agent's words to the history, from any rule."""
     said = ctx.payload(rawio.output.changed)
     lately = list(ctx[history].values())[-2:]
     if not (said.endswith(INTERRUPTED) and Message("assistant", said) in lately):  # `chat` was first
@@ -95,7 +95,7 @@ async def chat(ctx: rs.RuleContext) -> rs.Resign | None:
     newest = Message("user", heard[:LONGEST])
     for message in ctx[history].values():
         past.add(message)
-    if list(ctx[history].values())[-1:] != [newest]:  # `hear` may come after
+    if list(ctx[history].values())[-1:] != [newest]:  # `hear` may run later
         past.add(newest)
     name = settings.name or ctx[interloc.agent]
     told = past.prompt(settings.persona, name, settings.examples)

@@ -44,7 +44,7 @@ class TransformersBackend:
     """
 
     def __init__(self, model: str, *, read_timeout: float = 60.0) -> None:
-        """Nothing is searched or loaded yet.
+        """This does not look for or load anything yet.
 
         Args:
             model: A folder with a model, or a model's name on the hub; it is downloaded once.
@@ -55,7 +55,7 @@ class TransformersBackend:
         self._model: _Model | None = None
 
     async def load(self, progress: Progress | None = None) -> None:
-        """See `Backend.load`. The library reports no progress but the end."""
+        """See `Backend.load`. The library reports no progress, only the end."""
         if self._model is None:
             self._model = await _in_background(_Model.shared, self._name)
         if progress is not None:
@@ -85,7 +85,7 @@ class TransformersBackend:
         def tell(piece: str | BaseException | None) -> None:
             try:
                 loop.call_soon_threadsafe(pieces.put_nowait, piece)
-            except RuntimeError:  # the loop is closed: nobody listens any more
+            except RuntimeError:  # the loop is closed: no task is listening any more
                 left.set()
 
         try:
@@ -170,7 +170,7 @@ class _Model:
 
     @classmethod
     def shared(cls, name: str) -> _Model:
-        """Return the model of a name; load it if needed."""
+        """Return the model with this name; load it if needed."""
         with cls._loading:
             found = cls._loaded.get(name)
             if found is None:

@@ -1,4 +1,4 @@
-"""Readers for files of all kinds, each in a file of its own."""
+"""Readers for all kinds of files, each in its own file."""
 
 from __future__ import annotations
 

@@ -48,9 +48,9 @@ def documents_in(content: bytes | str, title: str, source: str) -> Iterator[Docu
         import bs4
     except ImportError as error:
         raise Unreadable("genqa needs beautifulsoup4 to read HTML: pip install 'ravestate[genqa]'") from error
-    logging.getLogger("bs4.dammit").setLevel(logging.ERROR)  # it warns about characters, without naming the file
+    logging.getLogger("bs4.dammit").setLevel(logging.ERROR)  # its warnings about characters do not name the file
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # it warns about XML and about texts like file names
+        warnings.simplefilter("ignore")  # it warns about XML, and about texts that look like file names
         page: Any = bs4.BeautifulSoup(content, "html.parser")
     for hidden in page.find_all(_UNSEEN):
         hidden.decompose()

@@ -21,7 +21,7 @@ def read(path: Path, source: str) -> Iterator[Document]:
             try:
                 said: Any = json.loads(line)
             except ValueError as error:  # of JSON, of UTF-8
-                raise Unreadable(f"line {number} is no JSON ({error})") from error
+                raise Unreadable(f"line {number} is not JSON ({error})") from error
             entry = cast("dict[str, Any]", said) if isinstance(said, dict) else {}
             text = entry.get("text", entry.get("contents"))
             if not isinstance(text, str):

@@ -16,7 +16,7 @@ from .unreadable import Unreadable
 if TYPE_CHECKING:
     from markdown_it.token import Token
 
-# A tag is near its end: the limit keeps a file of opening brackets from taking for ever.
+# A tag is near its end: without the limit, a file of opening brackets would take for ever.
 _UNSEEN = re.compile(
     r"<!--.*?(?:-->|\Z)|<(script|style)\b.*?(?:</\1>|\Z)|</?\w[^<>]{0,300}>", re.DOTALL | re.IGNORECASE
 )

@@ -19,7 +19,7 @@ def read(path: Path, source: str) -> Iterator[Document]:
     except ImportError as error:
         raise Unreadable("genqa needs pypdf to read PDF: pip install 'ravestate[genqa]'") from error
     library: Any = pypdf
-    logging.getLogger("pypdf").setLevel(logging.ERROR)  # it warns about each oddity that it copes with
+    logging.getLogger("pypdf").setLevel(logging.ERROR)  # it warns about every oddity that it can handle
     try:
         reader = library.PdfReader(path)
         if reader.is_encrypted and not reader.decrypt(""):
@@ -35,6 +35,6 @@ def read(path: Path, source: str) -> Iterator[Document]:
     except Exception as error:  # a broken file makes pypdf fail in any way
         if type(error).__name__ == "DependencyError":
             raise Unreadable("it is encrypted: remove its password first") from error
-        raise Unreadable(f"it is no PDF, or damaged ({str(error) or type(error).__name__})") from error
+        raise Unreadable(f"it is not a PDF, or damaged ({str(error) or type(error).__name__})") from error
     if not seen:
         raise Unreadable("it has no text, only pictures: run a text recognition (OCR) on it first")

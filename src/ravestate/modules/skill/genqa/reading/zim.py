@@ -13,7 +13,7 @@ from .unreadable import Unreadable
 
 
 def read(path: Path, source: str) -> Iterator[Document]:
-    """Yield the documents of each article; redirections and pictures are passed over."""
+    """Yield the documents of each article; skip redirects and pictures."""
     try:
         reader: Any = import_module("libzim.reader")
     except ImportError as error:
@@ -24,7 +24,7 @@ def read(path: Path, source: str) -> Iterator[Document]:
         archive = reader.Archive(path)
         count: int = archive.all_entry_count
     except RuntimeError as error:
-        raise Unreadable(f"it is no ZIM file, or damaged ({error})") from error
+        raise Unreadable(f"it is not a ZIM file, or damaged ({error})") from error
     for number in range(count):
         try:
             entry = archive._get_entry_by_id(number)  # libzim has no other way to go through all of them
