@@ -2,7 +2,7 @@
 # make is enough: each target below fetches what it lacks, once, and then needs no network.
 #
 #   make chat ARGS='--set idle.bored_after=20'         ARGS goes to the command, here `ravestate chat`
-#   make test ARGS='-k consent -x'                     ... here pytest
+#   make test ARGS='-k consent -x -n 0'                ... here pytest
 #   make PYTHON=/usr/bin/python3.12 test               another interpreter
 
 SHELL       := bash
@@ -64,10 +64,10 @@ setup: $(DONE)/dev $(DONE)/model ## make the environment for development, run no
 
 .PHONY: test
 test: setup $(DONE)/browser $(DONE)/frontend ## set up and run the whole test suite (about ten minutes)
-	@$(BIN)/python -m pytest $(ARGS)
+	@$(BIN)/python -m pytest -n 2 --dist loadfile $(ARGS)
 
 .PHONY: check
-check: lint types layers docs pages test ## what continuous integration runs
+check: lint types layers docs pages compatibility test ## run everything that continuous integration runs
 
 .PHONY: lint
 lint: setup
@@ -89,6 +89,11 @@ pages: setup $(DONE)/frontend
 	@cd frontend && $(NPM) run --silent check && $(NPM) run --silent build > /dev/null
 	@git diff --exit-code --stat -- src/ravestate/modules/platform/webio/page src/ravestate/board/page || { \
 		echo 'The pages are not what frontend/ builds: commit what was built.'; exit 1; }
+
+# The core's tests on other Python versions, and with the lowest and the newest requirements.
+.PHONY: compatibility
+compatibility: setup
+	@tools/compatibility
 
 .PHONY: format
 format: setup ## format the code and mend what can be mended

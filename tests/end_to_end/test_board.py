@@ -1,6 +1,7 @@
 """Raveboard in a real browser: the timeline, why-not, the clock, input on the board, recordings and accessibility."""
 
 import asyncio
+import base64
 import contextlib
 import gzip
 import json
@@ -670,3 +671,35 @@ async def test_a_failure_is_counted_and_shows_its_traceback(stage: Stage) -> Non
         await expect(page.get_by_role("heading", name="clumsy:spill")).to_be_visible()
         await expect(page.locator("pre")).to_contain_text("Traceback (most recent call last)")
         await expect(page.locator("pre")).to_contain_text('raise ValueError("out of ink")')
+
+
+@on_stage
+async def test_the_picture_of_the_chat_beside_its_board(stage: Stage, tmp_path: Path) -> None:
+    picture = Path(os.environ.get("PICTURES", tmp_path)) / "chat-and-board.png"
+    chat_size, board_size = {"width": 480, "height": 720}, {"width": 1120, "height": 720}
+    async with (
+        served() as host,
+        stage.open(host.address, viewport=chat_size, color_scheme="light") as chat,
+        stage.open(f"{host.address}board/", viewport=board_size, color_scheme="light") as page,
+    ):
+        field = chat.get_by_label("What you say to Elske")
+        for number, text in enumerate(("How long has this been an inn?", "I like it here."), start=1):
+            Cue.classified.clear()
+            await field.fill(text)
+            await field.press("Enter")
+            await passing(page, 0.6)
+            Cue.classified.set()
+            await expect(chat.locator(".line.agent")).to_have_count(number)
+        await name(page, "keeper:small_talk").click()
+        await page.get_by_role("button", name="All", exact=True).click()
+        await page.mouse.move(600, 600)
+        await drawn(page)
+        await chat.evaluate("document.fonts.ready")
+        shots = [base64.b64encode(await each.screenshot()).decode() for each in (chat, page)]
+        images = "".join(f'<img src="data:image/png;base64,{shot}">' for shot in shots)
+        style = "body{margin:0;display:flex;gap:12px;padding:12px;background:#fff}img{border:1px solid #ccc;border-radius:8px}"
+        await page.set_viewport_size({"width": 1640, "height": 748})
+        await page.goto("about:blank")
+        await page.set_content(f"<style>{style}</style>{images}")
+        await page.screenshot(path=picture)
+    assert picture.read_bytes().startswith(b"\x89PNG")

@@ -25,16 +25,16 @@ def test_an_empty_file_has_no_node(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("content", "message"),
     [
-        (b"a: b: c", r"a\.yaml:1: this is no YAML .*\. Ask for help"),
-        (b"a: 1\nb: \x07", r"a\.yaml:2: this is no YAML \(a control character\)"),
+        (b"a: b: c", r"a\.yaml:1: not valid YAML .*wants quotes"),
+        (b"a: 1\nb: \x07", r"a\.yaml:2: not valid YAML \(a control character\)"),
         (b"a: \xff", r"a\.yaml: this is no text in UTF-8 .* at byte 3"),
-        (b"[" * 5000, r"a\.yaml: the nesting is too deep for a file of tests"),
+        (b"[" * 5000, r"a\.yaml:1: nested more than 50 levels deep"),
     ],
 )
 def test_a_file_that_is_no_yaml(tmp_path: Path, content: bytes, message: str) -> None:
     (tmp_path / "a.yaml").write_bytes(content)
     with pytest.raises(DeclarationError, match=message):
-        read_nodes(tmp_path / "a.yaml", "file of tests", ". Ask for help")
+        read_nodes(tmp_path / "a.yaml", "file of tests")
 
 
 def test_a_file_that_cannot_be_read(tmp_path: Path) -> None:

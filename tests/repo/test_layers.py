@@ -8,6 +8,7 @@ import ast
 import subprocess
 import sys
 from collections.abc import Iterator
+from graphlib import TopologicalSorter
 from pathlib import Path
 
 import pytest
@@ -114,3 +115,28 @@ def test_modules_are_folders_all_built_alike() -> None:
         if not (place / wanted).is_file()
     ]
     assert not missing, "\n".join(missing)
+
+
+def test_no_import_leads_back_to_its_file() -> None:
+    """Imports at the top of files form no circle; those within functions run later and do not count."""
+    files = {_name_of(file): file for file in SOURCE.rglob("*.py")}
+    graph: dict[str, set[str]] = {}
+    for name, file in files.items():
+        lazy = [
+            range(node.lineno, (node.end_lineno or 0) + 1)
+            for node in ast.walk(ast.parse(file.read_text(encoding="utf-8")))
+            if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef))
+        ]
+        graph[name] = {
+            target
+            for line, module, names in imports_in(file)
+            if not any(line in lines for lines in lazy)
+            for target in [f"{module}.{each}" for each in names if f"{module}.{each}" in files] or [module]
+            if target in files and target != name
+        }
+    TopologicalSorter(graph).prepare()  # raises CycleError, which names the circle
+
+
+def _name_of(file: Path) -> str:
+    parts = file.relative_to(SOURCE.parent).with_suffix("").parts
+    return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)

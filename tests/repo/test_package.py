@@ -61,7 +61,7 @@ def test_wheel_has_licence_and_command(wheel: zipfile.ZipFile) -> None:
 
 def test_wheel_has_the_notices_of_what_the_pages_bundle(wheel: zipfile.ZipFile) -> None:
     texts = [wheel.read(name).decode() for name in wheel.namelist() if ".dist-info/licenses/" in name]
-    for notice in ("Svelte Contributors", "Literata Project Authors", "Inter Project Authors"):
+    for notice in ("Svelte Contributors", "Literata Project Authors", "The Inter Project Authors"):
         assert any(notice in text for text in texts), notice
 
 

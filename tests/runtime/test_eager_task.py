@@ -459,7 +459,7 @@ async def test_sys_exit_is_handed_over_and_does_not_end_the_loop() -> None:
 
 
 @on_loop
-async def test_each_step_after_the_first_is_measured() -> None:
+async def test_each_step_is_measured() -> None:
     class Steps(StepTimer):
         """A timer that counts."""
 
@@ -480,7 +480,7 @@ async def test_each_step_after_the_first_is_measured() -> None:
 
     await step(eager, work())
     await eager.task
-    assert Steps.steps == ["begin", "end"] * 2
+    assert Steps.steps == ["begin", "end"] * 3
 
 
 @on_loop

@@ -485,11 +485,6 @@ export interface Unfold {
   unfolded: string[];
 }
 
-/** A question for a `Pong`. */
-export interface Ping {
-  type: "ping";
-}
-
 /** A policy. |Λ| is the number of its rules. */
 export interface Description {
   modules: string[];
@@ -497,6 +492,11 @@ export interface Description {
   signals: SignalView[];
   slots: SlotView[];
   diagram: Diagram;
+}
+
+/** A question for a `Pong`. */
+export interface Ping {
+  type: "ping";
 }
 
 /** The answer to `Hello`. */

@@ -89,19 +89,17 @@ class Agenda(Slots):
         free = self._free
         self._free = []
         for activation in free:
-            if activation.state != READY or self._defers(activation) or not self._guarded(activation):
+            clause = activation.clause
+            if activation.state is not READY or (clause.guards and not self._guarded(activation)):
                 continue
-            rule = activation.clause.rule
-            if not rule.slots:
+            if self._loops.runs > MANY and self._loops.defer(activation):
+                continue
+            if not clause.rule.slots:
                 other = self._claimed(activation)
                 if other is not None:
                     self._refuse(activation, Refusal.by(other, activation))
                     continue
             self._start(activation)
-
-    def _defers(self, activation: Activation) -> bool:
-        """Return whether a ready activation is put off as one turn too many of a loop (L23)."""
-        return self._loops.runs > MANY and activation.state is READY and self._loops.defer(activation)
 
     def _claimed(self, activation: Activation) -> Activation | None:
         """Return a run of the same rule on one of the same spikes: it alone excludes a rule without slots (L10)."""
@@ -115,7 +113,7 @@ class Agenda(Slots):
     def _guarded(self, activation: Activation) -> bool:
         """Return whether the predicates on slots hold; if not, the activation is ready no longer."""
         clause = activation.clause
-        if clause.guards and not all(self.holds(s, g, clause.rule) for s, g in clause.guards):
+        if not all(self.holds(s, g, clause.rule) for s, g in clause.guards):
             self._horizon = None
             self._unready(activation)
             self._update(activation)
@@ -148,9 +146,12 @@ class Agenda(Slots):
         while queue:
             entry = heapq.heappop(queue)
             activation = entry[4]
-            if activation.state not in ASKABLE or self._defers(activation) or not self._guarded(activation):
+            clause = activation.clause
+            if activation.state not in ASKABLE or (clause.guards and not self._guarded(activation)):
                 continue
-            rule = activation.clause.rule
+            if self._loops.runs > MANY and activation.state is READY and self._loops.defer(activation):
+                continue
+            rule = clause.rule
             if rule.cooldown and (turn := self._turn(activation)) > entry[:4]:
                 heapq.heappush(queue, (*turn, activation))  # its rule has run meanwhile, and recovers
                 continue
@@ -290,8 +291,9 @@ class Agenda(Slots):
                     spike.claims = {}
                 spike.claims[rule.index] = activation
         self.running[activation.id] = activation
-        self._loops.runs += 1
-        if self._loops.runs > MANY and (loop := self._loops.trace(activation)):
+        loops = self._loops
+        loops.runs += 1
+        if loops.runs > MANY and (loop := loops.trace(activation)):
             self._fail(loop[0], RuleError(_endless(loop)), signal=True)
         if rule.timeout is not None:
             activation.deadline = self.now + rule.timeout
@@ -310,19 +312,21 @@ class Agenda(Slots):
 
     def _set_flag(self, flag: SlotPlan, value: bool) -> None:
         """Change a built-in flag, and signal the change only if something may hear it."""
-        if flag.heard or self.tracer is not None or self.watched or flag.index in self.policy.guarded:
+        heard = flag.heard or self.tracer is not None or (self.watched and self._watched(flag))
+        if heard or flag.index in self.policy.guarded:
             self._change(flag, value, (), None)
         else:
             self.values[flag.index] = value
 
     def _settle_flags(self) -> bool:
         """Update ``core:activity`` and ``core:pressure`` (L22); return whether one has changed."""
-        pressure = any(not a.clause.reflexive for a in (*self.alternatives, *self.waiting))
-        if pressure != self.read(self._pressure.index):
+        kept = self.alternatives or self.waiting
+        pressure = bool(kept) and any(not a.clause.reflexive for a in (*self.alternatives, *self.waiting))
+        if pressure != self.values.get(self._pressure.index, False):
             self._set_flag(self._pressure, pressure)
             return True
         activity = self._busy > 0
-        if activity != self.read(self._activity.index):
+        if activity != self.values.get(self._activity.index, False):
             self._set_flag(self._activity, activity)
             return True
         return False

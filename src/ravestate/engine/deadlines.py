@@ -5,6 +5,7 @@ from __future__ import annotations
 import enum
 import heapq
 from collections.abc import Callable
+from math import inf
 from typing import Any
 
 
@@ -30,9 +31,11 @@ Entry = tuple[float, Kind, int, Any]
 class Deadlines:
     """A heap of (time in seconds, kind, number, owner); `valid` says whether an entry still counts."""
 
-    __slots__ = ("_count", "_heap", "_limit", "_valid")
+    __slots__ = ("_count", "_heap", "_limit", "_valid", "earliest")
 
     def __init__(self, valid: Callable[[Entry], bool]) -> None:
+        self.earliest = inf
+        """A time (seconds) before which no entry is due."""
         self._heap: list[Entry] = []
         self._count = 0
         self._limit = 256
@@ -41,22 +44,21 @@ class Deadlines:
     def add(self, time: float, kind: Kind, owner: Any) -> None:
         """Add an entry (seconds)."""
         self._count += 1
+        if time < self.earliest:
+            self.earliest = time
         heapq.heappush(self._heap, (time, kind, self._count, owner))
         if len(self._heap) > self._limit:  # remove stale entries before there are many
             self._heap = [entry for entry in self._heap if self._valid(entry)]
             heapq.heapify(self._heap)
             self._limit = max(256, 2 * len(self._heap))
 
-    def pending(self, now: float) -> bool:
-        """Return whether an entry, stale or not, is due."""
-        return bool(self._heap) and self._heap[0][0] <= now
-
     def next(self) -> float | None:
         """Return the time of the first valid entry (seconds)."""
         heap = self._heap
         while heap and not self._valid(heap[0]):
             heapq.heappop(heap)
-        return heap[0][0] if heap else None
+        self.earliest = heap[0][0] if heap else inf
+        return self.earliest if heap else None
 
     def pop(self, now: float) -> Entry | None:
         """Take the first valid entry that is due."""

@@ -67,7 +67,7 @@ class Engine(Agenda):
             if now != now:
                 raise EngineError("the time is not a number of seconds: it is NaN")
         elif now > self.now:
-            if self._deadlines.pending(now):
+            if self._deadlines.earliest <= now:
                 self.advance(now)
             self.now = now
         handler = HANDLERS.get(type(event))
@@ -97,13 +97,13 @@ class Engine(Agenda):
         """Return the effects to perform now. Ask again after performing them, until there are none."""
         # Reports (of spikes, ends, failures) do not end the loop: only work for the runtime does.
         while not self._acts:
-            if self._deadlines.pending(self.now):
+            if self._deadlines.earliest <= self.now:
                 self.advance(self.now)
             elif self._errors:
                 error = self.policy.signal_of["core:error"]
                 failure, lineage = self._errors.pop(0)
                 self._birth(error, failure, (), self._new_group(), None, lineage)
-            elif self._busy and not self.read(self._activity.index):
+            elif self._busy and not self.values.get(self._activity.index):
                 self._set_flag(self._activity, True)
             elif self._free:
                 self._start_free()
@@ -111,8 +111,8 @@ class Engine(Agenda):
                 self._consent_round()
             elif self._settle_flags():
                 pass
-            elif (turn := self._loops.next()) is not None:
-                self._enqueue(turn)
+            elif self._loops.deferred and (turn := self._loops.next()) is not None:
+                self._complete(turn, late=True)
             else:
                 self._loops.rest()
                 break
@@ -211,7 +211,8 @@ class Engine(Agenda):
         outcome, exception = event.kind, event.exception
         reason = event.reason
         if told == "timeout":
-            outcome, exception = "failed", RuleTimeout(_overdue(rule))
+            late = f"rule {rule.name} took longer than its timeout of {rule.timeout:g} s ({rule.rule.origin})"
+            outcome, exception = "failed", RuleTimeout(late)
         elif outcome == "resigned" and run.wrote:
             outcome = "failed"
             exception = RuleError(
@@ -252,7 +253,7 @@ class Engine(Agenda):
             self._retire(rule)
         if outcome == "failed":
             failure = exception or RuleError(f"rule {rule.name} failed")
-            self._fail(rule, failure, signal=not on_error, lineage=run.lineage)
+            self._fail(rule, failure, signal=not on_error, lineage=self._loops.lineage(run))
 
     def _slot(self, name: str) -> SlotPlan:
         slot = self.policy.slot_of.get(name)
@@ -379,10 +380,6 @@ class Engine(Agenda):
 def _roots(run: Activation) -> list[Group]:
     """Return the present groups of a run."""
     return list(dict.fromkeys(group.root() for group in run.groups))
-
-
-def _overdue(rule: RulePlan) -> str:
-    return f"rule {rule.name} took longer than its timeout of {rule.timeout:g} s ({rule.rule.origin})"
 
 
 HANDLERS: dict[type, Any] = {

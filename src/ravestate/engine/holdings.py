@@ -135,14 +135,15 @@ class Holdings(State):
                 old = [need for need in self._of_spike(holder, spike) if spike.born + need.max_age <= time]
                 self._lose(holder, old, "age")
 
-    def _complete(self, activation: Activation) -> None:
-        """Make an activation ready: it is queued, unless its loop has had too many turns (L23)."""
-        activation.step(COMPLETE)
-        if self._loops.runs <= MANY or not self._loops.defer(activation):
-            self._enqueue(activation)
+    def _complete(self, activation: Activation, *, late: bool = False) -> None:
+        """Make an activation ready and queue it: a writer asks for consent, any other starts without.
 
-    def _enqueue(self, activation: Activation) -> None:
-        """Queue a ready activation: a writer asks for consent, any other starts without."""
+        If its loop has had too many turns (L23), only a second call queues it, a `late` one.
+        """
+        if not late:
+            activation.step(COMPLETE)
+            if self._loops.runs > MANY and self._loops.defer(activation):
+                return
         clause = activation.clause
         if clause.rule.slots and clause.firm_bits:
             self._asking[activation] = None
@@ -165,7 +166,7 @@ class Holdings(State):
                 group.members.pop(activation, None)
             if group.interested:
                 self._dirty[group] = None
-        if all(other is not spike for other in activation.spikes):
+        if spike not in activation.spikes:
             spike.holders.pop(activation, None)
             if not spike.holders:
                 self._forget(spike)
@@ -255,7 +256,8 @@ class Holdings(State):
             activation.stands_on = activation.groups = ()
         if activation.pressed != NEVER:
             activation.pressed = NEVER
-        self.alternatives.pop(activation, None)
+        if self.alternatives:
+            self.alternatives.pop(activation, None)
         active = self.active[clause.rule.index]
         del active[activation]
         if not active:

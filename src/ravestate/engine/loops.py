@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Sequence
+from operator import attrgetter
 from typing import TYPE_CHECKING, NamedTuple
 
 from ravestate.engine.activation import READY
@@ -95,11 +96,18 @@ class Loops:
                 return activation
         return None
 
+    def lineage(self, run: Activation) -> Lineage | None:
+        """Return the rules that led to the next spike of a run; None unless the instant has many runs."""
+        if run.lineage is None and self.runs > MANY:
+            run.lineage = Lineage(frozenset((run.clause.rule.index,)), Loop(self._instant))
+        return run.lineage
+
     def trace(self, run: Activation) -> Sequence[RulePlan]:
         """Note what led to a run; return the rules of its loop, in declaration order, when they are to be named."""
-        rule = run.clause.rule
         lines = self._lines(run)
-        loop = max((line.loop for line in lines), key=_turns) if lines else Loop(self._instant)
+        if not lines:
+            return ()  # `lineage` begins a loop if the run raises a spike
+        rule, loop = run.clause.rule, max((line.loop for line in lines), key=attrgetter("turns"))
         rules = frozenset[int]().union(*(line.rules for line in lines))
         run.lineage = Lineage(rules | {rule.index}, loop)
         if rule.index not in rules:
@@ -111,16 +119,8 @@ class Loops:
         if not new:
             return ()
         self._named |= new
-        return sorted(loop.rules, key=_number)
+        return sorted(loop.rules, key=attrgetter("index"))
 
     def _lines(self, activation: Activation) -> list[Lineage]:
-        found = [spike.lineage for spike in activation.spikes if spike is not None]
-        return [line for line in found if line is not None and line.loop.instant == self._instant]
-
-
-def _turns(loop: Loop) -> int:
-    return loop.turns
-
-
-def _number(rule: RulePlan) -> int:
-    return rule.index
+        lines = [spike.lineage for spike in activation.spikes if spike is not None and spike.lineage is not None]
+        return [line for line in lines if line.loop.instant == self._instant] if lines else lines

@@ -107,7 +107,7 @@ class Matching(ConflictSets):
         rule = -1 if run is None or run.clause.rule.detached else run.clause.rule.index
         spike = Spike(self._spikes, signal, payload, self.now, group, parents, source, rule, self._activations)
         if self._loops.runs > MANY:
-            spike.lineage = lineage if run is None else run.lineage
+            spike.lineage = lineage if run is None else self._loops.lineage(run)
         live = self.live.get(signal.index)
         if live is None:
             live = self.live[signal.index] = {}

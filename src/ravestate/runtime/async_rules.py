@@ -55,23 +55,19 @@ class AsyncRules:
         task = self._spare
         if task is None:
             task = self._spare = EagerTask(self._loop, self._timer)
-        rule, began = ctx.rule, self._timer.begin()
         try:
-            task.first_step(rule.function(ctx), rule)
+            task.first_step(ctx.rule.function(ctx), ctx.rule)
         except StopIteration as stop:
-            self._timer.end(rule, began)
             self._finish(ctx, stop.value, None)
         except BaseException as exception:  # a rule may raise anything
-            self._timer.end(rule, began)
             self._finish(ctx, None, exception)
             if isinstance(exception, KeyboardInterrupt):
                 raise
         else:
-            self._timer.end(rule, began)
             self._spare = None
             self._tasks[ctx] = task
             task.task.add_done_callback(functools.partial(self._done, ctx))
-        if task.spoilt and task is self._spare:
+        if task is self._spare and task.spoilt:
             task.close()
             self._spare = None
 

@@ -244,6 +244,8 @@ class Context:
         runner = self._running()
         if runner.closed:
             raise runner.fault or EngineError(f"the context has ended: there will be no {signal.name}")
+        if timeout is None:  # an asyncio.timeout costs as much as a short rule
+            return await runner.listeners.next(signal.name)
         try:
             async with asyncio.timeout(timeout):
                 return await runner.listeners.next(signal.name)

@@ -23,7 +23,7 @@ class EagerTask:
 
     Args:
         loop: The loop of the task.
-        timer: Measures each step after the first; the caller measures the first one.
+        timer: Measures each step.
     """
 
     __slots__ = (
@@ -55,12 +55,14 @@ class EagerTask:
         if around is not None:
             asyncio.tasks._leave_task(self._loop, around)  # pyright: ignore[reportPrivateUsage]
         asyncio.tasks._enter_task(self._loop, self.task)  # pyright: ignore[reportPrivateUsage]  # documented for task implementations
+        began = self._timer.begin()
         try:
             self._first = self._context.run(coroutine.send, None)
         finally:
             asyncio.tasks._leave_task(self._loop, self.task)  # pyright: ignore[reportPrivateUsage]
             if around is not None:
                 asyncio.tasks._enter_task(self._loop, around)  # pyright: ignore[reportPrivateUsage]
+            self._timer.end(rule, began)
         self._coroutine = coroutine
         self._rule = rule
         if not self._wake.done():

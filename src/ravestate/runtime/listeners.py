@@ -34,16 +34,19 @@ class Listeners:
             waiting = self._futures.get(signal, [])
             if future in waiting:
                 waiting.remove(future)
-                self._forget(signal)
+                if not waiting:
+                    del self._futures[signal]
+                    if signal not in self._functions:
+                        self._watched.pop(signal, None)
 
     def tell(self, spiked: Spiked) -> None:
         """Call the signal's function, and wake the tasks that wait for the signal."""
         function = self._functions.get(spiked.signal)
-        if function is not None:
+        if function is None:
+            self._watched.pop(spiked.signal, None)
+        else:
             function(spiked.payload)
-        futures = self._futures.pop(spiked.signal, [])
-        self._forget(spiked.signal)
-        for future in futures:
+        for future in self._futures.pop(spiked.signal, ()):
             if not future.done():
                 future.set_result(spiked.payload)
 
@@ -54,9 +57,3 @@ class Listeners:
                 if not future.done():
                     future.set_exception(error(signal))
         self._futures.clear()
-
-    def _forget(self, signal: str) -> None:
-        if not self._futures.get(signal):
-            self._futures.pop(signal, None)
-            if signal not in self._functions:
-                self._watched.pop(signal, None)

@@ -181,7 +181,7 @@ class Runner:
 
     def _work_off(self, rounds: int) -> bool:
         """Take and perform effects, for so many rounds at most; return whether there were any."""
-        engine = self._engine
+        engine, cleaning = self._engine, self._async.cleaning
         began = self.clock.now()
         if began != self._instant:
             self._rounds = 0
@@ -195,7 +195,7 @@ class Runner:
         turn_ends = perf_counter() + TURN
         try:
             for _ in range(rounds):
-                if self._held():
+                if (self._is_virtual or cleaning) and self._held():
                     break  # go on when they have ended
                 self._rounds += 1
                 if not self._todo:
@@ -209,9 +209,9 @@ class Runner:
                     if not self._todo:
                         break
                 some = True
-                while self._todo and not ((self._is_virtual or self._async.cleaning) and self._held()):
+                while self._todo and not ((self._is_virtual or cleaning) and self._held()):
                     self._perform(self._todo.popleft())
-                if perf_counter() > turn_ends and not self._is_virtual:
+                if not self._is_virtual and perf_counter() > turn_ends:
                     self._schedule()
                     break
             else:

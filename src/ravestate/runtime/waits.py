@@ -56,7 +56,7 @@ class Waits:
 
     def is_quiet(self, slot: str | None = None) -> bool:
         """Return whether no foreground rule runs or waits; with a slot, no such rule that may lead to a write of it."""
-        alive = [activation.clause.rule for activation in self.alive().values()]
+        alive = [activation.clause.rule for activation in (*self._engine.running.values(), *self._engine.waiting)]
         if slot is not None and alive:
             policy = self._engine.policy
             leading = policy.causes.ancestors(policy.slot_of[slot].signals[0].index)

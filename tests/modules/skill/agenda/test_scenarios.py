@@ -9,7 +9,9 @@ from ravestate.modules import agenda, emotion, idle, rawio, verbaliser
 from ravestate.modules.skill.agenda import Goal, GoalState
 from ravestate.testing import Simulation, simulate
 
-AT_ONCE = {"agenda": {"gap": 0.0}, "idle": {"answer_time": 0.0}}
+PATIENT = {"idle": {"remarks": 100}}
+"""Pursue goals however long the user is silent."""
+AT_ONCE = {"agenda": {"gap": 0.0}, "idle": {"answer_time": 0.0, "remarks": 100}}
 
 
 def agent(name: str = "guide") -> rs.Module:
@@ -57,7 +59,7 @@ def test_goals_have_their_turns_by_priority_and_with_a_gap() -> None:
     guide = agent()
     for name, priority in (("low", 0.5), ("high", 2.0), ("middle", 1.0)):
         agenda.goal(guide, name, say=name, priority=priority)
-    with simulate(guide, settings={"agenda": {"gap": 20.0}}) as sim:
+    with simulate(guide, settings=PATIENT | {"agenda": {"gap": 20.0}}) as sim:
         heard = with_times(sim, 120)
     assert [text for _, text in heard] == ["high", "middle", "low"]
     times = [time for time, _ in heard]
@@ -84,7 +86,7 @@ def test_each_try_says_the_next_text_and_after_the_last_the_goal_is_dropped() ->
     guide = agent()
     never = guide.signal("never")
     goal = agenda.goal(guide, "game", say=["A game?", "Come on!"], cooldown=60, done=never, tries=3)
-    with simulate(guide) as sim:
+    with simulate(guide, settings=PATIENT) as sim:
         sim.advance(180.0)
         assert sim.said == ["A game?", "Come on!", "Come on!"]
         assert goal.state(sim).status == "pursued"
@@ -305,7 +307,7 @@ def test_an_intent_is_worded_by_the_verbaliser_and_excludes_others_just_as_well(
     async def ask(ctx: rs.RuleContext) -> None:
         ctx[rawio.output] = "Are you there?"
 
-    with simulate(guide, lonely, settings={"idle": {"answer_time": 0.0}}) as sim:
+    with simulate(guide, lonely, settings={"idle": {"answer_time": 0.0, "remarks": 100}}) as sim:
         sim.advance(5.0)
         assert len(sim.said) == 1
         assert sim.said[0] not in ("Lovely weather.", "Are you there?")
@@ -320,13 +322,25 @@ def test_a_user_who_is_silent_for_long_is_left_alone_in_the_end() -> None:
     never = guide.signal("never")
     for name in ("one", "two", "three"):
         agenda.goal(guide, name, say=name, done=never, tries=2)
-    with simulate(guide) as sim:
+    with simulate(guide, settings=PATIENT) as sim:
         sim.advance(3600.0)
         assert sorted(sim.said) == ["one", "one", "three", "three", "two", "two"]
         assert {state.status for state in sim.read(agenda.goals).values()} == {"dropped"}
         assert [a["rule"] for a in sim.snapshot()["activations"]] in ([], ["idle:notice_silence"])
         sim.advance(3600.0)
         assert len(sim.said) == 6
+
+
+def test_a_goal_waits_for_the_user_after_two_remarks_without_an_answer() -> None:
+    guide = agent()
+    for name in ("one", "two", "three"):
+        agenda.goal(guide, name, say=name)
+    with simulate(guide, chatter()) as sim:
+        sim.advance(3600.0)
+        assert sim.said == ["one", "two"]
+        sim.say("hello")
+        sim.advance(60.0)
+        assert sim.said[2:] == ["I see.", "three"]
 
 
 def test_two_contexts_of_one_policy_share_nothing() -> None:
@@ -363,7 +377,7 @@ def test_a_goal_is_seen_by_explain_check_and_graph() -> None:
     assert all(__file__ in rule.origin for rule in policy.rules.values() if rule.name.startswith("guide"))
     with simulate(policy) as sim:
         sim.advance(8.0)
-        assert "ran" in str(sim.explain("guide:game"))
+        assert "finished" in str(sim.explain("guide:game"))
         sim.advance(22.0)  # a question has its time for an answer, and goals have a gap
         assert "it was pursued" in str(sim.explain("guide:game"))
         assert "rests for another" in str(sim.explain("guide:game"))

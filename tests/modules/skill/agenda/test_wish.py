@@ -11,7 +11,7 @@ from ravestate.testing import Simulation, simulate
 
 
 def agent(*wishes: dict[str, Any], **settings: Any) -> Simulation:
-    return simulate(agenda, settings={"agenda": {"goals": wishes, **settings}})
+    return simulate(agenda, settings={"agenda": {"goals": wishes, **settings}, "idle": {"remarks": 100}})
 
 
 def test_goals_of_words_alone_are_pursued_like_any_other() -> None:

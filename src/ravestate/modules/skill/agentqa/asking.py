@@ -45,7 +45,7 @@ def about_agent(
 
     Example:
         >>> about_agent("Hi! Could you tell me what's ur name?")
-        ([Asked(text='what is your name', addressed=True)], 'nothing is said')
+        ([Asked(text='what is your name', addressed=True)], 'it is no question')
         >>> about_agent("what is my name")
         ([], 'it is about the user')
     """

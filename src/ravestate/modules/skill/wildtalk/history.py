@@ -55,10 +55,6 @@ class History:
         self._characters = characters
         self._messages: deque[Message] = deque()
 
-    def __len__(self) -> int:
-        """Return the number of messages."""
-        return len(self._messages)
-
     def heard(self, text: str) -> None:
         """Add an utterance of the user."""
         self.add(Message("user", text))
@@ -81,10 +77,6 @@ class History:
             self._messages.popleft()
             while self._messages and self._messages[0].role != "user":
                 self._messages.popleft()
-
-    def forget(self) -> None:
-        """Start again, for another person."""
-        self._messages.clear()
 
     def prompt(
         self,
@@ -113,8 +105,6 @@ class History:
         for utterance, answer in examples:
             shown += Message("user", utterance), Message("assistant", answer)
         return (Message("system", persona.replace("{name}", name)), *shown, *kept)
-
-    # ------------------------------------------------------------------------------- internals
 
     def _clean(self, text: str) -> str:
         # Somebody may paste a book: anything far beyond the budget is dropped at once.
