@@ -90,9 +90,9 @@ class Agenda(Slots):
         self._free = []
         for activation in free:
             clause = activation.clause
-            if activation.state is not READY or self._defers(activation):
+            if activation.state is not READY or (clause.guards and not self._guarded(activation)):
                 continue
-            if clause.guards and not self._guarded(activation):
+            if self._loops.runs > MANY and self._loops.defer(activation):
                 continue
             if not clause.rule.slots:
                 other = self._claimed(activation)
@@ -100,10 +100,6 @@ class Agenda(Slots):
                     self._refuse(activation, Refusal.by(other, activation))
                     continue
             self._start(activation)
-
-    def _defers(self, activation: Activation) -> bool:
-        """Return whether a ready activation is put off as one turn too many of a loop (L23)."""
-        return self._loops.runs > MANY and activation.state is READY and self._loops.defer(activation)
 
     def _claimed(self, activation: Activation) -> Activation | None:
         """Return a run of the same rule on one of the same spikes. Only such a run excludes a rule without slots
@@ -152,9 +148,9 @@ class Agenda(Slots):
             entry = heapq.heappop(queue)
             activation = entry[4]
             clause = activation.clause
-            if activation.state not in ASKABLE or self._defers(activation):
+            if activation.state not in ASKABLE or (clause.guards and not self._guarded(activation)):
                 continue
-            if clause.guards and not self._guarded(activation):
+            if self._loops.runs > MANY and activation.state is READY and self._loops.defer(activation):
                 continue
             rule = clause.rule
             if rule.cooldown and (turn := self._turn(activation)) > entry[:4]:
