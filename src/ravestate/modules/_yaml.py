@@ -14,18 +14,23 @@ if TYPE_CHECKING:
 
 
 def read_nodes(file: Path | Traversable, what: str) -> yaml.Node | None:
-    """Return the root node of a file; None for an empty one.
+    """Return the root node of a file; None for an empty one. See `read_text`."""
+    return compose_yaml(read_text(file, what), str(file))
+
+
+def read_text(file: Path | Traversable, what: str) -> str:
+    """Return the text of a file.
 
     Args:
         file: A path, or a file in a package.
         what: The kind of file, for messages: ``file of types``.
 
     Raises:
-        DeclarationError: The file is not YAML in UTF-8.
+        DeclarationError: The file is not in UTF-8.
         PlatformError: The file is missing or cannot be read.
     """
     try:
-        return compose_yaml(file.read_text(encoding="utf-8"), str(file))
+        return file.read_text(encoding="utf-8")
     except FileNotFoundError as error:
         near = ""
         if isinstance(file, Path) and file.parent.is_dir():

@@ -34,7 +34,7 @@ class Access:
 
     A page that only this machine can reach needs no token, so any site in this machine's browser could talk to it. Two
     checks prevent that. The server answers only to names of this machine, against DNS rebinding. It accepts only its own
-    origin and those in the settings.
+    origin and those in the settings. The names of headers are in lower case here.
 
     Args:
         settings: The settings of ``webio``.
@@ -47,11 +47,7 @@ class Access:
         self._named = {urlsplit(origin).netloc for origin in settings.origins}
 
     def refusal(self, headers: Mapping[str, str]) -> str | None:
-        """Return why the server refuses a request; None if it accepts it.
-
-        Args:
-            headers: The request's headers, with names in lower case.
-        """
+        """Return why the server refuses a request; None if it accepts it."""
         host = headers.get("host", "").lower()
         name = _name_of(host)
         ours = host in self._named or is_local(name) or name == self._host.lower()
@@ -63,11 +59,7 @@ class Access:
         return None
 
     def refusal_of_board(self, headers: Mapping[str, str]) -> str | None:
-        """Return why a request may not reach the board, which only the server's own page may; None if it may.
-
-        Args:
-            headers: The request's headers, with names in lower case.
-        """
+        """Return why a request may not reach the board, which only the server's own page may; None if it may."""
         origin, host = headers.get("origin", "").lower(), headers.get("host", "").lower()
         if origin and not _is_own(origin, host):
             return (
@@ -80,9 +72,6 @@ class Access:
         """Return the origin of a site that tries to embed the page without permission; None for any other request.
 
         Browsers send the headers for this over HTTPS and to this machine; widget.js allows them to.
-
-        Args:
-            headers: The request's headers, with names in lower case.
         """
         if headers.get("sec-fetch-dest") not in ("iframe", "frame"):
             return None

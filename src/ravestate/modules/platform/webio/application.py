@@ -132,11 +132,7 @@ class AccessMiddleware:
 
 
 def _bounds(framing: Iterable[str]) -> dict[str, str]:
-    """Return headers that restrict scripts and frames.
-
-    Args:
-        framing: The origins that may embed the page.
-    """
+    """Return headers that restrict scripts, and frames to the origins `framing`."""
     policy = (
         "default-src 'none'",
         "script-src 'self'",

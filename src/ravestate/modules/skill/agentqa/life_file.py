@@ -12,7 +12,8 @@ from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ravestate.errors import DeclarationError, PlatformError, nearest
+from ravestate.errors import nearest
+from ravestate.modules._yaml import fault, kind_of, read_text
 from ravestate.yaml_text import compose_yaml
 
 from .life import Fact, Life, Topic
@@ -46,16 +47,7 @@ def read_life(own: Path | None = None) -> Life:
     if own is None:
         return life
     own = own.expanduser()
-    try:
-        text = own.read_text(encoding="utf-8")
-    except FileNotFoundError as error:
-        near = nearest(own.name, [other.name for other in own.parent.iterdir()]) if own.parent.is_dir() else ""
-        raise PlatformError(f"the file {str(own)!r} does not exist{near}") from error
-    except OSError as error:
-        raise PlatformError(f"the file {str(own)!r} cannot be read: {error.strerror or error}") from error
-    except UnicodeDecodeError as error:
-        raise DeclarationError(f"{own}: this is not UTF-8 text ({error.reason} at byte {error.start})") from None
-    return _parsed(str(own), text, life)
+    return _parsed(str(own), read_text(own, "file"), life)
 
 
 # -------------------------------------------------------------------------------------- one file
@@ -77,7 +69,7 @@ def _parsed(name: str, text: str, base: Life | None) -> Life:
             if fact is not None:
                 facts[key] = fact
         if "name" not in facts:
-            raise _fault(name, node, "the agent needs a name: write\nfacts:\n  name: Robin")
+            raise fault(name, node, "the agent needs a name: write\nfacts:\n  name: Robin")
     if (node := parts.get("others")) is not None:
         others += _texts(name, node, "questions")
     if (node := parts.get("topics")) is not None:
@@ -101,17 +93,17 @@ class _Known:
         """Return the phrases of a node, whose parameters are facts."""
         found = _texts(self.file, node, "phrases")
         known = (*self.facts, *more)
-        items: list[yaml.Node] = node.value if _kind(node) == "sequence" else [node]
+        items: list[yaml.Node] = node.value if kind_of(node) == "sequence" else [node]
         for item in items:
             try:
                 parts = list(string.Formatter().parse(item.value))
             except ValueError as error:
-                raise _fault(
+                raise fault(
                     self.file, item, f"the braces in {item.value!r} name no fact ({error}): write {{hobbies}}"
                 ) from None
             for _, parameter, form, conversion in parts:
                 if parameter is not None and (parameter not in known or form or conversion):
-                    raise _fault(
+                    raise fault(
                         self.file,
                         item,
                         f"{{{parameter}}} in {item.value!r} is not a fact{nearest(parameter, known)}; it would stand under "
@@ -145,18 +137,18 @@ def _topic(key: str, node: yaml.Node, before: Topic | None, known: _Known) -> To
         ("phrases", topic.phrases),
     ):
         if not there:
-            raise _fault(known.file, node, f"the topic {key} has no {part}: write\n{key}:\n  {part}: [...]")
+            raise fault(known.file, node, f"the topic {key} has no {part}: write\n{key}:\n  {part}: [...]")
     return topic
 
 
 def _expressions(file: str, node: yaml.Node, part: str) -> tuple[str, ...]:
     found = _texts(file, node, part)
-    items: list[yaml.Node] = node.value if _kind(node) == "sequence" else [node]
+    items: list[yaml.Node] = node.value if kind_of(node) == "sequence" else [node]
     for item, expression in zip(items, found, strict=True):
         try:
             re.compile(expression)
         except re.error as error:
-            raise _fault(
+            raise fault(
                 file,
                 item,
                 f"{expression!r} is not a regular expression ({error}): write for example i am (so )?sad",
@@ -167,72 +159,64 @@ def _expressions(file: str, node: yaml.Node, part: str) -> tuple[str, ...]:
 def _fact(name: str, key: str, node: yaml.Node) -> Fact | None:
     if key in COUNTED:
         instead = "born: 2024-03-01" if key == "age" else "another name"
-        raise _fault(name, node, f"{key} is computed, and cannot be written here: write {instead}")
+        raise fault(name, node, f"{key} is computed, and cannot be written here: write {instead}")
     if _is_null(node):
         return None
-    if key in ("name", "born") and _kind(node) != "scalar":
-        raise _fault(name, node, f"{key} is one text, not a {_kind(node)}")
-    if _kind(node) == "mapping":
+    if key in ("name", "born") and kind_of(node) != "scalar":
+        raise fault(name, node, f"{key} is one text, not a {kind_of(node)}")
+    if kind_of(node) == "mapping":
         return tuple((other, _text(name, value)) for other, value in _entries(name, node, None, "it has pairs, and"))
-    if _kind(node) == "sequence":
+    if kind_of(node) == "sequence":
         return _texts(name, node, "texts", empty=True)
     text = _text(name, node)
     if key == "born":
         try:
             date.fromisoformat(text)
         except ValueError:
-            raise _fault(name, node, f"born: {text!r} is not a date: write for example 2024-03-01") from None
+            raise fault(name, node, f"born: {text!r} is not a date: write for example 2024-03-01") from None
     return text
 
 
 # ------------------------------------------------------------------------------------------ YAML
 
 
-def _fault(name: str, node: yaml.Node, problem: str) -> DeclarationError:
-    return DeclarationError(f"{name}:{node.start_mark.line + 1}: {problem}")
-
-
-def _kind(node: yaml.Node) -> str:
-    return str(getattr(node, "id", ""))
-
-
 def _is_null(node: yaml.Node) -> bool:
-    return _kind(node) == "scalar" and not getattr(node, "style", None) and node.value in ("", "~", "null")
+    return kind_of(node) == "scalar" and not getattr(node, "style", None) and node.value in ("", "~", "null")
 
 
 def _entries(
     name: str, node: yaml.Node, allowed: tuple[str, ...] | None, meaning: str
 ) -> Iterator[tuple[str, yaml.Node]]:
-    if _kind(node) != "mapping":
-        raise _fault(name, node, f"{meaning} this is a {_kind(node)}")
+    if kind_of(node) != "mapping":
+        raise fault(name, node, f"{meaning} this is a {kind_of(node)}")
     seen: set[str] = set()
     for key, value in node.value:
         word = _text(name, key)
         if allowed is not None and word not in allowed:
-            raise _fault(name, key, f"{word!r} means nothing here{nearest(word, allowed)}: {', '.join(allowed[:12])}")
+            raise fault(name, key, f"{word!r} means nothing here{nearest(word, allowed)}: {', '.join(allowed[:12])}")
         if allowed is None and not word.replace(" ", "_").replace("-", "_").isidentifier():
-            raise _fault(name, key, f"{word!r} is not a name: letters, digits and _")
+            raise fault(name, key, f"{word!r} is not a name: letters, digits and _")
         if word in seen:
-            raise _fault(name, key, f"{word!r} is here a second time")
+            raise fault(name, key, f"{word!r} is here a second time")
         seen.add(word)
         yield word, value
 
 
 def _texts(name: str, node: yaml.Node, what: str, *, empty: bool = False) -> tuple[str, ...]:
-    items: list[yaml.Node] = node.value if _kind(node) == "sequence" else [node]
+    items: list[yaml.Node] = node.value if kind_of(node) == "sequence" else [node]
     if not items and not empty:
-        raise _fault(name, node, f"there are no {what}: write some, or leave it out")
+        raise fault(name, node, f"there are no {what}: write some, or leave it out")
     return tuple(_text(name, item) for item in items)
 
 
 def _text(name: str, node: yaml.Node) -> str:
-    if _kind(node) != "scalar":
-        raise _fault(
+    if kind_of(node) != "scalar":
+        raise fault(
             name,
             node,
-            f"this must be a text, not a {_kind(node)}; quote a text with :, or with braces in front",
+            f"this must be a text, not a {kind_of(node)}; quote a text with :, or with braces in front",
         )
     text = str(node.value).strip()
     if not text or _is_null(node):
-        raise _fault(name, node, "this must be a text, and it is empty")
+        raise fault(name, node, "this must be a text, and it is empty")
     return text

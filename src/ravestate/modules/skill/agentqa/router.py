@@ -78,12 +78,7 @@ class Router:
     """
 
     def __init__(self, life: Life, encoder: Encoder | None = None) -> None:
-        """Nothing is loaded yet.
-
-        Args:
-            life: The life with the examples.
-            encoder: The sentence model; by default the bundled one.
-        """
+        """Nothing is loaded yet."""
         self.life = life
         self._encoder = encoder or _bundled()
         self._known = {plain(q): topic.name for topic in life.topics.values() for q in topic.questions}

@@ -244,13 +244,7 @@ _PRIVATE = word_set("like love enjoy play have live work study speak own eat dri
 
 
 def about_oneself(text: str, question: nlp.QuestionWord, triples: tuple[nlp.Triple, ...]) -> bool:
-    """Return whether a question is about the user's personal facts: *how old is my sister*, *what do I drink*.
-
-    Args:
-        text: The question.
-        question: Its kind.
-        triples: Its triples.
-    """
+    """Return whether a question is about the user's own affairs: *how old is my sister*, *what do I drink*."""
     if _ADVICE.search(text):
         return False
     for subject, predicate, thing in triples:

@@ -41,14 +41,7 @@ class Response:
 
 
 def respond_to(meaning: Meaning, user: Acquaintance, now: float, chance: random.Random) -> Response:
-    """Return the response to an utterance.
-
-    Args:
-        meaning: The meaning of the utterance.
-        user: The user before it.
-        now: Seconds since the context began.
-        chance: Random numbers, for the choice of a topic to mention.
-    """
+    """Return the response to an utterance."""
     listening = replace(user, talk=user.talk.listening(leave=meaning.leave))
     match meaning.kind:
         case "nothing":

@@ -78,15 +78,7 @@ class Meaning:
 
 
 def understand(heard: Heard, talk: Talk, known: Mapping[str, tuple[str, ...]], now: float, within: float) -> Meaning:
-    """Return the meaning of an utterance.
-
-    Args:
-        heard: The utterance.
-        talk: The conversation before it.
-        known: The values by topic, with the name.
-        now: Seconds since the context began.
-        within: Seconds for which a question waits for its answer.
-    """
+    """Return the meaning of an utterance at `now`; a question waits `within` seconds for its answer."""
     text = plain(heard.text)
     leave = LEAVE.search(text) is not None
     pending = talk.pending(now, within)

@@ -92,8 +92,15 @@ class TransformersBackend:
             prompt, ends = await asyncio.to_thread(model.prompt, messages)
         except Exception as error:  # a template may refuse a conversation, e.g. one with a system's turn
             raise self._failed(error) from error
-        arguments = (prompt, max_tokens, temperature, seed, tell, left)
-        threading.Thread(target=model.write, args=arguments, name="ravestate-model").start()
+
+        def write() -> None:
+            try:
+                model.write(prompt, max_tokens, temperature, seed, tell, left)
+                tell(None)
+            except Exception as error:  # any exception goes to the caller
+                tell(error)
+
+        threading.Thread(target=write, name="ravestate-model").start()
         stops = (*stop, *ends)
         written, shown = "", 0
         try:
@@ -190,25 +197,10 @@ class _Model:
         max_tokens: int,
         temperature: float,
         seed: int | None,
-        tell: Callable[[str | BaseException | None], None],
+        tell: Callable[[str], None],
         left: threading.Event,
     ) -> None:
-        """Write an answer, in a thread: report each piece, then None, or an exception."""
-        try:
-            self._write(prompt, max_tokens, temperature, seed, tell, left)
-            tell(None)
-        except Exception as error:  # any exception goes to the caller
-            tell(error)
-
-    def _write(
-        self,
-        prompt: str,
-        max_tokens: int,
-        temperature: float,
-        seed: int | None,
-        tell: Callable[[str | BaseException | None], None],
-        left: threading.Event,
-    ) -> None:
+        """Write an answer, and report each piece; stop when it is `left`."""
         import torch as real_torch
         import transformers
 
