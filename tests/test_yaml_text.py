@@ -49,7 +49,7 @@ def test_hostile_texts_end_at_once(read: Callable[[str, str], Any], text: str, m
             "a: 1\nb: [",
             "file.yaml:2: not valid YAML (while parsing a flow node, expected the node content, but ",
         ),
-        ("a: b: c", "file.yaml:1: not valid YAML (mapping values are not allowed here). A text with : or #"),
+        ("a: b: c", "file.yaml:1: not valid YAML (mapping values are not allowed here). Put quotes around"),
         ("a: 1\n\x07", "file.yaml:2: not valid YAML (a control character)"),
         ("a: *b", "file.yaml:1: not valid YAML (found undefined alias 'b')"),
         ("a: !!python/name:os.system", "file.yaml:1: not valid YAML (could not determine a constructor"),

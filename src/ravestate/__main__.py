@@ -1,7 +1,17 @@
-"""The command line, as ``python -m ravestate``."""
+"""The command line, as the command ``ravestate`` and as ``python -m ravestate``."""
 
 import sys
 
-from ravestate.cli import script
 
-sys.exit(script())
+def script() -> int:
+    """Run the command line; Ctrl-C ends it quietly, also during the imports."""
+    try:
+        from ravestate.cli import script
+
+        return script()
+    except KeyboardInterrupt:
+        return 130
+
+
+if __name__ == "__main__":
+    sys.exit(script())

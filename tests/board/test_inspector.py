@@ -248,7 +248,7 @@ async def test_slots_are_written_and_signals_raised_by_hand() -> None:
         ({"type": "dance"}, "dance: Input tag 'dance'"),
         ({"type": "say", "text": ""}, "say: text: String should have at least 1 character"),
         ({"type": "diagram", "unfolded": "all"}, "diagram: unfolded: Input should be a valid list"),
-        ({"type": "hello", "v": 1}, "hello comes once"),
+        ({"type": "hello", "v": 1}, "hello comes first, and only once"),
         ([], "a frame is an object"),
     ],
 )  # fmt: skip

@@ -112,3 +112,41 @@ def test_it_answers_a_pipe_and_ends_with_it() -> None:
     run = subprocess.run(command, input="hello\nbye\n", capture_output=True, text=True, timeout=60, check=False)
     assert (run.returncode, complaints(run.stderr)) == (0, "")
     assert len(run.stdout.splitlines()) >= 2
+
+
+WITHOUT = """
+import sys
+from ravestate.cli.complete import PACKAGES
+sys.modules.update(dict.fromkeys(name for names in PACKAGES.values() for name in names))
+from ravestate.cli import main
+sys.exit(main(sys.argv[1:]))
+"""
+
+
+def without_the_extra(*arguments: str, text: str = "") -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [sys.executable, "-c", WITHOUT, *arguments], input=text, capture_output=True, text=True, timeout=60, check=False
+    )
+
+
+def test_without_the_extra_one_line_says_what_to_type_and_the_agent_talks() -> None:
+    run = without_the_extra("chat", text="hello\nmy name is Ada\nbye\n")
+    (line,) = complaints(run.stderr).splitlines()
+    assert line.startswith("ravestate chat: the agent talks without nlp, ")
+    assert line.endswith(": pip install 'ravestate[chat]'")
+    assert run.returncode == 0 and len(run.stdout.splitlines()) >= 2
+
+
+def test_a_module_with_settings_stays(started: Any, capsys: Capture, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "ladybug", None)
+    monkeypatch.setitem(sys.modules, "xllamacpp", None)
+    code, _, errors = call(capsys, "chat", "--set", "ontology.url=bolt://memory", "--set", "wildtalk.model=other")
+    ((names, _),) = started
+    assert (code, errors) == (0, "ravestate chat: pip install 'ravestate[chat]'\n")
+    assert names == ["conio", *COMPLETE]
+
+
+def test_asking_the_documents_without_the_extra_says_what_to_type(tmp_path: Path) -> None:
+    run = without_the_extra("genqa", "ask", "What is the capital of Peru?", "--index", str(tmp_path / "index"))
+    assert run.returncode == 1 and "Traceback" not in run.stderr
+    assert "pip install 'ravestate[sentences]'" in complaints(run.stderr)

@@ -1,6 +1,7 @@
 """``ravestate graph``: the diagram as SVG, DOT or Mermaid, on standard output or in a file."""
 
 import re
+import sys
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
@@ -139,3 +140,9 @@ def test_faults_are_1(folder: Path, capsys: Capture) -> None:
     )
     code, _, errors = call(capsys, "graph", "./faulty.py")
     assert code == 1 and "two signals are named 'm:a'" in errors
+
+
+def test_on_a_terminal_it_asks_for_a_file(capsys: Capture, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys.stdout, "isatty", lambda: True)
+    code, out, errors = call(capsys, "graph", "rawio")
+    assert (code, out) == (2, "") and "-o agent.svg" in errors

@@ -52,6 +52,11 @@ def test_wrong_use_is_2(arguments: tuple[str, ...], capsys: Capture) -> None:
     assert (code, out) == (2, "") and errors.startswith("usage: ravestate")
 
 
+def test_a_misspelt_command_has_a_hint(capsys: Capture) -> None:
+    code, _, errors = call(capsys, "chatt")
+    assert code == 2 and errors.endswith("error: there is no command 'chatt'; did you mean 'chat'?\n")
+
+
 def test_options_are_not_guessed_from_their_beginnings(capsys: Capture) -> None:
     code, _, errors = call(capsys, "run", "idle", "--see", "1")
     assert code == 2 and "--see" in errors
@@ -70,6 +75,8 @@ def test_modules_may_come_before_and_after_options(folder: Path, capsys: Capture
         (("run", "idle", "--nonsense"), "run", "unrecognized arguments: --nonsense"),
         (("run", "idle", "--sed=1"), "run", "unrecognized arguments: --sed=1; did you mean '--se"),
         (("memory", "list", "--pth", "x"), "memory list", "--pth; did you mean '--path'?"),
+        (("board", "./guide.py", "--port", "8420"), "board", "--port 8420; write --set webio.port=8420"),
+        (("board", "--host=0.0.0.0"), "board", "--host=0.0.0.0; write --set webio.host=0.0.0.0"),
         (("genqa", "list", "extra"), "genqa list", "unrecognized arguments: extra"),
         (("genqa", "--nonsense", "list"), "genqa", "unrecognized arguments: --nonsense"),
         (("memory", "--nonsense=1", "list"), "memory", "unrecognized arguments: --nonsense=1"),

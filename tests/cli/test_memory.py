@@ -250,6 +250,7 @@ def test_a_file_that_an_agent_has_open(file: Path, folder: Path, capsys: Capture
         code, out, errors = call(capsys, "memory", "--path", str(file), "list")
         assert (code, out) == (1, "")
         assert f"is in use by process {process.pid}: only one process may have it open" in errors
+        assert "name another file with --path FILE" in errors and "--set" not in errors
         code, _, errors = call(capsys, "memory", "--path", str(file), "reset", "-y")
         assert code == 1 and "is in use by another process: end that agent first" in errors and file.exists()
         assert process.stdin is not None

@@ -78,7 +78,7 @@ def test_a_nested_folder_and_an_empty_one_are_accepted(folder: Path, capsys: Cap
     assert (folder / "some" / "where" / "Robot7" / "robot7.py").is_file()
 
 
-@pytest.mark.parametrize("name", ["", ".", "..", "two words", "1st", "-x-y", "ä", "a/b c", "class", "import", "a.b"])
+@pytest.mark.parametrize("name", ["", ".", "..", "two words", "1st", "-x-y", "ä", "a/b c", "a.b"])
 def test_an_invalid_name_is_refused(name: str, folder: Path, capsys: Capture) -> None:
     code, out, errors = call(capsys, "new", "--", name)
     assert (code, out) == (2, "")
@@ -108,3 +108,10 @@ def test_a_folder_that_cannot_be_written_has_a_message(folder: Path, capsys: Cap
     (folder / "file").write_text("", encoding="utf-8")
     code, _, errors = call(capsys, "new", "file/agent")
     assert code == 2 and errors.startswith("ravestate new: cannot write file/agent/README.md: ")
+
+
+@pytest.mark.parametrize("name", ["class", "import"])
+def test_a_keyword_is_refused_as_one(name: str, folder: Path, capsys: Capture) -> None:
+    code, _, errors = call(capsys, "new", name)
+    assert code == 2 and f"{name!r} is a Python keyword" in errors
+    assert list(folder.iterdir()) == []

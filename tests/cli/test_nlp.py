@@ -2,6 +2,7 @@
 
 import io
 import json
+import sys
 
 import pytest
 
@@ -65,3 +66,12 @@ def test_control_codes_do_not_reach_the_terminal(capsys: Capture) -> None:
 def test_an_unknown_pipeline_has_a_message(capsys: Capture) -> None:
     code, out, errors = call(capsys, "nlp", "--pipeline", "nonsense", "hello")
     assert (code, out) == (1, "") and "there is no spaCy pipeline 'nonsense'" in errors
+
+
+def test_on_a_terminal_it_says_how_to_begin_and_end(capsys: Capture, monkeypatch: pytest.MonkeyPatch) -> None:
+    class Terminal(io.StringIO):
+        def isatty(self) -> bool:
+            return True
+
+    monkeypatch.setattr(sys, "stdin", Terminal(""))
+    assert call(capsys, "nlp") == (0, "", "Type a text; Ctrl-D ends.\n")

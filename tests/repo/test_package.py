@@ -56,7 +56,7 @@ def test_wheel_has_licence_and_command(wheel: zipfile.ZipFile) -> None:
     metadata = email.message_from_bytes(wheel.read(names["METADATA"]))
     assert metadata["License-Expression"] == "Apache-2.0 AND MIT AND OFL-1.1"
     assert wheel.read(names["licenses/LICENSE"]) == (ROOT / "LICENSE").read_bytes()
-    assert "ravestate = ravestate.cli:script" in wheel.read(names["entry_points.txt"]).decode()
+    assert "ravestate = ravestate.__main__:script" in wheel.read(names["entry_points.txt"]).decode()
 
 
 def test_wheel_has_the_notices_of_what_the_pages_bundle(wheel: zipfile.ZipFile) -> None:

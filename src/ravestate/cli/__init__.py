@@ -59,6 +59,9 @@ def main(argv: Sequence[str] | None = None) -> int:
         command = commands.add_parser(name, help=summary, description=summary.capitalize() + ".")
         if name in arguments:  # the list of the other commands needs none of their options
             import_module(f"ravestate.cli.{name}").add_arguments(command)
+    first = next((word for word in arguments if not word.startswith("-")), "chat")
+    if first not in COMMANDS and (hint := nearest(first, COMMANDS)):
+        parser.error(f"there is no command {first!r}{hint}")
     options = parser.parse_args(arguments)
     _log(options.verbose)
     try:
@@ -111,7 +114,10 @@ class CommandParser(argparse.ArgumentParser):
         if unknown:
             name = unknown[0].partition("=")[0]
             alike = [o for o in self._option_string_actions if nearest(name.strip("-"), [o.strip("-")])]
-            self.error(f"unrecognized arguments: {' '.join(unknown)}{nearest(name, alike)}")
+            hint = nearest(name, alike)
+            if name in ("--port", "--host") and self.prog.endswith((" board", " run")):
+                hint = f"; write --set webio.{name[2:]}={unknown[0].partition('=')[2] or ''.join(unknown[1:2])}"
+            self.error(f"unrecognized arguments: {' '.join(unknown)}{hint}")
         return options, unknown
 
 

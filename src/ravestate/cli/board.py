@@ -55,6 +55,8 @@ def run(options: argparse.Namespace) -> int:
     recording = open_trace(Path(options.recording)) if options.recording else None
     talks = recording is None
     chosen = agents.load_agent(options, ["webio", *(complete.names(options) if talks and not named else ())])
+    if talks and not named:
+        complete.leave_out_absent(chosen, options.command)
     made = RecordedAgent(*chosen.modules, **chosen.options())
     title = getattr(made.settings[webio.module.name], "title", None)
     beside = routes(made.recorders, recording, title)

@@ -21,5 +21,6 @@ def run(options: argparse.Namespace) -> int:
     from ravestate.runtime.run import run as run_modules
 
     chosen = agent.load_agent(options, ["conio", *complete.names(options)])
+    complete.leave_out_absent(chosen, options.command)
     run_modules(*chosen.modules, **chosen.options())
     return 0

@@ -3,10 +3,15 @@
 from __future__ import annotations
 
 import argparse
+import os
+import sys
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Literal
 
 from ravestate.errors import UsageError, nearest
+from ravestate.loading.spec import AgentSpec
+from ravestate.settings import variable_of
 
 COMPLETE = (
     "idle",
@@ -24,6 +29,17 @@ COMPLETE = (
     "wildtalk",
 )
 """The modules of the complete text agent, without a platform."""
+
+PACKAGES = {
+    "nlp": ("spacy",),
+    "ontology": ("ladybug",),
+    "emotion": ("vaderSentiment",),
+    "agentqa": ("numpy", "onnxruntime", "tokenizers"),
+    "genqa": ("numpy", "onnxruntime", "tokenizers"),
+    "wildtalk": ("xllamacpp", "httpx", "httpx_sse"),
+    "conio": ("prompt_toolkit",),
+}
+"""The packages that a module needs with its default settings."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -58,6 +74,32 @@ def names(options: argparse.Namespace) -> list[str]:
         if name not in COMPLETE:
             raise UsageError(f"--without {name}: the agent has no such module{nearest(name, COMPLETE)}")
     return [name for name in COMPLETE if name not in options.without]
+
+
+def leave_out_absent(agent: AgentSpec, command: str) -> None:
+    """Leave the modules out whose packages are absent, and name the line to type. A module with settings stays."""
+    present = [module.name for module in agent.modules]
+    needs = {name: PACKAGES[name] for name in present if name in PACKAGES}
+    absent = {name for name, packages in needs.items() if not all(map(find_spec, packages))}
+    if not absent:
+        return
+    if "conio" in absent:
+        agent.settings.setdefault("conio", {})["plain"] = True
+    chosen = {
+        *agent.settings,
+        *(name for name in absent if any(v.startswith(variable_of(name, "")) for v in os.environ)),
+    }
+    out = absent - chosen
+    for module in agent.modules:  # each comes after those that it requires
+        if module.name in COMPLETE and any(required.name in out for required in module.requires):
+            out.add(module.name)
+    agent.modules = [module for module in agent.modules if module.name not in out]
+    for name in out:
+        agent.settings.pop(name, None)
+    left = (
+        f"the agent talks without {', '.join(name for name in COMPLETE if name in out)}; for all of it: " if out else ""
+    )
+    print(f"ravestate {command}: {left}pip install 'ravestate[chat]'", file=sys.stderr)
 
 
 def shown(kind: Literal["data", "state"], *parts: str) -> str:

@@ -52,6 +52,8 @@ def run(options: argparse.Namespace) -> int:
     from ravestate.policy.compile import compile_policy
 
     named = bool(options.modules or options.file)
+    if options.output is None and not options.format and sys.stdout.isatty():
+        raise UsageError("the diagram is no text for a terminal: name a file, e.g. -o agent.svg")
     if named and options.without:
         raise UsageError("--without is for the complete agent: leave the modules out")
     if options.unfold and options.fold is False:

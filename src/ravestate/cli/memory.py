@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ravestate.cli import UsageError
-from ravestate.errors import RavestateError, nearest
+from ravestate.errors import PlatformError, RavestateError, nearest
 
 if TYPE_CHECKING:
     from ravestate.modules.meta.ontology import Memory, Node, Settings
@@ -74,7 +74,10 @@ def run(options: argparse.Namespace) -> int:
         )
     memory = open_memory(settings)
     try:
-        memory.opened().result()
+        try:
+            memory.opened().result()
+        except PlatformError as error:  # its words are for an agent; here another option names the file
+            raise PlatformError(str(error).replace("--set ontology.path=", "--path ")) from error
         unseen = memory.undeclared().result()
         if unseen:
             print(

@@ -32,8 +32,10 @@ def run(options: argparse.Namespace) -> int:
     folder = Path(options.name)
     name = folder.name
     package = name.replace("-", "_").lower()
-    if not re.fullmatch(r"[A-Za-z][A-Za-z0-9_-]*", name) or keyword.iskeyword(package):
+    if not re.fullmatch(r"[A-Za-z][A-Za-z0-9_-]*", name):
         raise UsageError(f"{name!r} is not a name for a project: use letters, digits, '-' and '_', e.g. my-agent")
+    if keyword.iskeyword(package):
+        raise UsageError(f"{name!r} is a Python keyword: choose another name, e.g. my-{name}")
     if package in sys.stdlib_module_names or package in ("core", "ravestate", "test", "tests", *BUILT_IN):
         raise UsageError(f"a module named {package!r} exists already: choose another name, e.g. my-{name}")
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):

@@ -51,6 +51,8 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _lines() -> Iterator[str]:
+    if sys.stdin.isatty():
+        print("Type a text; Ctrl-D ends.", file=sys.stderr)
     try:
         for line in sys.stdin:
             if line.strip():

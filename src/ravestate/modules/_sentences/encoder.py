@@ -54,9 +54,9 @@ class Encoder:
         Raises:
             PlatformError: See `load`.
         """
+        model = model_in(self._folder, BUNDLED)  # first: it says what to install
         import numpy as np
 
-        model = model_in(self._folder, BUNDLED)
         if self._mean is None:
             self._mean = _pools_by_mean(model.folder)
         rows = np.zeros((len(texts), model.width), dtype=np.float32)

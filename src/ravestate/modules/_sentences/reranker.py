@@ -53,9 +53,9 @@ class Reranker:
         Raises:
             PlatformError: See `load`.
         """
+        model = model_in(self._folder, BUNDLED)  # first: it says what to install
         import numpy as np
 
-        model = model_in(self._folder, BUNDLED)
         scores = np.zeros(len(passages), dtype=np.float32)
         for indices, logits, _ in model.run([(query, passage) for passage in passages]):
             scores[indices] = logits.reshape(len(indices), -1)[:, 0]

@@ -12,6 +12,7 @@ import ravestate as rs
 from ravestate.errors import PlatformError
 from ravestate.modules import conio, idle, interloc, rawio
 from ravestate.modules.platform.conio.console import Console
+from ravestate.modules.platform.conio.pipes import Pipes
 from ravestate.testing import simulate
 
 parrot = rs.Module("parrot", requires=(rawio, interloc))
@@ -205,3 +206,24 @@ def test_the_history_is_the_users_choice(monkeypatch: pytest.MonkeyPatch, keys: 
             pass
     told = [(options["prompt"], options["history"]) for options in seen]
     assert told == [("$ ", Path("file")), ("$ ", None)]
+
+
+def test_a_terminal_shows_once_how_to_end(keys: Keys, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(conio.rules, "is_terminal", lambda *_: True)
+    with simulate(parrot, conio) as sim:
+        keys.type("one")
+        sim.settle()
+        assert keys.log == ["Ctrl-D ends the conversation.", "one"]
+
+
+def test_plain_lines_on_a_terminal_need_no_package(monkeypatch: pytest.MonkeyPatch) -> None:
+    seen: list[Any] = []
+
+    def missing(*, screen: Any, **_: Any) -> Console:
+        seen.append(screen)
+        raise PlatformError("no more of it")
+
+    monkeypatch.setattr(conio.rules, "Console", missing)
+    with pytest.raises(PlatformError):
+        rs.run(conio, settings={"conio": {"plain": True}})
+    assert isinstance(seen[0], Pipes)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -58,6 +59,14 @@ def test_nonsense_and_long_texts_are_left_to_others_without_the_model() -> None:
     router = Router(read_life(), Never())
     for text in ("", "🙂", "\x00\x1b[31m", "a" * 100_000, "word " * 20_000, "مرحبا كيف حالك", "Il pleut."):
         assert isinstance(router.route(text), Miss)
+
+
+def test_without_numpy_the_examples_themselves_are_understood(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "numpy", None)
+    router = Router(read_life())
+    with pytest.raises(PlatformError, match=r"needs numpy: pip install 'ravestate\[sentences\]'"):
+        router.load()
+    assert isinstance(router.route("what is your name?"), Match)
 
 
 def test_a_missing_model_says_what_to_do(tmp_path: Path) -> None:

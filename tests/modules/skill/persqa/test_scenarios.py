@@ -662,7 +662,10 @@ def test_forgetting_is_not_done_by_the_way(file: Path, look: Look) -> None:
 
 
 class Broken:
-    """Memory that fails."""
+    """Memory that opens, and fails later."""
+
+    async def opened(self) -> None:
+        """Nothing is wrong yet."""
 
     def __getattr__(self, name: str) -> Any:
         async def fail(*_: object, **__: object) -> None:
@@ -686,6 +689,19 @@ def test_without_memory_the_talk_goes_on_and_the_user_is_told_once() -> None:
         assert answers(sim, "where do i live").endswith("you live in Ulm.")
         assert meant(answers(sim, "no, my name is bob"), "renamed")
         assert sim.failures == []  # a memory in use is not a rule's fault
+
+
+def test_a_memory_that_cannot_be_opened_is_not_reported_again(caplog: pytest.LogCaptureFixture) -> None:
+    """`ontology` reports it."""
+
+    class Unopened(Broken):
+        async def opened(self) -> None:
+            raise PlatformError("the disk is full")
+
+    with agent(None) as sim:
+        sim.put(ontology.memory, Unopened())  # pyright: ignore[reportArgumentType]
+        assert meant(answers(sim, "my name is ada"), "unsaved_name")
+    assert "ravestate.persqa.listen" not in {record.name for record in caplog.records}
 
 
 def test_facts_that_could_not_be_saved_are_saved_later(

@@ -177,12 +177,13 @@ class Console:
 
 def prepare() -> None:
     """Load the library for a terminal. This takes a while, and would block the event loop."""
-    if _is_terminal(sys.stdin, sys.stdout):
+    if is_terminal(sys.stdin, sys.stdout):
         with contextlib.suppress(ImportError):  # the console reports it
             importlib.import_module(".terminal", __package__)
 
 
-def _is_terminal(stdin: TextIO | None, stdout: TextIO | None) -> bool:
+def is_terminal(stdin: TextIO | None, stdout: TextIO | None) -> bool:
+    """Return whether a person types the lines and sees the texts."""
     return stdin is not None and stdout is not None and stdin.isatty() and stdout.isatty()
 
 
@@ -193,7 +194,7 @@ def _screen(
     stdin: TextIO | None,
     stdout: TextIO | None,
 ) -> Screen:
-    if _is_terminal(stdin, stdout):
+    if is_terminal(stdin, stdout):
         try:
             from .terminal import Terminal
         except ImportError as error:

@@ -15,6 +15,8 @@ class Settings(rs.Settings):
     """The text before the line that the user types."""
     history: bool = True
     """Whether typed lines are kept from session to session, in the user's state folder."""
+    plain: bool = False
+    """Whether a terminal is used like a pipe: plain lines, without prompt_toolkit."""
     name: str | None = None
     """The name of the user at the console, if it is known."""
 

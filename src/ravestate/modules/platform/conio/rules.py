@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import sys
 
 import ravestate as rs
 from ravestate.errors import PlatformError
 from ravestate.modules import interloc, rawio
 
-from .console import Console, history_file, prepare
+from .console import Console, history_file, is_terminal, prepare
 from .log_file import log_file, log_to_file
 from .names import module, screen
+from .pipes import Pipes
 
 USER = "conio"
 """The key of the user at the console, among the users present."""
@@ -34,7 +36,10 @@ async def listen(ctx: rs.RuleContext) -> None:
 
     try:
         # Off the loop as well, because it takes long while other threads load models.
-        console = await asyncio.to_thread(Console, prompt=ctx.settings.prompt, history=history, on_key=tell)
+        plain = Pipes(sys.stdin, sys.stdout) if ctx.settings.plain else None
+        console = await asyncio.to_thread(
+            Console, screen=plain, prompt=ctx.settings.prompt, history=history, on_key=tell
+        )
     except PlatformError as error:
         ctx.stop(error)  # otherwise the agent would keep running, and nobody could talk to it
         return
@@ -42,6 +47,8 @@ async def listen(ctx: rs.RuleContext) -> None:
         stack.enter_context(log_to_file(log_file()))
         await stack.enter_async_context(console)
         ctx[screen] = console
+        if is_terminal(sys.stdin, sys.stdout):
+            console.write("Ctrl-D ends the conversation.")
         ctx[interloc.users].add(USER, ctx.settings.name)
         try:
             async for line in console:

@@ -95,8 +95,11 @@ class Router:
             return
         with self._lock:
             if self._learnt is None:
-                with LOADING:
-                    import_module("numpy")  # everything below needs it
+                try:
+                    with LOADING:
+                        import_module("numpy")  # all below needs it
+                except ImportError as error:
+                    raise ModelMissing("agentqa needs numpy: pip install 'ravestate[sentences]'") from error
                 pairs = [(plain(q), topic.name) for topic in self.life.topics.values() for q in topic.questions]
                 pairs += [(plain(q), OTHERS) for q in self.life.others]
                 self._learnt = _learnt(tuple(pairs), self._encoder)

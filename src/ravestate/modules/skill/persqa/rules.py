@@ -94,14 +94,22 @@ async def listen(ctx: rs.RuleContext) -> None:
     if response.errand is not None:
         memory, base = ctx[ontology.memory], response.user
         response = await response.errand(memory)
-        if memory is not None and response.user.talk.trouble not in (
-            "",
-            base.talk.trouble,
-        ):  # otherwise it is in the log already
-            ctx.log.error("%s", response.user.talk.trouble)
+        trouble = response.user.talk.trouble
+        is_new = trouble not in ("", base.talk.trouble)
+        if is_new and memory is not None and await _is_open(memory):  # otherwise the log has it
+            ctx.log.error("%s", trouble)
         ctx.emit(noted, Noted(base, response.user, before.name))
     if response.answer is not None and meaning.aloud:
         ctx.emit(reply, response.answer)
+
+
+async def _is_open(memory: ontology.Memory) -> bool:
+    """Return whether memory could be opened; if not, `ontology` logs why."""
+    try:
+        await memory.opened()
+    except RavestateError:
+        return False
+    return True
 
 
 @module.rule(when=noted.max_age(None).detached(), writes=(talk, who, facts, interloc.users), background=True)
