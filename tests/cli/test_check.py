@@ -1,4 +1,4 @@
-"""``ravestate check``: faults give exit code 1, findings give 0."""
+"""``ravestate check``: faults, and findings that break a rule, give exit code 1; other findings give 0."""
 
 from pathlib import Path
 
@@ -39,6 +39,37 @@ def test_findings_are_printed_and_are_no_faults(folder: Path, capsys: Capture) -
     assert (code, errors) == (0, "")
     assert [line.split(":")[0] for line in lines[:-1]] == ["never-wins", "tie", "unheard"]
     assert lines[-1].endswith("no faults, 3 findings")
+
+
+MISSPELT = """
+    import ravestate as rs
+    from ravestate.modules import rawio
+    module = rs.Module("greeter", requires=[rawio])
+
+    @module.rule(when=rs.startup, writes=rawio.output)
+    async def greet(ctx):
+        ctx[rawio.outptu] = "Hello!"
+"""
+
+
+@pytest.mark.parametrize(
+    ("right", "wrong", "finding"),
+    [
+        ("outptu", "outptu", "greeter.py:6) names rawio.outptu (line 8), which does not exist; did you mean 'output'?"),
+        ("rawio.outptu", "rawio.input", "undeclared: rule greeter:greet"),
+        ('rawio.outptu] = "Hello!"', "rawio.output] = ctx.sleep(1)\n        ctx.sleep(1)", "await: rule greeter:greet"),
+    ],
+)
+def test_findings_that_break_a_rule_give_1(right: str, wrong: str, finding: str, folder: Path, capsys: Capture) -> None:
+    write(folder / "greeter.py", MISSPELT.replace(right, wrong))
+    code, out, errors = call(capsys, "check", "./greeter.py")
+    assert (code, errors) == (1, "")
+    assert finding in out
+    assert out.endswith("no faults, 1 finding (1 breaks a rule when it runs)\n")
+
+
+def test_help_names_the_exit_code(capsys: Capture) -> None:
+    assert "Exit code 1: the agent has faults" in call(capsys, "check", "--help")[1]
 
 
 def test_it_prints_every_fault_at_once(folder: Path, capsys: Capture) -> None:

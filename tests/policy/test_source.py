@@ -3,6 +3,7 @@
 import functools
 import inspect
 from collections.abc import Callable
+from types import ModuleType
 from typing import Any
 
 import pytest
@@ -90,7 +91,7 @@ async def inner(ctx: Any) -> None:
 
 
 async def unknown(ctx: Any) -> None:
-    ctx[nowhere] = ctx[mood.changed.name][face.nothing]  # noqa: F821
+    ctx[mood.changed.name] = ctx[{}.get("mood")][face.nothing]
     ctx.emit([done][0])
     ctx.log[mood] = 1
 
@@ -115,10 +116,57 @@ def test_a_function_without_source_raises_no_alarm(error: type[Exception]) -> No
 
 
 def test_an_import_that_fails_raises_no_alarm() -> None:
+    lazy = ModuleType("lazy")
+
+    def fails(name: str) -> Any:
+        if name == "slot":
+            raise ImportError("a missing package")
+        return ModuleType("other").gone
+
+    lazy.__dict__["__getattr__"] = fails
+
     def broken(ctx: Any) -> None:
-        ctx[rs.nowhere] = ctx[rs.errors.nowhere]  # type: ignore[attr-defined]
+        ctx[lazy.slot] = ctx[lazy.other]
 
     assert acts(broken) == (Acts(), [])
+
+
+def test_names_that_do_not_exist_are_found_with_the_nearest() -> None:
+    """A misspelt slot or signal fails when the rule runs; `check` finds it before."""
+    from ravestate.modules import idle, rawio
+
+    async def work(ctx: Any) -> None:
+        ctx[rawio.outptu] = "x"  # type: ignore[attr-defined]
+        if ctx[moood] and ctx[lit.tru]:  # type: ignore[name-defined] # noqa: F821
+            ctx.emit(idle.borde)  # type: ignore[attr-defined]
+        ctx.payload(rawio.inpt.changed)  # type: ignore[attr-defined]
+        ctx[demo.peple].add("ada", 1)  # type: ignore[attr-defined]
+        ctx.wipe(rs.startpu)  # type: ignore[attr-defined]
+
+    found, faults = acts(work)
+    first = work.__code__.co_firstlineno
+    assert faults == []
+    assert list(found.unknown) == [
+        f"rawio.outptu (line {first + 1}), which does not exist; did you mean 'output'?",
+        f"moood (line {first + 2}), which does not exist; did you mean 'mood'?",
+        f"lit.tru (line {first + 2}), which does not exist; did you mean 'true'?",
+        f"idle.borde (line {first + 3}), which does not exist; did you mean 'bored'?",
+        f"rawio.inpt (line {first + 4}), which does not exist; did you mean 'input'?",
+        f"demo.peple (line {first + 5}), which does not exist",
+        f"rs.startpu (line {first + 6}), which does not exist; did you mean 'startup'?",
+    ]
+
+
+def test_builtins_and_names_bound_in_the_function_exist() -> None:
+    async def work(ctx: Any) -> None:
+        import ravestate.modules.modality.rawio as io
+
+        for slot in (mood, face):
+            ctx[slot] = "x"
+        ctx[print] = [ctx[one] for one in (mood,)]
+        ctx[io.output] = "x"
+
+    assert acts(work)[0].unknown == {}
 
 
 def test_a_closure_without_its_value_yet_raises_no_alarm() -> None:

@@ -1,10 +1,14 @@
 """Every Python block of README.md and docs/ is run; see `snippets.py` for the rules."""
 
+import contextlib
+import inspect
 import sys
 from pathlib import Path
 
 import pytest
 
+import ravestate as rs
+from ravestate.policy.findings import BREAKING
 from repo.snippets import Block, Page, blocks_in
 
 ROOT = Path(__file__).parents[2]
@@ -39,6 +43,18 @@ def test_what_leaves_something_behind_may_be_run_again(file: Path, pages: dict[P
     if page.leavings():
         again = Page(file, page.folder)
         again.run(again.blocks[-1])
+
+
+@pytest.mark.parametrize("file", sorted({block.file for block in BLOCKS}), ids=lambda file: file.name)
+def test_check_finds_no_broken_rule(file: Path, pages: dict[Path, Page]) -> None:
+    page = pages[file]
+    page.run(page.blocks[-1])
+    for module in {
+        v for m in (page.module, *page.files.values()) for v in vars(m).values() if isinstance(v, rs.Module)
+    }:
+        with contextlib.suppress(rs.DeclarationErrors):  # a page may show a fault
+            findings = rs.compile(module).findings(inspect.getsource)
+            assert [str(finding) for finding in findings if finding.kind in BREAKING] == []
 
 
 # ------------------------------------------------------------------------------- the runner itself

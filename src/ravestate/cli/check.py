@@ -13,14 +13,18 @@ from ravestate.cli import agent
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     agent.add_arguments(parser)
+    parser.epilog = (
+        "Exit code 1: the agent has faults, or findings that break a rule when it runs (undeclared, unknown, await)."
+    )
     parser.add_argument("--utilities", action="store_true", help="also list every rule with its utility in nats")
 
 
 def run(options: argparse.Namespace) -> int:
-    """Run the command; return 1 if there are faults."""
+    """Run the command; return 1 if there are faults, or findings that break a rule when it runs."""
     from ravestate.errors import DeclarationError, DeclarationErrors
     from ravestate.modules import BUILT_IN
     from ravestate.policy.compile import compile_policy
+    from ravestate.policy.findings import BREAKING
     from ravestate.settings import load_settings
 
     try:
@@ -46,8 +50,10 @@ def run(options: argparse.Namespace) -> int:
             print(f"{name:{width}}  {policy.utility(name):9.6f} nats")
     sizes = {"rule": len(policy.rules), "signal": len(policy.signals), "slot": len(policy.slots)}
     counts = ", ".join(_count(number, noun) for noun, number in sizes.items())
-    print(f"{counts}: no faults, {_count(len(findings), 'finding')}")
-    return 0
+    breaking = sum(finding.kind in BREAKING for finding in findings)
+    note = f" ({breaking} break{'s' if breaking == 1 else ''} a rule when it runs)" if breaking else ""
+    print(f"{counts}: no faults, {_count(len(findings), 'finding')}{note}")
+    return 1 if breaking else 0
 
 
 def _print(text: str, *, error: bool = False) -> None:

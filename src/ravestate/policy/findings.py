@@ -15,6 +15,9 @@ from ravestate.policy.policy import Policy
 from ravestate.policy.source import Source, acts_of, undeclared
 from ravestate.policy.wording import few
 
+BREAKING = frozenset({"undeclared", "unknown", "await"})
+"""The kinds of findings that break a rule when it runs."""
+
 MAX_PEERS = 64
 """The maximum number of other rules that the search for ties compares with a rule: those declared first.
 
@@ -27,8 +30,8 @@ class Finding:
     """One remark on a policy.
 
     Attributes:
-        kind: ``"undeclared"``, ``"await"``, ``"unreachable"``, ``"unraised"``, ``"loop"``, ``"never-wins"``, ``"tie"``,
-            ``"cooldown"`` or ``"unheard"``.
+        kind: ``"undeclared"``, ``"unknown"``, ``"await"``, ``"unreachable"``, ``"unraised"``, ``"loop"``,
+            ``"never-wins"``, ``"tie"``, ``"cooldown"`` or ``"unheard"``.
         subject: The qualified name of the rule or signal.
         message: The remark, with the text to write instead.
         rules: The listeners of a signal that no rule raises.
@@ -69,6 +72,8 @@ def _in_source(policy: Policy, source: Source) -> Iterator[Finding]:
         where = f"rule {rule.name} ({rule.rule.origin})"
         if faults := list(undeclared(rule, acts)):
             yield Finding("undeclared", rule.name, f"{where} {'; it '.join(faults)}")
+        if acts.unknown:
+            yield Finding("unknown", rule.name, f"{where} names {', and '.join(acts.unknown)}")
         for method, line in islice(acts.forgotten.items(), 1):
             mend = f"write await ctx.{method}(...)" + ("" if rule.rule.is_async else " in an async def")
             yield Finding("await", rule.name, f"{where} calls ctx.{method} in line {line} without effect: {mend}")

@@ -1,8 +1,8 @@
-"""The source of a rule's function: reads, writes and emits that its declaration lacks, and a forgotten ``await``.
+"""The source of a rule's function: acts that its declaration lacks, names that do not exist, a forgotten ``await``.
 
-A name in the source counts only if the function's globals or its closure hold a slot or a signal by that name.
-Everything else, such as names that the function binds itself, is checked when the rule runs (L3). So is a branch on a
-variable of an enclosing function: that function may make several rules with different declarations.
+An act counts only if the function's globals or its closure lead to a slot or a signal. Everything else, such as names that
+the function binds itself, is checked when the rule runs (L3). So is a branch on a variable of an enclosing function: that
+function may make several rules with different declarations.
 """
 
 from __future__ import annotations
@@ -16,12 +16,14 @@ from dataclasses import dataclass, field
 from types import FunctionType, ModuleType
 from typing import Any, cast
 
+from ravestate.declare.module import Module
 from ravestate.declare.signal import Signal
 from ravestate.declare.slot import Slot
 from ravestate.declare.wording import spelt
+from ravestate.errors import nearest
 from ravestate.policy.model import RulePlan
 
-OWNERS: tuple[type[Any], ...] = (ModuleType, Slot)
+OWNERS: tuple[type[Any], ...] = (ModuleType, Module, Slot)
 """Values whose attributes have no side effects, apart from a lazy import."""
 
 Source = Callable[[Any], str]
@@ -38,6 +40,8 @@ class Acts:
     payloads: dict[Signal[Any], int] = field(default_factory=dict[Signal[Any], int])
     forgotten: dict[str, int] = field(default_factory=dict[str, int])
     """Methods of the context that the function calls without ``await``."""
+    unknown: dict[str, int] = field(default_factory=dict[str, int])
+    """Names for a slot or signal that do not exist, each with the nearest name that does."""
 
 
 def acts_of(rule: RulePlan, source: Source) -> Acts:
@@ -51,7 +55,7 @@ def acts_of(rule: RulePlan, source: Source) -> Acts:
         tree = ast.parse(textwrap.dedent(source(function)))
     if tree is None or not tree.body or not isinstance(tree.body[0], (ast.FunctionDef, ast.AsyncFunctionDef)):
         return acts
-    reader = _Reader(function, tree.body[0])
+    reader = _Reader(function, tree.body[0], acts.unknown)
     for node in sorted(
         _own(tree.body[0], reader.variables),
         key=lambda node: (getattr(node, "lineno", 0), getattr(node, "col_offset", 0)),
@@ -86,13 +90,17 @@ def undeclared(rule: RulePlan, acts: Acts) -> Iterator[str]:
 class _Reader:
     """Resolves the names of one function."""
 
-    def __init__(self, function: FunctionType, tree: ast.FunctionDef | ast.AsyncFunctionDef) -> None:
+    def __init__(
+        self, function: FunctionType, tree: ast.FunctionDef | ast.AsyncFunctionDef, unknown: dict[str, int]
+    ) -> None:
         arguments = [*tree.args.posonlyargs, *tree.args.args]
         self._first = function.__code__.co_firstlineno - 1
         self._names = dict(function.__globals__)
         for name, cell in zip(function.__code__.co_freevars, function.__closure__ or (), strict=True):
             with contextlib.suppress(ValueError):  # a cell that is still empty
                 self._names[name] = cell.cell_contents
+        self._unknown = unknown
+        self._known = {*self._names, *function.__builtins__, *function.__code__.co_freevars}
         self._context = arguments[0].arg if arguments else ""
         self.variables = {
             name
@@ -105,6 +113,7 @@ class _Reader:
                 if name == self._context and node is not arguments[0]:
                     self._context = ""  # another value has taken its name
                 self._names.pop(name, None)
+                self._known.add(name)
 
     def note(self, node: ast.AST, acts: Acts) -> None:
         """Record the act at a node of the function, if there is one."""
@@ -125,6 +134,8 @@ class _Reader:
                 args=[signal, *_],
             ):
                 self._enter(signal, Signal, acts.emits if method == "emit" else acts.payloads)
+            case ast.Call(func=ast.Attribute(value=ast.Name(id=self._context), attr="wipe"), args=[signal, *_]):
+                self._resolved(signal)
             case ast.Expr(
                 value=ast.Call(func=ast.Attribute(value=ast.Name(id=self._context), attr="sleep" | "quiet" as method))
             ):
@@ -140,16 +151,26 @@ class _Reader:
     def _resolved(self, expression: ast.expr) -> object:
         match expression:
             case ast.Name(id=name):
+                if name not in self._known:
+                    self._miss(expression, nearest(name, self._names))
                 return self._names.get(name)
             case ast.Attribute(value=inner, attr=name):
                 owner = self._resolved(inner)
                 if not isinstance(owner, OWNERS):
                     return inspect.getattr_static(owner, name, None)
                 with contextlib.suppress(Exception):  # a lazy import may fail
-                    return getattr(owner, name)
+                    try:
+                        return getattr(owner, name)
+                    except AttributeError as error:
+                        if error.name in (None, name):  # else the fault lies within a lazy import
+                            self._miss(expression, nearest(name, (n for n in dir(owner) if n[0] != "_")))
                 return None
             case _:
                 return None
+
+    def _miss(self, expression: ast.expr, hint: str) -> None:
+        line = self._first + expression.lineno
+        self._unknown.setdefault(f"{ast.unparse(expression)} (line {line}), which does not exist{hint}", line)
 
 
 def _own(root: ast.AST, variables: Collection[str]) -> Iterator[ast.AST]:

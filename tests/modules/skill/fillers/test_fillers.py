@@ -1,7 +1,9 @@
 """fillers fills a pause, and takes no other rule's turn."""
 
+import pytest
+
 import ravestate as rs
-from ravestate.modules import fillers, idle, rawio
+from ravestate.modules import fillers, idle, rawio, verbaliser
 from ravestate.testing import simulate
 
 slow = rs.Module("slow", requires=[rawio])
@@ -89,6 +91,7 @@ SORRY = (
     "Sorry, I lost that. Could you say it again?",
     "Sorry, I have no answer to that. Could you put it in other words?",
 )
+LATE = ("This takes longer than usual. I am still thinking…", "Sorry, I am still working on it…")
 model = rs.Module("model", requires=[rawio])
 
 
@@ -103,7 +106,8 @@ async def think(ctx: rs.RuleContext) -> rs.Resign | None:
     return None
 
 
-def test_an_answer_that_takes_too_long_is_lost_in_words() -> None:
+def test_an_answer_that_takes_too_long_is_not_denied() -> None:
+    """The agent says that it is still at work; "I have no answer" would be wrong, as the answer follows."""
     with simulate(fillers, model, settings={"fillers": {"answer_within": 15.0}}) as sim:
         sim.say("60")
         sim.advance(2.1)
@@ -111,9 +115,18 @@ def test_an_answer_that_takes_too_long_is_lost_in_words() -> None:
         sim.advance(14.8)
         assert len(sim.said) == 1
         sim.advance(0.2)
-        assert sim.said[1] in SORRY
+        assert sim.said[1] in LATE
         sim.advance(100.0)
         assert sim.said[2:] == ["thought"]
+
+
+def test_a_late_answer_that_never_comes_is_lost_in_words() -> None:
+    with simulate(fillers, model) as sim:
+        sim.say("-60")
+        sim.advance(100.0)
+        assert sim.said[1] in LATE
+        assert sim.said[2] in SORRY
+        assert len(sim.said) == 3
 
 
 def test_if_every_rule_resigns_after_a_filler_the_agent_says_so() -> None:
@@ -150,7 +163,7 @@ def test_words_soon_after_a_filler_are_not_left_in_silence() -> None:
         sim.say("999")
         sim.advance(100.0)
         assert len(sim.said) == 2
-        assert sim.said[1] in SORRY
+        assert sim.said[1] in LATE
 
 
 def test_words_soon_after_a_filler_whose_answer_comes_are_not_lost() -> None:
@@ -175,3 +188,80 @@ def test_an_empty_answer_is_none() -> None:
         sim.advance(100.0)
         assert sim.said[1] == " "
         assert sim.said[2] in SORRY
+
+
+def reader(seconds: float, *, worded: bool = False, detached: bool = False) -> rs.Module:
+    """Return a module that reads the words for some seconds; a rule resigns, and then another answers."""
+    module = rs.Module("reader", requires=[rawio, verbaliser])
+    read = module.signal("read")
+
+    @module.rule(when=rawio.input.changed, emits=read)
+    async def understand(ctx: rs.RuleContext) -> None:
+        await ctx.sleep(seconds)
+        ctx.emit(read)
+
+    @module.rule(when=read, writes=rawio.output, weight=1.5)
+    async def resign(ctx: rs.RuleContext) -> rs.Resign:
+        await ctx.sleep(seconds)
+        return rs.Resign("no idea")
+
+    @module.rule(
+        when=read.detached() if detached else read,
+        writes=verbaliser.intent if worded else rawio.output,
+        detached=detached,
+    )
+    async def answer(ctx: rs.RuleContext) -> None:
+        await ctx.sleep(seconds)
+        if worded:
+            ctx[verbaliser.intent] = verbaliser.Intent("answer", phrases={"en": ["answer"]})
+        else:
+            ctx[rawio.output] = "answer"
+
+    return module
+
+
+@pytest.mark.parametrize("seconds", [1.5, 4.0, 25.0])
+@pytest.mark.parametrize("worded", [False, True])
+@pytest.mark.parametrize("detached", [False, True])
+def test_no_apology_comes_before_an_answer(seconds: float, worded: bool, detached: bool) -> None:
+    """A slow reading, a rule that resigns first, an intent that is worded later: the answer may still come."""
+    with simulate(fillers, reader(seconds, worded=worded, detached=detached)) as sim:
+        sim.say("What?")
+        sim.advance(200.0)
+        assert [text for text in sim.said if text in ("answer", *SORRY)] == ["answer"]
+
+
+both = rs.Module("both", requires=[rawio])
+
+
+@both.rule(when=rawio.input.changed, writes=rawio.output)
+async def ponder(ctx: rs.RuleContext) -> rs.Resign | None:
+    """Answer after the seconds that are said, whatever else is said; resign if they are negative."""
+    seconds = float(ctx.payload(rawio.input.changed))
+    await ctx.sleep(abs(seconds))
+    if seconds < 0:
+        return rs.Resign("no idea")
+    ctx[rawio.output] = f"after {seconds:g}"
+    return None
+
+
+@pytest.mark.parametrize("first", ["10", "30"])
+def test_the_answer_to_the_first_words_is_none_to_the_second(first: str) -> None:
+    """The filler for the second words still owes an answer, and no rule has one."""
+    with simulate(fillers, both) as sim:
+        sim.say(first)
+        sim.advance(5.9)
+        sim.say("-40")
+        sim.advance(100.0)
+        assert f"after {first}" in sim.said
+        assert sim.said[-1] in SORRY
+        assert len([text for text in sim.said if text in SORRY]) == 1
+
+
+def test_no_apology_for_words_that_others_replace() -> None:
+    with simulate(fillers, both) as sim:
+        sim.say("-10")
+        sim.advance(3.0)
+        sim.say("1")
+        sim.advance(100.0)
+        assert sim.said[1:] == ["after 1"]

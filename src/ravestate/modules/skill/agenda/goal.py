@@ -105,6 +105,7 @@ def goal(
     origin = f"{frame.f_code.co_filename}:{frame.f_lineno}"
     known = len(module.rules)
     texts = (say,) if isinstance(say, str) else say if callable(say) or say is None else tuple(say)
+    said: rs.Slot[Any] = rawio.output if intent is None else verbaliser.intent
     done_words, refused_words = _expression(whole, "done", done), _expression(whole, "refused", refused)
 
     def is_over(entry: Any) -> bool:
@@ -141,10 +142,7 @@ def goal(
         words = await _worded(ctx, texts, state.tries) if intent is None else ""
         over = done is None
         ctx[goals].add(whole, GoalState("done" if over else "pursued", state.tries + 1, ctx.now))
-        if intent is None:
-            ctx[rawio.output] = words
-        else:
-            ctx[verbaliser.intent] = intent
+        ctx[said] = words if intent is None else intent
         return rs.Retire("it is said") if over else None
 
     def end(ctx: rs.RuleContext, status: Status, *, by_words: bool) -> rs.Resign | None:

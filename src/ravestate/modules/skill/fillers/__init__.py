@@ -3,6 +3,6 @@
 from __future__ import annotations
 
 from . import rules as rules
-from .names import Settings, filled, lost, module, promised
+from .names import Settings, filled, late, lost, module, promised
 
-__all__ = ["Settings", "filled", "lost", "module", "promised"]
+__all__ = ["Settings", "filled", "late", "lost", "module", "promised"]

@@ -16,7 +16,7 @@ class Settings(rs.Settings):
     unanswered_after: Annotated[float, Field(gt=0)] = 2.0
     """Seconds from the user's words until an answer counts as slow, if nothing has been said."""
     answer_within: Annotated[float, Field(gt=0)] = 20.0
-    """Seconds from a filler until the agent says that it has lost the answer."""
+    """Seconds from a filler until the agent says that the answer takes longer."""
 
 
 module = rs.Module("fillers", requires=[rawio, idle, verbaliser], settings=Settings)
@@ -27,5 +27,8 @@ filled: rs.Slot[float | None] = module.slot("filled", None)
 promised = module.flag("promised")
 """Whether the agent still owes an answer after a filler."""
 
+late = module.signal("late")
+"""An answer after a filler takes too long; it may still come."""
+
 lost = module.signal("lost")
-"""The answer after a filler does not come: it takes too long, or every rule that could answer has resigned."""
+"""An answer after a filler does not come: no rule is left that runs or waits."""

@@ -6,10 +6,12 @@ import ravestate as rs
 from ravestate.modules import idle, rawio, verbaliser
 from ravestate.modules.meta.verbaliser.intents import Intent
 
-from .names import filled, lost, module, promised
+from .names import filled, late, lost, module, promised
 
 ENOUGH = 5.0
 """Seconds until another filler may follow."""
+REMEMBERED = 120.0
+"""Seconds from the user's words until their answer counts as one to the newest words."""
 
 
 @module.rule(
@@ -51,30 +53,40 @@ async def fill_the_pause(ctx: rs.RuleContext) -> rs.Resign | None:
 
 
 @module.rule(
-    when=rawio.output.changed.max_age(None).detached()
+    when=rawio.input.changed.max_age(REMEMBERED) & rawio.output.changed.max_age(None)  # one causal group: its answer
+    | rawio.output.changed.max_age(None)
     | rawio.input.changed.detached()
     | rawio.speaking.true.detached(),
-    reads=(rawio.output, rawio.speaking, verbaliser.last, promised),
+    reads=(rawio.input, rawio.output, rawio.speaking, verbaliser.last, promised),
     writes=promised,
+    patience=0.0,
     detached=True,
     background=True,
 )
 async def notice_answer(ctx: rs.RuleContext) -> rs.Resign | None:
     """Note that the answer has come or has begun, or that the user says something else."""
     said = ctx.payload(rawio.output.changed)
-    if said is not None and said == ctx[verbaliser.last].get("filler"):
+    if said is not None and said in (ctx[verbaliser.last].get("filler"), ctx[verbaliser.last].get("late")):
         return rs.Resign("this is the filler")
     if said is not None and not said.strip():
         return rs.Resign("nobody hears an empty answer")
+    if said is not None and ctx.payload(rawio.input.changed) not in (None, ctx[rawio.input]):
+        return rs.Resign("this answers what the user said before")
     ctx[promised] = False
     return None
 
 
-@module.rule(when=promised.true.max_age(None), emits=lost, until=promised.false, detached=True, background=True)
+@module.rule(when=promised.true.max_age(None), emits=late, until=promised.false, detached=True, background=True)
 async def notice_late_answer(ctx: rs.RuleContext) -> None:
-    """Raise `lost` when the answer takes too long."""
+    """Raise `late` when the answer takes too long."""
     await ctx.sleep(ctx.settings.answer_within)
-    ctx.emit(lost)
+    ctx.emit(late)
+
+
+@module.rule(when=late.max_age(0.0) & promised.holds(bool) & rawio.speaking.holds(_silent), writes=verbaliser.intent)
+async def admit_delay(ctx: rs.RuleContext) -> None:
+    """Say that the answer is still being made: a rule that may yet answer runs or waits."""
+    ctx[verbaliser.intent] = Intent("late", package=__package__)
 
 
 @module.rule(when=rs.activity.false.max_age(None) & promised.holds(bool), emits=lost, detached=True, background=True)
