@@ -2,6 +2,7 @@
 
 import logging
 import os
+import select
 import subprocess
 import sys
 from pathlib import Path
@@ -45,10 +46,16 @@ def talk(folder: Path, *, redirected: bool) -> tuple[bytes, str]:
     os.close(theirs)
     seen = b""
     errors = b""
+    typed = b""
+    again = 6  # keys typed while the prompt is suspended may be lost, as on any terminal
 
     def read() -> bool:
         """Act as the terminal; return whether the other side is still there."""
-        nonlocal seen
+        nonlocal seen, again
+        while not select.select([ours], [], [], 5.0)[0]:
+            again -= 1
+            assert again and run.poll() is None, seen
+            os.write(ours, typed)
         try:
             received = os.read(ours, 4096)
         except OSError:  # on a Unix terminal the end of the other side is an error of reading
@@ -61,6 +68,7 @@ def talk(folder: Path, *, redirected: bool) -> tuple[bytes, str]:
         for text, keys in ((b"\x1b[?2004h", b"hello\r"), (b"HELLO", b"again\r"), (b"AGAIN", b"\x04")):
             while text not in seen:
                 assert read(), seen
+            typed = keys
             os.write(ours, keys)
         while read():
             pass
