@@ -46,7 +46,7 @@ def said(exception: BaseException) -> str:
     """Return the message of an exception. If its own code fails, return its type."""
     try:
         return str(exception)
-    except Exception:  # as above
+    except Exception:  # its `__str__` may raise anything, and the message must still appear
         return shown(exception)
 
 

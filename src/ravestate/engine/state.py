@@ -165,7 +165,7 @@ class State:
         """Return the same for a debugger: a predicate that raises counts as false, and is not reported."""
         try:
             return bool(guard.predicate(self.read(slot.index)))
-        except Exception:  # not our code, as in `_test`
+        except Exception:  # a predicate of the designer may raise anything; the guard then counts as false
             return False
 
     def _test(self, predicate: Any, value: Any, rule: RulePlan) -> bool:
