@@ -61,7 +61,7 @@ class EmbeddedStore:
         """
         try:
             with LOADING:
-                import ladybug  # noqa: F401  # pyright: ignore[reportUnusedImport]  # loaded here; the methods import it again
+                import ladybug  # noqa: F401  # pyright: ignore[reportUnusedImport]  # only loads it, with the lock; `opening` uses it
         except ImportError as error:
             raise PlatformError("ontology needs ladybug: pip install 'ravestate[ontology]'") from error
         self._path = path
