@@ -61,7 +61,7 @@ class EmbeddedStore:
         """
         try:
             with LOADING:
-                import ladybug  # noqa: F401  # pyright: ignore[reportUnusedImport]  # only loads it, with the lock; `opening` uses it
+                import ladybug  # noqa: F401  # pyright: ignore[reportUnusedImport]  # only loads it, with the lock; `database` uses it
         except ImportError as error:
             raise PlatformError("ontology needs ladybug: pip install 'ravestate[ontology]'") from error
         self._path = path
