@@ -61,6 +61,6 @@ def test_ctrl_c_ends_it_in_order(folder: Path) -> None:
     assert (process.returncode, out, complaints(errors)) == (0, "farewell\n", "")
 
 
-def test_an_unfit_setting_is_wrong_use(capsys: pytest.CaptureFixture[str]) -> None:
+def test_an_unfit_setting_is_a_fault_of_the_agent(capsys: pytest.CaptureFixture[str]) -> None:
     code, _, errors = call(capsys, "run", "idle", "--set", "idle.bored_after=abc")
-    assert code == 2 and errors.startswith("ravestate run: setting idle.bored_after = 'abc': ")
+    assert code == 1 and "setting idle.bored_after = 'abc': " in errors

@@ -138,16 +138,18 @@ class AgentSpec:
     def check(self) -> None:
         """Raise all faults at once, together with those of the settings.
 
+        Settings alone raise nothing here: compiling the modules finds their faults.
+
         Raises:
             UsageError: There are faults.
         """
-        if self.faults or self.settings:
-            try:
-                load_settings(_with_required(self.modules), self.settings)
-            except DeclarationErrors as faults:
-                self.faults += map(str, faults.exceptions)
-        if self.faults:
-            raise UsageError("\n".join(self.faults))
+        if not self.faults:
+            return
+        try:
+            load_settings(_with_required(self.modules), self.settings)
+        except DeclarationErrors as faults:
+            self.faults += map(str, faults.exceptions)
+        raise UsageError("\n".join(self.faults))
 
     def _take_settings(self, settings: Any, wrong: list[str]) -> None:
         if not isinstance(settings, Mapping):
