@@ -104,7 +104,7 @@ def leave_out_absent(agent: AgentSpec, command: str) -> None:
 
 def shown(kind: Literal["data", "state"], *parts: str) -> str:
     """Return the path of a file of the user, with ``~`` for their home."""
-    from ravestate.modules._folders import user_folder
+    from ravestate.folders import user_folder
 
     try:
         path, home = user_folder(kind).joinpath(*parts), Path.home()

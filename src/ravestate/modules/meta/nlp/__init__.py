@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from ravestate.language.entity import Entity
+
 from . import rules
 from .answer import YesNo
-from .entity import Entity
 from .names import (
     Settings,
     about_agent,

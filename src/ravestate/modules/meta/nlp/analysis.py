@@ -6,8 +6,9 @@ import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+from ravestate.language.entity import Entity
+
 from .answer import YesNo, yesno_of
-from .entity import Entity
 from .game import wants_to_play
 from .greeting import says_bye, says_hi
 from .inquiry import question_of

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import ravestate as rs
+from ravestate.language.entity import Entity
 from ravestate.modules import interloc, rawio
 
 from .answer import YesNo
 from .context_lock import ContextLock
-from .entity import Entity
 from .question_word import QuestionWord
 from .triple import Triple
 

@@ -7,8 +7,8 @@ import contextlib
 
 import ravestate as rs
 from ravestate.errors import PlatformError
+from ravestate.language.heap import give_back
 from ravestate.modules import interloc, rawio
-from ravestate.modules._room import give_back
 
 from .analysis import analyse
 from .names import (
