@@ -88,7 +88,7 @@ class Matcher:
         pairs += [(plain(text), NONE) for text in none]
         self.least = least
         self._pairs = tuple(dict(pairs).items())
-        self._exact = dict(self._pairs)
+        self.exact = dict(self._pairs)
         self._encoder = encoder or shared_encoder()
         self._lock = threading.Lock()
         self._learnt: _Learnt | None = None
@@ -129,7 +129,7 @@ class Matcher:
         text = plain(sentence)
         if self._learnt is not None:
             return self._learnt.ranked(text, sentence)
-        name = self._exact.get(text)
+        name = self.exact.get(text)
         return [] if name is None else [Match(1.0, text, 1.0, name=name, text=sentence)]
 
 
