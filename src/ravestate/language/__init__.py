@@ -16,7 +16,7 @@ from __future__ import annotations
 from .encoder import Encoder
 from .entity import Entity
 from .examples import Examples, read_examples
-from .matcher import Match, Matcher
+from .matcher import Match, Matcher, bundled_matcher
 from .normal import Normal, normalise, plain
 from .reranker import Reranker
 from .sentences import sentences
@@ -29,6 +29,7 @@ __all__ = [
     "Matcher",
     "Normal",
     "Reranker",
+    "bundled_matcher",
     "normalise",
     "plain",
     "read_examples",

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING
 from .bundled import ModelMissing
 from .encoder import Encoder
 from .entity import Entity
+from .examples import bundled
 from .loading import LOADING
 from .normal import plain
 from .spelling import Spelling
@@ -116,8 +117,12 @@ class Matcher:
 
     def match(self, sentence: str) -> Match | None:
         """Return the class that a sentence belongs to; None if it belongs to none."""
-        best = self.ranked(sentence)[:1]
-        return best[0] if best and best[0].name != NONE and best[0].score >= self.least else None
+        return self.match_all([sentence])[0]
+
+    def match_all(self, sentences: Sequence[str]) -> list[Match | None]:
+        """Return the class of each sentence; None for one that belongs to none."""
+        bests = (ranked[0] if ranked else None for ranked in map(self.ranked, sentences))
+        return [best if best and best.name != NONE and best.score >= self.least else None for best in bests]
 
     def ranked(self, sentence: str) -> list[Match]:
         """Return all classes, best first; the class named by an empty string stands for none of them."""
@@ -132,6 +137,13 @@ class Matcher:
 def shared_encoder() -> Encoder:
     """Return the bundled encoder, one for all matchers."""
     return Encoder()
+
+
+@cache
+def bundled_matcher(name: str) -> Matcher:
+    """Return the matcher of a file of examples in this room, ``acts`` or ``feelings``; one for all contexts."""
+    examples = bundled(name)
+    return Matcher(examples.classes, (*examples.none, *bundled("none").none))
 
 
 class _Learnt:
