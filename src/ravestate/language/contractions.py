@@ -181,15 +181,47 @@ WRITTEN: dict[str, str] = _table(
 )
 """Short forms and common slips of one or two words, in lower case, as written English has them. There is no second list."""
 
-_AFTER_BE = "a an the so not very too my our really just been going me".split()
+_AFTER_BE = ["a", "an", "the", "so", "not", "very", "too", "my", "our", "really", "just", "been", "going", "me"]
 for _short, _long in {"its": "it's", "ur": "you're", "your": "you're", "theyre": "they're", "their": "they're"}.items():
     _following = [word for word in _AFTER_BE if _long == "it's" or word not in ("been", "my", "our")]
     WRITTEN.update({f"{_short} {word}": f"{_long} {word}" for word in _following})
 WRITTEN["ur welcome"] = WRITTEN["your welcome"] = "you're welcome"
-WRITTEN.update({f"id {verb}": f"I'd {verb}" for verb in "like love rather prefer say".split()})
-WRITTEN.update({f"ill {verb}": f"I'll {verb}" for verb in "be go have see do try take tell call come get never".split()})
-WRITTEN.update({f"2 {word}": f"to {word}" for word in "go be do meet see have eat get play talk know you me the my bed school work town".split()})
-WRITTEN.update({"2 u": "to you", "4 u": "for you"} | {f"4 {word}": f"for {word}" for word in "you me my the a".split()})
+WRITTEN.update({f"id {verb}": f"I'd {verb}" for verb in ["like", "love", "rather", "prefer", "say"]})
+WRITTEN.update(
+    {
+        f"ill {verb}": f"I'll {verb}"
+        for verb in ["be", "go", "have", "see", "do", "try", "take", "tell", "call", "come", "get", "never"]
+    }
+)
+WRITTEN.update(
+    {
+        f"2 {word}": f"to {word}"
+        for word in [
+            "go",
+            "be",
+            "do",
+            "meet",
+            "see",
+            "have",
+            "eat",
+            "get",
+            "play",
+            "talk",
+            "know",
+            "you",
+            "me",
+            "the",
+            "my",
+            "bed",
+            "school",
+            "work",
+            "town",
+        ]
+    }
+)
+WRITTEN.update(
+    {"2 u": "to you", "4 u": "for you"} | {f"4 {word}": f"for {word}" for word in ["you", "me", "my", "the", "a"]}
+)
 
 CONTRACTIONS: dict[str, str] = {
     **{

@@ -11,7 +11,7 @@ import logging
 import threading
 from functools import lru_cache
 from importlib.util import find_spec
-from itertools import groupby
+from itertools import groupby, pairwise
 from pathlib import Path
 from typing import Any
 
@@ -20,10 +20,40 @@ FREQUENT = 5000
 SHORTEST = 4
 """The letters of an unknown word from which it may be a slip."""
 
-_BRITISH = (("our", "or"), ("tre", "ter"), ("ll", "l"), ("is", "iz"), ("ys", "yz"), ("gue", "g"), ("ce", "se"), ("que", "ck"))
+_BRITISH = (
+    ("our", "or"),
+    ("tre", "ter"),
+    ("ll", "l"),
+    ("is", "iz"),
+    ("ys", "yz"),
+    ("gue", "g"),
+    ("ce", "se"),
+    ("que", "ck"),
+)
 """Endings of British spelling, which is no slip, with the American ones."""
-_NO_NAMES = frozenset("grey armour tyre honorable mister independence reunion reconstruction que les del mon dem herr san".split())
+_NO_NAMES = frozenset(
+    [
+        "grey",
+        "armour",
+        "tyre",
+        "honorable",
+        "mister",
+        "independence",
+        "reunion",
+        "reconstruction",
+        "que",
+        "les",
+        "del",
+        "mon",
+        "dem",
+        "herr",
+        "san",
+    ]
+)
 """Entries of the dictionary with a capital that are more often ordinary words."""
+
+_BRITISH_WORDS = frozenset(["maths", "programme", "programmes", "dreamt"])
+"""Words of British English that neither package has."""
 
 _log = logging.getLogger("ravestate.language")
 _lock = threading.Lock()
@@ -69,7 +99,7 @@ class Lexicon:
 
     def known(self, word: str) -> bool:
         """Return whether `word`, in lower case, is a word or a name."""
-        return word in self._counts or word in self._ordinary or word in self._names
+        return word in self._counts or word in self._ordinary or word in self._names or word in _BRITISH_WORDS
 
     def name(self, word: str) -> str:
         """Return `word` with the capital of a name if it is one; otherwise as it is."""
@@ -82,7 +112,9 @@ class Lexicon:
             return word
         shapes = [""]
         for letter, length in runs[:24]:
-            shapes = [shape + letter * times for shape in shapes for times in ((1, 2) if length > 2 else (length,))][:64]
+            shapes = [shape + letter * times for shape in shapes for times in ((1, 2) if length > 2 else (length,))][
+                :64
+            ]
         return max(shapes, key=self.count) if any(map(self.count, shapes)) else word
 
     def _correction(self, word: str) -> str:
@@ -106,7 +138,7 @@ class Lexicon:
         if len(word) == len(other):
             return len(word) > SHORTEST or sorted(word) == sorted(other)
         if len(word) > len(other):  # a letter too many: a short word only has one that is doubled
-            return len(word) > SHORTEST + 1 or any(a == b for a, b in zip(word, word[1:], strict=False))
+            return len(word) > SHORTEST + 1 or any(a == b for a, b in pairwise(word))
         return True
 
 
@@ -124,6 +156,9 @@ def _dictionary() -> tuple[frozenset[str], dict[str, str]]:
         if len(entry) > 2 and entry.isalpha() and entry[0].isupper() and entry[1:].islower()
     }
     # "Weeks" and "Jobs" are names too, but more often the plurals of ordinary words.
-    names = {low: name for low, name in names.items() if low not in _NO_NAMES | ordinary and low.removesuffix("s") not in ordinary}
-    names |= {name.lower(): name for name in (*calendar.day_name, *calendar.month_name) if len(name) > 3 and name != "March"}
+    others = _NO_NAMES | ordinary
+    names = {low: name for low, name in names.items() if low not in others and low.removesuffix("s") not in ordinary}
+    names |= {
+        name.lower(): name for name in (*calendar.day_name, *calendar.month_name) if len(name) > 3 and name != "March"
+    }
     return ordinary, names

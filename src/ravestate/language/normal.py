@@ -47,7 +47,7 @@ class Normal:
         for found in _WORD.finditer(self.text):
             start, end = self.span(*found.span())
             written = self.original[start:end]
-            same = written.lower() == found[0].lower() and len(written) == len(found[0])
+            same = written.lower().replace("’", "'") == found[0].lower()
             parts += [self.text[last : found.start()], written if same else found[0]]
             last = found.end()
         return "".join([*parts, self.text[last:]])
@@ -64,6 +64,8 @@ class _Piece:
     """The punctuation and white space before the word."""
     first: bool = False
     """Whether the word begins a sentence."""
+    code: bool = False
+    """Whether it is part of an address or a formula, which stays as it is."""
 
     @property
     def low(self) -> str:
@@ -71,26 +73,139 @@ class _Piece:
 
 
 _WORD = re.compile(r"[^\W_]+(?:['’-][^\W_]+)*")
-_STOP = re.compile(r"[.!?…\n]")
+_STOP = re.compile(r"[.!?…]+[\"')]*\s|\n")
+_PASSES = 4
+_CHUNK = re.compile(r"\S+")
+_CODE = re.compile(r"[@/\\_=&#<>{}|~^*+%]|www\.")
 _CROWDED = re.compile(r"[,;:!?]")
 _NO_WORD = re.compile(r"\d|^[^a-z]", re.IGNORECASE)
 
-_DOMAINS = frozenset("com org net info gov uk us de at eu html txt".split())
+_DOMAINS = frozenset(["com", "org", "net", "info", "gov", "uk", "us", "de", "at", "eu", "html", "txt"])
 
-_WH = frozenset("what who where when why how which whose whom what's who's where's when's why's how's".split())
-_BE = frozenset("is are was were am isn't aren't wasn't weren't".split())
-_AUX = _BE | frozenset(
-    "do does did don't doesn't didn't can could will would shall should may might have has had can't couldn't won't wouldn't "
-    "shouldn't haven't hasn't hadn't".split()
+_WH = frozenset(
+    [
+        "what",
+        "who",
+        "where",
+        "when",
+        "why",
+        "how",
+        "which",
+        "whose",
+        "whom",
+        "what's",
+        "who's",
+        "where's",
+        "when's",
+        "why's",
+        "how's",
+    ]
 )
-_AMBIGUOUS = frozenset("do don't have may might".split())
+_BE = frozenset(["is", "are", "was", "were", "am", "isn't", "aren't", "wasn't", "weren't"])
+_AUX = _BE | frozenset(
+    [
+        "do",
+        "does",
+        "did",
+        "don't",
+        "doesn't",
+        "didn't",
+        "can",
+        "could",
+        "will",
+        "would",
+        "shall",
+        "should",
+        "may",
+        "might",
+        "have",
+        "has",
+        "had",
+        "can't",
+        "couldn't",
+        "won't",
+        "wouldn't",
+        "shouldn't",
+        "haven't",
+        "hasn't",
+        "hadn't",
+    ]
+)
+_AMBIGUOUS = frozenset(["do", "don't", "have", "may", "might"])
 """Auxiliaries that also begin requests and statements: *do it*, *have a nice day*."""
-_SUBJECT = frozenset("i you he she it we they".split())
-_STARTER = _SUBJECT | _WH | _AUX | frozenset("there that this my your let's i'm you're it's that's he's she's we're they're".split())
-_INTERJECTION = frozenset("hi hello hey yes yeah yep no nope ok okay thanks sorry wow oh well bye".split())
-_GOVERNS = frozenset("know tell me ask wonder see say guess remember forget forgot about of and or but so nor neither as than that if".split())
+_SUBJECT = frozenset(["i", "you", "he", "she", "it", "we", "they"])
+_STARTER = (
+    _SUBJECT
+    | _WH
+    | _AUX
+    | frozenset(
+        [
+            "there",
+            "that",
+            "this",
+            "my",
+            "your",
+            "let's",
+            "i'm",
+            "you're",
+            "it's",
+            "that's",
+            "he's",
+            "she's",
+            "we're",
+            "they're",
+        ]
+    )
+)
+_INTERJECTION = frozenset(
+    [
+        "hi",
+        "hello",
+        "hey",
+        "yes",
+        "yeah",
+        "yep",
+        "no",
+        "nope",
+        "ok",
+        "okay",
+        "thanks",
+        "sorry",
+        "wow",
+        "oh",
+        "well",
+        "bye",
+    ]
+)
+_GOVERNS = frozenset(
+    [
+        "know",
+        "tell",
+        "me",
+        "ask",
+        "wonder",
+        "see",
+        "say",
+        "guess",
+        "remember",
+        "forget",
+        "forgot",
+        "about",
+        "of",
+        "and",
+        "or",
+        "but",
+        "so",
+        "nor",
+        "neither",
+        "as",
+        "than",
+        "that",
+        "if",
+    ]
+)
 """Words that a clause may follow without a full stop."""
-_NAMING = frozenset("called named name is am i'm from in".split())
+_NAMING = frozenset(["called", "named", "name", "is", "am", "i'm", "from", "in"])
 """Words that a name may follow: an unknown word after one of them is hardly a slip."""
 
 
@@ -107,9 +222,19 @@ def normalise(text: str, names: Collection[str] = ()) -> Normal:
         >>> normalise("u cant do that can u").text
         "You can't do that can you."
     """
+    known = {name.lower(): name for name in names}
+    normal = _once(text, known)
+    for _ in range(_PASSES):  # a word that one pass has written out may let the next one see a sentence's end
+        again = _once(normal.text, known)
+        if again.text == normal.text:
+            break
+        normal = Normal(again.text, text, tuple(normal.origin[place] for place in again.origin))
+    return normal
+
+
+def _once(text: str, known: dict[str, str]) -> Normal:
     lexicon = loaded_lexicon()
     pieces = _pieces(text, lexicon)
-    known = {name.lower(): name for name in names}
     if _shouted(pieces):
         for piece in pieces:
             piece.text = piece.low
@@ -133,12 +258,15 @@ def plain(text: str) -> str:
 def _pieces(text: str, lexicon: Lexicon | None) -> list[_Piece]:
     """Return the words of a text with what stands before them; the last piece is empty."""
     pieces: list[_Piece] = []
+    codes = [found.span() for found in _CHUNK.finditer(text) if _CODE.search(found[0])]
     last = 0
     for found in _WORD.finditer(text):
+        code = any(start <= found.start() < end for start, end in codes)
         gap = text[last : found.start()]
-        if pieces and _crowded(pieces[-1].text, gap, found[0], lexicon):
+        if pieces and not code and _crowded(pieces[-1].text, gap, found[0], lexicon):
             gap += " "
-        pieces.append(_Piece(found.start(), found.end(), found[0].replace("’", "'"), gap, not pieces or bool(_STOP.search(gap))))
+        first = not pieces or bool(_STOP.search(gap))
+        pieces.append(_Piece(found.start(), found.end(), found[0].replace("’", "'"), gap, first, code))
         last = found.end()
     pieces.append(_Piece(len(text), len(text), "", text[last:]))
     return pieces
@@ -170,7 +298,9 @@ def _mended(pieces: Sequence[_Piece], known: dict[str, str], lexicon: Lexicon | 
         index += 1
         before = mended[-1].low if mended else ""
         pair = f"{piece.low} {after.low}" if after and after.gap.isspace() else ""
-        if pair in WRITTEN and not (piece.text.isdigit() and before in _AT):
+        if piece.code:
+            pass
+        elif pair in WRITTEN and not (piece.text.isdigit() and before in _AT):
             assert after is not None
             piece.text, piece.end = _cased(WRITTEN[pair], piece), after.end
             index += 1
@@ -184,9 +314,9 @@ def _mended(pieces: Sequence[_Piece], known: dict[str, str], lexicon: Lexicon | 
     return mended
 
 
-_AT = frozenset("at by until till before after from since around about is and".split())
+_AT = frozenset(["at", "by", "until", "till", "before", "after", "from", "since", "around", "about", "is", "and"])
 """Words after which a figure is a time or a number."""
-_OFTEN_RIGHT = frozenset("lets its cant wont k".split())
+_OFTEN_RIGHT = frozenset(["lets", "its", "cant", "wont", "k"])
 
 
 def _stands_for(piece: _Piece, following: Sequence[_Piece], before: str, lexicon: Lexicon | None) -> bool:
@@ -241,7 +371,7 @@ def _punctuate(pieces: Sequence[_Piece]) -> None:
             elif _asks_anew(pieces, start, index):
                 _end(pieces[start:index], piece, ".")
                 piece.first, start = True, index
-        if piece.first and piece.text[:1].islower():
+        if piece.first and piece.text[:1].islower() and not piece.code:
             piece.text = piece.text[0].upper() + piece.text[1:]
 
 
@@ -279,7 +409,12 @@ def _asks(words: list[str]) -> bool:
 def _asks_anew(pieces: Sequence[_Piece], start: int, index: int) -> bool:
     """Return whether a question without any mark begins at `index`, after a statement."""
     before, words = [piece.low for piece in pieces[start:index]], [piece.low for piece in pieces[index : index + 4]]
-    if len(before) < 2 or before[-1] in _GOVERNS or before[-1] in _AUX or any(word in _WH or word in _AUX - _BE for word in before[:1]):
+    if (
+        len(before) < 2
+        or before[-1] in _GOVERNS
+        or before[-1] in _AUX
+        or any(word in _WH or word in _AUX - _BE for word in before[:1])
+    ):
         return False
     if any(word in _WH for word in before):
         return False

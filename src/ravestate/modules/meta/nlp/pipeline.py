@@ -107,8 +107,8 @@ class Pipeline:
         """Parse texts in a batch; if that fails, one by one."""
         try:
             with self._nlp.memory_zone():  # otherwise spaCy keeps each new word for ever
-                # Preprocessing keeps all positions.
-                texts = [preprocess(order.normal.text) for order in orders]
+                # Preprocessing keeps all positions. An added full stop helps the pipelines less than it misleads them.
+                texts = [preprocess(_without_added_stop(order.normal)) for order in orders]
                 docs: Any = self._nlp.pipe(texts) if len(texts) > 1 else [self._nlp(texts[0])]
                 found = [_found(order.normal, doc) for order, doc in zip(orders, docs, strict=True)]
         except Exception as error:
@@ -170,6 +170,12 @@ def _found(normal: Normal, doc: Any) -> tuple[Tree, tuple[Entity, ...]]:
         start, end = normal.span(found.start_char, found.end_char)
         entities.append(Entity(typed[found.start_char : found.end_char], found.label_, start, end))
     return Tree(typed, repaired(words)), tuple(entities)
+
+
+def _without_added_stop(normal: Normal) -> str:
+    """Return the text without a full stop at the end that the original lacks."""
+    end = len(normal.text)
+    return normal.text[:-1] if normal.text.endswith(".") and normal.adds(end - 1, end) else normal.text
 
 
 def _as_written(text: str, numbers: dict[int, int], token: Any) -> Word:
