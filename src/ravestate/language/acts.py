@@ -21,12 +21,40 @@ ADDRESS_WORDS = 3
 """The number of other words that make no more of a greeting: "hello my dear robot"."""
 
 _PAUSE = re.compile(r"[,;:()–—…]+|\s-+\s")
-_SUBJECTS = frozenset("i you he she it we they".split())
-_LINKS = frozenset("and then now so but".split())
-_GOES_ON = frozenset("is was are were be means of for to that which by in on at s".split())
+_SUBJECTS = frozenset(["i", "you", "he", "she", "it", "we", "they"])
+_LINKS = frozenset(["and", "then", "now", "so", "but"])
+_GOES_ON = frozenset(
+    ["is", "was", "are", "were", "be", "means", "of", "for", "to", "that", "which", "by", "in", "on", "at", "s"]
+)
 """Words that make a formula the beginning of a sentence: "thanks to the rain", "hello is a song"."""
 _ASKS = frozenset(
-    "what who whom whose which where when why how do does did are am have has had can could will would shall should may might".split()
+    [
+        "what",
+        "who",
+        "whom",
+        "whose",
+        "which",
+        "where",
+        "when",
+        "why",
+        "how",
+        "do",
+        "does",
+        "did",
+        "are",
+        "am",
+        "have",
+        "has",
+        "had",
+        "can",
+        "could",
+        "will",
+        "would",
+        "shall",
+        "should",
+        "may",
+        "might",
+    ]
 )
 
 
@@ -75,7 +103,9 @@ class _Sentence:
         whole = matcher.match(sentence)
         if whole is not None and not formulas:
             self.others = []
-        found = ([whole] if whole is not None else []) + [m for m in formulas.values() if whole is None or m.name != whole.name]
+        found = ([whole] if whole is not None else []) + [
+            m for m in formulas.values() if whole is None or m.name != whole.name
+        ]
         if len(found) > 1 or self.others:
             found = [match for match in found if match.name != "acknowledgement" or match is whole]
         self.acts: Sequence[Match] = found
@@ -100,6 +130,8 @@ def _formula(examples: Mapping[str, str], words: list[str]) -> int:
     if words[0] in _SUBJECTS:
         return 0
     for size in range(min(FORMULA_WORDS, len(words)), 0, -1):
-        if examples.get(" ".join(words[:size])) in FORMULAS and not (words[size : size + 1] and words[size] in _GOES_ON):
+        if examples.get(" ".join(words[:size])) in FORMULAS and not (
+            words[size : size + 1] and words[size] in _GOES_ON
+        ):
             return size
     return 0

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Sequence
 
 from .matcher import Match, bundled_matcher
 from .normal import plain
@@ -16,12 +16,38 @@ _CLAUSE_END = re.compile(
     re.IGNORECASE,
 )
 _CONDITION = re.compile(r"\b(?:if|unless|whether)\b", re.IGNORECASE)
-_DENIALS = frozenset("not never no nobody none nothing nowhere neither nor hardly barely scarcely cannot without".split())
+_DENIALS = frozenset(
+    [
+        "not",
+        "never",
+        "no",
+        "nobody",
+        "none",
+        "nothing",
+        "nowhere",
+        "neither",
+        "nor",
+        "hardly",
+        "barely",
+        "scarcely",
+        "cannot",
+        "without",
+    ]
+)
 _ASKED = frozenset({"affection", "astonishing"})
 """Feelings that a question may show: "can I hug you?", "really?"."""
 
+_ENDINGS = (
+    (r"(?:'s| is| was)(?= (?:so|very|really|such|quite|a|an|the|not)\b)", "you are"),
+    (r" (?:is|was)\b", "you are"),
+    (r" has\b", "you have"),
+    (r"'s\b", "your"),
+    (r"\b", "you"),
+)
+"""The ends of the agent's name, and the words for both."""
 
-def feelings(sentences: Sequence[str], names: Iterable[str] = ()) -> dict[str, Match]:
+
+def feelings(sentences: Sequence[str], names: Collection[str] = ()) -> dict[str, Match]:
     """Return the feelings in the sentences of an utterance, each with its best clause.
 
     Args:
@@ -30,9 +56,8 @@ def feelings(sentences: Sequence[str], names: Iterable[str] = ()) -> dict[str, M
     """
     matcher = bundled_matcher("feelings")
     found: dict[str, Match] = {}
-    names = tuple(names)
     for sentence in sentences:
-        sentence = _addressed(sentence[:LONGEST], names)
+        sentence = addressed(sentence[:LONGEST], names)
         clauses = [] if _CONDITION.search(sentence) else [c for c in _CLAUSE_END.split(sentence) if plain(c)]
         for match in matcher.match_all([sentence, *(clauses if len(clauses) > 1 else ())]):
             if match is None or (match.name in found and found[match.name].score >= match.score):
@@ -47,11 +72,14 @@ def _denied(text: str) -> bool:
     return not _DENIALS.isdisjoint(plain(text).split())
 
 
-def _addressed(sentence: str, names: Sequence[str]) -> str:
-    """Return the sentence with "you" in place of the agent's names and "this robot"."""
+def addressed(sentence: str, names: Collection[str]) -> str:
+    """Return the sentence with "you" in place of the agent's names and "this robot".
+
+    Example:
+        >>> addressed("Rosie's voice is nice, and this robot is clever", ["Rosie"])
+        'your voice is nice, and you are clever'
+    """
     agent = "|".join(["th(?:is|at) (?:little |cute )?robot", *(re.escape(name) for name in names if name)])
-    if not re.search(rf"\b(?:{agent})\b", sentence, re.IGNORECASE):
-        return sentence
-    for name, you in ((r"'s (?=(?:so|very|really|such|quite|a|an|the|not)\b)", "you are "), (r" (?:is|was)\b", "you are"), (r"'s\b", "your"), (r"\b", "you")):
-        sentence = re.sub(rf"\b(?:{agent}){name}", you, sentence, flags=re.IGNORECASE)
+    for ending, instead in _ENDINGS:
+        sentence = re.sub(rf"(?<!\w)(?:{agent}){ending}", instead, sentence, flags=re.IGNORECASE)
     return sentence

@@ -127,9 +127,22 @@ class Matcher:
         return self.match_all([sentence])[0]
 
     def match_all(self, sentences: Sequence[str]) -> list[Match | None]:
-        """Return the class of each sentence; None for one that belongs to none. The encoder runs once for all."""
-        bests = (ranked[0] if ranked else None for ranked in self.ranked_all(sentences, most=1))
-        return [best if best and best.name != NONE and best.score >= self.least else None for best in bests]
+        """Return the class of each sentence; None for one that belongs to none. The encoder runs once for all.
+
+        An example is recognised word for word, without the encoder.
+        """
+        found = [self.match_exactly(sentence) for sentence in sentences]
+        if self._learnt is not None:
+            unknown = [place for place, match in enumerate(found) if match is None]
+            for place, ranked in zip(unknown, self.ranked_all([sentences[place] for place in unknown], 1), strict=True):
+                found[place] = ranked[0]
+        return [best if best and best.name != NONE and best.score >= self.least else None for best in found]
+
+    def match_exactly(self, sentence: str) -> Match | None:
+        """Return the class of an example, word for word; its name is empty for an example of no class."""
+        text = plain(sentence)
+        name = self.exact.get(text)
+        return None if name is None else Match(1.0, text, 1.0, name=name, text=sentence)
 
     def ranked(self, sentence: str) -> list[Match]:
         """Return all classes, best first; the class named by an empty string stands for none of them."""
@@ -139,8 +152,7 @@ class Matcher:
         """Return the classes of each sentence, best first; `most` of them."""
         if self._learnt is not None:
             return self._learnt.ranked(sentences, most)
-        exact = ((self.exact.get(text := plain(sentence)), text, sentence) for sentence in sentences)
-        return [[] if name is None else [Match(1.0, text, 1.0, name=name, text=given)] for name, text, given in exact]
+        return [[match] if match else [] for match in map(self.match_exactly, sentences)]
 
 
 @cache
