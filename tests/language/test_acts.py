@@ -72,3 +72,14 @@ def test_an_act_stands_alone_beside_courtesies_and_a_few_words(act: str, sentenc
 def test_any_text_is_taken(text: str) -> None:
     acts([text])
     only("farewell", [text])
+
+
+def test_a_sentence_is_matched_once_for_all_skills(monkeypatch: pytest.MonkeyPatch) -> None:
+    matcher = Matcher(EXAMPLES)
+    matcher.load()
+    runs: list[int] = []
+    ranked = matcher.ranked_all
+    monkeypatch.setattr(matcher, "ranked_all", lambda texts, most=None: runs.append(len(texts)) or ranked(texts, most))
+    first = matcher.match_all(["Be quiet!", "Could you be quiet?"])
+    assert matcher.match_all(["Could you be quiet?", "Be quiet!"]) == first[::-1]
+    assert runs == [1, 0]

@@ -39,6 +39,8 @@ COMMON = 0.1
 RIDGE = 0.1
 """The ridge penalty: it limits the weight of a single example."""
 NONE = ""
+REMEMBERED = 256
+"""The latest sentences whose classes a matcher keeps: all skills ask for those of one utterance."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,6 +101,8 @@ class Matcher:
         self._encoder = encoder or shared_encoder()
         self._lock = threading.Lock()
         self._learnt: _Learnt | None = None
+        self._matching = threading.Lock()
+        self._latest: dict[str, Match | None] = {}
 
     @property
     def loaded(self) -> bool:
@@ -131,12 +135,22 @@ class Matcher:
 
         An example is recognised word for word, without the encoder.
         """
-        found = [self.match_exactly(sentence) for sentence in sentences]
-        if self._learnt is not None:
-            unknown = [place for place, match in enumerate(found) if match is None]
-            for place, ranked in zip(unknown, self.ranked_all([sentences[place] for place in unknown], 1), strict=True):
-                found[place] = ranked[0]
+        if self._learnt is None:
+            found = list(map(self.match_exactly, sentences))
+        else:
+            with self._matching:  # several skills ask for the same sentences at the same time
+                found = self._remembered(sentences)
         return [best if best and best.name != NONE and best.score >= self.least else None for best in found]
+
+    def _remembered(self, sentences: Sequence[str]) -> list[Match | None]:
+        new = {sentence: self.match_exactly(sentence) for sentence in sentences if sentence not in self._latest}
+        unknown = [sentence for sentence, match in new.items() if match is None]
+        new.update(zip(unknown, (ranked[0] for ranked in self.ranked_all(unknown, most=1)), strict=True))
+        self._latest.update(new)
+        found = [self._latest[sentence] for sentence in sentences]
+        for sentence in list(self._latest)[:-REMEMBERED]:
+            del self._latest[sentence]
+        return found
 
     def match_exactly(self, sentence: str) -> Match | None:
         """Return the class of an example, word for word; its name is empty for an example of no class."""
