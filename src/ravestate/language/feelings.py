@@ -7,33 +7,19 @@ from collections.abc import Collection, Sequence
 
 from .matcher import Match, bundled_matcher
 from .normal import plain
+from .shape import shape
 
 LONGEST = 1000
 """The characters of a sentence that count."""
+
+SHORTEST = 3
+"""The minimum number of words of a clause that shows a feeling of its own: "brilliant, it is broken" is no praise."""
 
 _CLAUSE_END = re.compile(
     r"[,;:()–—…]+|\s-+\s|\b(?:but|although|though|however|because|while|yet|and (?=(?:i|you|we|he|she|it|they|my|your|our)\b))",
     re.IGNORECASE,
 )
 _CONDITION = re.compile(r"\b(?:if|unless|whether)\b", re.IGNORECASE)
-_DENIALS = frozenset(
-    [
-        "not",
-        "never",
-        "no",
-        "nobody",
-        "none",
-        "nothing",
-        "nowhere",
-        "neither",
-        "nor",
-        "hardly",
-        "barely",
-        "scarcely",
-        "cannot",
-        "without",
-    ]
-)
 _ASKED = frozenset({"affection", "astonishing"})
 """Feelings that a question may show: "can I hug you?", "really?"."""
 
@@ -58,18 +44,26 @@ def feelings(sentences: Sequence[str], names: Collection[str] = ()) -> dict[str,
     found: dict[str, Match] = {}
     for sentence in sentences:
         sentence = addressed(sentence[:LONGEST], names)
-        clauses = [] if _CONDITION.search(sentence) else [c for c in _CLAUSE_END.split(sentence) if plain(c)]
-        for match in matcher.match_all([sentence, *(clauses if len(clauses) > 1 else ())]):
-            if match is None or (match.name in found and found[match.name].score >= match.score):
+        whole = matcher.match_all([sentence])
+        clauses = [] if _CONDITION.search(sentence) else _clauses(sentence, alone=whole == [None])
+        for match in (*whole, *matcher.match_all(clauses)):
+            if match is None or (match.name not in _ASKED and _asks(sentence)):
                 continue
-            if _denied(match.text) != _denied(match.example) or ("?" in sentence and match.name not in _ASKED):
-                continue
-            found[match.name] = match
+            if match.name not in found or found[match.name].score < match.score:
+                found[match.name] = match
     return found
 
 
-def _denied(text: str) -> bool:
-    return not _DENIALS.isdisjoint(plain(text).split())
+def _clauses(sentence: str, alone: bool) -> list[str]:
+    """Return the clauses of a compound sentence; only the longer ones if the sentence shows no feeling as a whole."""
+    clauses = [clause for clause in _CLAUSE_END.split(sentence) if plain(clause)]
+    least = SHORTEST if alone else 1
+    return [clause for clause in clauses if len(clause.split()) >= least] if len(clauses) > 1 else []
+
+
+def _asks(sentence: str) -> bool:
+    """Return whether a sentence asks for yes or no. The examples decide about those with a question word."""
+    return "?" in sentence and shape(plain(sentence))[3] < 2
 
 
 def addressed(sentence: str, names: Collection[str]) -> str:
