@@ -29,7 +29,7 @@ FRAME = 0.05
 """Seconds between two frames of records."""
 
 SHARE = 0.015
-"""The share of the loop's time for one inspector: after a slow frame comes a long pause."""
+"""The share of the loop's time that one inspector may use. So a long pause follows a slow frame."""
 
 OF_SPARE = 0.5
 """The share of the process's idle time that an inspector may use as well."""
@@ -51,7 +51,7 @@ LISTED = 1.0
 """Seconds between two checks of the list of conversations."""
 
 LIST = 100
-"""The maximum number of conversations in the list: the newest, and the shown one."""
+"""The maximum number of conversations in the list: the newest ones, and the one that the page shows."""
 
 WORDS = 48
 """The maximum number of characters of a visitor's last words in the list."""
@@ -218,9 +218,9 @@ class Inspector:
     # ------------------------------------------------------------------------------------ to the page
 
     async def _write(self, source: Source, session: Session | None, seen: int, title: str) -> None:
-        """Send records, some twenty times a second at most, and answers."""
+        """Send records, at most some twenty times a second, and answers."""
         idle = IdleShare()
-        sent: bool | None = None  # whether the clock was stopped, as the page knows it
+        sent: bool | None = None  # whether the clock was stopped in the last frame
         listed: protocol.Conversations | None = None
         now, looked = asyncio.get_running_loop().time, -LISTED
         while True:
@@ -277,7 +277,7 @@ class Inspector:
         return session.agent if self._title is None else self._title
 
     def _conversations(self, own: Session) -> protocol.Conversations:
-        """Return the newest conversations and the shown one."""
+        """Return the newest conversations, and the one that the page shows."""
         running = list(self._sessions)
         listed = running[-LIST:]
         if own in running[:-LIST]:

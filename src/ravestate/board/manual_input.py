@@ -95,7 +95,7 @@ def _is_expressible(takes: Any) -> bool:
 
 
 def _checkable(kind: Any) -> Any:
-    """Return the types for an `isinstance` check; None: there is none.
+    """Return the types for an `isinstance` check, or None if no such check is possible.
 
     ``list[int]`` checks for a list, and not for its items.
     """

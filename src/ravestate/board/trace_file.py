@@ -157,7 +157,7 @@ def _parsed(text: str) -> Any:
 
 def _main() -> int:
     """Read a trace from the standard input, and write it to the standard output for `read_apart`."""
-    from ravestate.board import trace_file  # import it by name, because the pickled records need that
+    from ravestate.board import trace_file  # not `__main__`: pickled records name their module
 
     try:
         read = trace_file.read_trace(sys.stdin.buffer.read())

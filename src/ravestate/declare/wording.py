@@ -51,7 +51,7 @@ def said(exception: BaseException) -> str:
 
 
 def cut(text: str, length: int = LENGTH) -> str:
-    """Return a text cut to `length` characters; a text that was cut ends in three dots.
+    """Return the text, shortened to `length` characters if it is longer; a shortened text ends in three dots.
 
     Example:
         >>> cut("a long story", 9), cut("short", 9)

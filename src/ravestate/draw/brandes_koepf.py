@@ -39,7 +39,8 @@ def brandes_koepf(graph: LayeredGraph) -> list[float]:
 
 
 def _forbidden(graph: LayeredGraph) -> set[int]:
-    """Return the segments that cross an inner segment, between two dummies: type 1 conflicts, not to be aligned."""
+    """Return the segments that cross an inner segment (one between two dummies). These type 1 conflicts must not be
+    aligned."""
     place = places(graph.order)
     by_layer: list[list[tuple[int, int, int, bool]]] = [[] for _ in graph.order]
     for segment in range(len(graph.segments)):
@@ -65,7 +66,8 @@ def _aligned(graph: LayeredGraph, crossed: set[int], from_left: bool, downwards:
     if not downwards:
         order = [layer[::-1] for layer in order]
     place = places(order)
-    # For each vertex: (place of the neighbour, neighbour, how far below the vertex an alignment puts it, segment).
+    # For each vertex: (place of the neighbour, neighbour, offset below the neighbour at which alignment puts the
+    # vertex, segment).
     towards: list[list[tuple[int, int, float, int]]] = [[] for _ in range(count)]
     for segment, (low, high) in enumerate(graph.segments):
         p, q = graph.ports[low], graph.ports[high]

@@ -21,8 +21,8 @@ class Group:
         interested: The waiting activations that ask again when something ends in the group.
         pressed: The stand-by rivals under pressure (numbers of clauses), and the end of their patience (seconds).
         eliminated: The stand-by rivals whose patience has run out.
-        answers: The rule that first finished on each slot, and the number of its run. Kept for the trace, and only
-            while there is a tracer.
+        answers: The rule that first finished on each slot, and the number of its run. The engine notes them for the
+            trace, while there is a tracer.
     """
 
     __slots__ = ("answers", "eliminated", "id", "interested", "into", "members", "pressed", "taken")

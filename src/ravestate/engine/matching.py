@@ -17,7 +17,7 @@ from ravestate.policy.model import Need, SignalPlan
 
 
 class Matching(ConflictSets):
-    """The conflict sets, and the births, groups and offers of spikes."""
+    """The layer of the engine that creates spikes, groups them, and offers them to activations."""
 
     def _parents(self, run: Activation | None) -> tuple[Spike, ...]:
         """Return the parents of the spikes that a run raises; none for a detached rule or from outside (L19)."""
@@ -198,7 +198,7 @@ class Matching(ConflictSets):
             self._cancel(watch.run, "interrupted")
 
     def _cancel(self, run: Activation, reason: CancelReason) -> None:
-        """Ask for the end of a run."""
+        """Cancel a run, and have the runtime stop its function."""
         run.step(CANCEL)
         run.told = reason
         run.deadline = NEVER

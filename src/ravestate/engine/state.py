@@ -61,9 +61,9 @@ class State:
         """Ready activations that were refused consent."""
         self.alternatives: dict[Activation, tuple[tuple[Clause, ...], int, int]] = {}
         """Activations with a queue of alternatives (``conflict_sets.py``): the clauses of the conflict set, how many of
-        them have an activation, and the number before the first of these."""
+        them have an activation, and the number that precedes the first activation's."""
         self.hoping: dict[Activation, None] = {}
-        """Waiting activations whose rival may yet be helped by a live rule of another causal group."""
+        """Waiting activations with a rival that a live rule of another causal group may yet help."""
         self.running: dict[int, Activation] = {}
         """Activations whose function runs, by the number of the run."""
         self.retired: set[int] = set()
@@ -142,7 +142,8 @@ class State:
         return next((spike for spike in self.live.get(need.signal.index, ()) if self._fits(need, spike)), None)
 
     def _fits(self, need: Need, spike: Spike) -> bool:
-        """Return whether a live spike may meet a need: young enough, not given up, not consumed, of a fitting payload."""
+        """Return whether a live spike may meet a need: it is young enough, not given up and not consumed, and its
+        payload fits."""
         rule = need.clause.rule
         if spike.born + need.max_age <= self.now and need.max_age:
             return False
@@ -162,7 +163,7 @@ class State:
         return self._test(guard.predicate, self.read(slot.index), rule)
 
     def opens(self, slot: SlotPlan, guard: Holds) -> bool:
-        """Return the same for a debugger: a predicate that raises counts as false, and is not reported."""
+        """Return the result of `holds` for a debugger: a predicate that raises counts as false, but is not reported."""
         try:
             return bool(guard.predicate(self.read(slot.index)))
         except Exception:  # a predicate of the designer may raise anything; the guard then counts as false

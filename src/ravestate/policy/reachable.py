@@ -7,7 +7,7 @@ from ravestate.policy.wording import few
 
 
 def check_reachable(causes: Causes, faults: list[str]) -> None:
-    """Refuse rules that wait for their own effects, directly or not, with no way in from outside.
+    """Add a fault for each rule that waits for its own effects, directly or not, and that no input can start.
 
     Two cases lead to findings instead: slots, because code outside may write them, and detached effects, because they
     make loops on purpose.

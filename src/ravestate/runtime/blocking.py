@@ -1,4 +1,4 @@
-"""Warnings of rules that block the loop."""
+"""Warnings about rules that block the event loop."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ class StepTimer:
         return now
 
     def end(self, rule: Rule[Any, Any], began: float) -> None:
-        """Warn if the step that began then has blocked the loop."""
+        """Warn if the step that began at `began` has blocked the loop."""
         took = perf_counter() - began
         if took > BLOCKING:
             seconds, manner = self._judge(took)
