@@ -41,8 +41,7 @@ BACKLOG = 20_000
 """The maximum number of past records that a new inspector gets."""
 
 LAG = 25_000
-"""The maximum number of records that an inspector may lag behind. If it lags further, the server skips to the
-present."""
+"""The maximum number of records that an inspector may lag behind. Beyond it, the server skips to the present."""
 
 BURST, SPEED = 60, 30.0
 """The rate limit: the size of a burst, and commands a second after that."""

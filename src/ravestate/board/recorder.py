@@ -7,8 +7,7 @@ Making records is expensive for a busy agent, so a rate limit applies: a burst, 
 process is idle. Beyond the limit, a recorder stops listening for a moment, and the engine makes no records. A `Gap` says
 how many spikes the recorder missed.
 
-All recorders of an agent share one limit on their records. Beyond it, the recorders with the most records are cut to
-the same length.
+All recorders of an agent share one limit. Beyond it, the recorders with the most records are cut to the same length.
 """
 
 from __future__ import annotations

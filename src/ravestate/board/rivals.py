@@ -55,8 +55,7 @@ class Rivals:
         return " (equal utility, declared earlier)" if abs(nats) <= 1e-8 else ""
 
     def answerer(self, rule: RuleView, lost: GaveUp | Passed) -> tuple[str, str]:
-        """Return the name of the rule that answered a lost spike, and its path, which includes the rule that raised its
-        input."""
+        """Return the rule that answered a lost spike, and its path, which includes the rule that raised its input."""
         by, run = (lost.by, lost.run) if lost.by else self._answered(rule, lost.time)
         before = self._history.before(run)
         return by, f"{before} → {by}" if before else by

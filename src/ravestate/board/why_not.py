@@ -249,7 +249,7 @@ class _Inquiry:
     # ------------------------------------------------------------------------------------ missing signals
 
     def missing(self, rule: RuleView, attempt: Attempt | None) -> tuple[Missing, ...]:
-        """Return the signals that a rule lacked in the clause it tried; if it tried none, the signals of all its
+        """Return the signals that a rule lacked in the clause it tried; if it tried none, the signals of all
         clauses."""
         if attempt is not None:
             names = dict.fromkeys(attempt.lacks)

@@ -117,8 +117,7 @@ def number(value: object, what: str, where: str) -> Number:
 
 
 def several(values: Any, kind: type[T], what: str, where: str, home: str) -> tuple[T, ...]:
-    """Return one slot or signal, or an iterable of them, as a tuple without duplicates. The arguments are those of
-    `condition`."""
+    """Turn a slot or signal, or several, into a tuple without duplicates. For the arguments, see `condition`."""
     if isinstance(values, kind):
         return (values,)
     try:

@@ -120,8 +120,7 @@ class Module:
             name: Its name within the module.
             default: The value before the first write. Each context starts with a copy of its own.
             type: The value's type, e.g. ``str`` or ``str | Path``. Writing a value of another type fails; None is
-                allowed if it is the default. Values of a type that ``isinstance`` cannot check are accepted as they
-                are.
+                allowed if it is the default. Types that ``isinstance`` cannot check are not enforced.
             options: See `SlotOptions`.
         """
         qualified = self._qualified("slot", name, options)
@@ -131,7 +130,7 @@ class Module:
 
     @keywords(*SlotOptions.__annotations__)
     def flag(self, name: str, default: bool = False, **options: Unpack[SlotOptions]) -> Flag:
-        """Declare a boolean slot; its signals are ``.changed``, ``.true``, ``.false``. The arguments are those of
+        """Declare a boolean slot with the signals ``.changed``, ``.true``, ``.false``. For the arguments, see
         `slot`."""
         flag = Flag(self._qualified("flag", name, options), default, origin=place_of_call(), **options)
         self.slots.append(flag)
@@ -139,8 +138,8 @@ class Module:
 
     @keywords(*SignalOptions.__annotations__)
     def collection(self, name: str, **options: Unpack[SignalOptions]) -> Collection[Any]:
-        """Declare a collection of keyed items; its signals are ``.added``, ``.removed``, ``.changed``. The arguments
-        are those of `slot`."""
+        """Declare keyed items with the signals ``.added``, ``.removed``, ``.changed``. For the arguments, see
+        `slot`."""
         qualified = self._qualified("collection", name, options)
         collection: Collection[Any] = Collection(qualified, origin=place_of_call(), **options)
         self.slots.append(collection)
@@ -179,7 +178,7 @@ class Module:
             emits: The signal or signals that it may emit.
             weight: Factor that multiplies the utility (L9), above 0.
             cooldown: Seconds over which the utility recovers from 0 after a run (L9).
-            patience: Seconds that the rule has to become ready while others wait for it (L16); by default the context's
+            patience: Seconds that the rule has to become ready while others wait (L16); by default the context's
                 patience.
             until: A condition that interrupts a run (L21).
             timeout: Seconds that a run may take (L18); no limit by default.

@@ -116,8 +116,7 @@ class Slot(Generic[T]):
 
 
 def checkable(kind: Any) -> Any:
-    """Return a type for `isinstance`, or None for a type that `isinstance` cannot check. A float slot takes integers
-    too."""
+    """Return a type for `isinstance`; None if `isinstance` cannot check it. A float slot takes integers too."""
     if kind is float:
         kind = int | float
     try:

@@ -14,7 +14,7 @@ from collections.abc import Sequence
 from ravestate.policy.components import components
 
 STRONG = 1 << 20
-"""The weight of a strong edge. It is reversed only if the weak edges alone do not break the cycle."""
+"""The weight of a strong edge. The layout reverses it only if reversing weak edges alone cannot break the cycle."""
 
 
 def feedback_arcs(count: int, edges: Sequence[tuple[int, int, int]]) -> list[bool]:
@@ -32,7 +32,7 @@ def feedback_arcs(count: int, edges: Sequence[tuple[int, int, int]]) -> list[boo
 
 
 def topological(after: Sequence[Sequence[int]]) -> list[int]:
-    """Return the vertices of a graph in topological order, without those on a cycle or behind one.
+    """Return the vertices of a graph in topological order, without the vertices on a cycle or behind a cycle.
 
     Args:
         after: The vertices to which the arcs of each vertex lead.
@@ -86,8 +86,7 @@ _LAST = (0, 2)
 
 
 def _urgency(out: int, into: int) -> tuple[int, int]:
-    """Return the sort key of a vertex: sinks, sources, sinks by strong edges, sources by strong edges, then the
-    rest."""
+    """Return the sort key of a vertex: sinks, sources, sinks and then sources by strong edges, then the rest."""
     if out == 0:
         return (0, 0)
     if into == 0:

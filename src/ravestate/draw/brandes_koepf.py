@@ -1,8 +1,8 @@
 """Vertical coordinates by Brandes and Köpf (2002): no overlaps, and straight long edges.
 
 Each vertex is aligned with its median neighbours in four ways: from the left or the right, upwards or downwards. Each
-alignment is packed tightly. Each vertex takes the average median of its four places. The alignment is between ports rather
-than middles, so that a line between two ports is straight.
+alignment is packed tightly. Each vertex gets the average of the two middle values of its four places. The alignment is
+between ports rather than middles, so that a line between two ports is straight.
 """
 
 from __future__ import annotations
@@ -39,8 +39,7 @@ def brandes_koepf(graph: LayeredGraph) -> list[float]:
 
 
 def _forbidden(graph: LayeredGraph) -> set[int]:
-    """Return the segments that cross an inner segment (one between two dummies). These type 1 conflicts must not be
-    aligned."""
+    """Return the segments that cross one between two dummies. These type 1 conflicts must not be aligned."""
     place = places(graph.order)
     by_layer: list[list[tuple[int, int, int, bool]]] = [[] for _ in graph.order]
     for segment in range(len(graph.segments)):

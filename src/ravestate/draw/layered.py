@@ -55,7 +55,7 @@ class LayeredGraph:
     height: list[float] = field(default_factory=list[float])
     ports: list[Port] = field(default_factory=list[Port])
     segments: list[tuple[int, int]] = field(default_factory=list[tuple[int, int]])
-    """Pairs of ports: one on the right of a vertex, one on the left of a vertex one layer on."""
+    """Pairs of ports: one on the right of a vertex, one on the left of a vertex in the next layer."""
     chains: list[Chain] = field(default_factory=list[Chain])
     labels: list[int | None] = field(default_factory=list[int | None])
     """For each link the vertex of its label, or ``None``."""
@@ -89,7 +89,7 @@ def proper_layering(ranks: Sequence[int], sizes: Sequence[tuple[float, float]], 
     for link in links:
         share_low = from_low[_low(link)] >= from_high[_high(link)]
         if link.label is not None or link.kind not in _SOLID:
-            # The label is near the arrow's head, on its own line. Dashes keep step only from the start of the line.
+            # The label is near the arrow's head, on its own line. Overlapping dashes match only from a common start.
             share_low = not link.is_reversed
         builder.link(link, ranks[link.low], ranks[link.high], share_low)
     graph.order = [[] for _ in range(max(graph.layer, default=-1) + 1)]

@@ -32,9 +32,9 @@ Size = tuple[float, float]
 """Width and height in pixels."""
 
 _GAP = 32.0  # pixels between layers with straight lines
-_TURN = 2.0  # pixels for each port whose lines may turn there, on average
+_TURN = 2.0  # average pixels that each port adds to a gap, for the turns of its lines
 _BETWEEN = 36.0  # pixels between components
-_ASPECT = 1.6  # wished width : height of packed components
+_ASPECT = 1.6  # desired width : height of packed components
 
 _STRENGTH: dict[EdgeKind, int] = {
     "writes": 3 * STRONG,
@@ -56,7 +56,7 @@ class Box:
     height: float
 
     def moved(self, x: float, y: float) -> Box:
-        """Return the same box further right and further down."""
+        """Return the box, moved right by `x` and down by `y`."""
         return Box(round(self.x + x, 2), round(self.y + y, 2), self.width, self.height)
 
 
@@ -113,7 +113,7 @@ class _Component:
 
 
 def _components(diagram: Diagram) -> list[tuple[list[str], list[int]]]:
-    """Return the nodes and edges of each connected component, in the order of first nodes."""
+    """Return the nodes and edges of each connected component, in the order of their first nodes."""
     index = {node.id: place for place, node in enumerate(diagram.nodes)}
     ends = [(index[edge.source], index[edge.target]) for edge in diagram.edges]
     near: list[list[int]] = [[] for _ in diagram.nodes]

@@ -31,7 +31,7 @@ _WORDS: dict[EdgeKind, str] = {
 """Words on the line: Mermaid has too few arrows to tell these kinds apart without colour."""
 
 _MOST_EDGES = 500
-_PLAIN = " _:,×≥≤–…"  # beside letters and digits
+_PLAIN = " _:,×≥≤–…"  # characters that need no escape, besides letters and digits
 
 
 def mermaid(diagram: Diagram) -> str:

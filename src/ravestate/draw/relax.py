@@ -1,8 +1,8 @@
 """Coordinates that keep lines short: each layer in turn moves as near as possible to its neighbours.
 
 Within one layer, the best coordinates under minimum distances are a weighted isotonic regression, solved by pooling
-adjacent violators. Forward and backward sweeps repeat it for all layers. Crowded pictures become far more compact than
-with alignment, because straight lines need empty space.
+adjacent violators. Forward and backward sweeps repeat this for all layers. Crowded pictures become far more compact
+than with alignment, because straight lines need empty space.
 """
 
 from __future__ import annotations

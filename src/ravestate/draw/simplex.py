@@ -1,8 +1,8 @@
 """Layer assignment with short edges: the network simplex of Gansner, Koutsofios, North and Vo (1993).
 
-A spanning tree of tight arcs fixes all ranks. A tree arc with a negative cut value should be longer: it leaves the tree,
-and the tightest arc that crosses the cut in the other direction enters. The cut value of a tree arc is the sum of
-(weight out - weight in) over the vertices on the side of its tail. Arcs within that side cancel out.
+A spanning tree of tight arcs fixes all ranks. A tree arc with a negative cut value should be longer: it leaves the
+tree, and the tightest arc that crosses the cut in the other direction takes its place. The cut value of a tree arc is
+the sum of (weight out - weight in) over the vertices on the side of its tail. Arcs within that side cancel out.
 """
 
 from __future__ import annotations

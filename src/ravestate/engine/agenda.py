@@ -102,8 +102,7 @@ class Agenda(Slots):
             self._start(activation)
 
     def _claimed(self, activation: Activation) -> Activation | None:
-        """Return a run of the same rule on one of the same spikes. Only such a run excludes a rule without slots
-        (L10)."""
+        """Return a run of the same rule on a common spike. Only such a run excludes a rule without slots (L10)."""
         for spike in activation.firm_spikes():
             if spike.claims is not None:
                 other = spike.claims.get(activation.clause.rule.index)

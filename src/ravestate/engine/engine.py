@@ -284,7 +284,7 @@ class Engine(Agenda):
     # ------------------------------------------------------------------------------------ outcomes
 
     def _consume(self, run: Activation, spikes: tuple[Spike, ...]) -> None:
-        """Settle Done: consume the slots in the run's groups. Other activations for these slots give up their spikes
+        """Settle Done: consume the slots in the run's groups, where other writers of the slots lose their spikes
         (L18)."""
         rule = run.clause.rule
         if rule.slots:

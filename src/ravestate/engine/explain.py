@@ -103,8 +103,7 @@ class Explanation:
 
 
 def explain(engine: Engine, rule: RulePlan, records: Iterable[Record] = (), limit: int = 12) -> Explanation:
-    """Explain a rule of an engine. The rule's history comes from `records`, the trace, and has at most `limit`
-    lines."""
+    """Explain a rule of an engine, with at most `limit` lines of its history from `records`, the trace."""
     engine.look()
     records = [*records]
     return Explanation(

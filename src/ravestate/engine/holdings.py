@@ -227,8 +227,7 @@ class Holdings(State):
         self.gated.pop(activation, None)
 
     def _end(self, activation: Activation, reason: str = "", by: Activation | None = None) -> None:
-        """End an activation and remove every reference to it. With a `reason`, it counts as having given its spikes
-        up."""
+        """End an activation and remove every reference to it. With a `reason`, trace that it gave its spikes up."""
         before = activation.state
         activation.step(END)
         clause = activation.clause

@@ -68,8 +68,7 @@ class Horizon:
         return _solve(self._viable(clause, activation, group, slots))
 
     def judge(self, clause: Clause, activation: Activation | None, group: Group) -> tuple[int, dict[Activation, None]]:
-        """Return how viable a rival is, and the activations on which this depends. Every activation that asks gets the
-        same answer."""
+        """Return how viable a rival is, and the activations on which this depends, whichever activation asks."""
         known = self._judged.get((clause, activation, group))
         if known is None:
             self.roots.clear()
@@ -90,8 +89,7 @@ class Horizon:
             missing = activation.missing
             if not missing:
                 self.roots.append(activation)  # it is ready, or will ripen
-        # For each need, or set of needs that one group must meet: how firmly this group may meet it, and how firmly any
-        # may.
+        # For each need, or set of needs that one group must meet: how firmly this group and any group may meet it.
         here: list[int] = []
         best: list[int] = []
         answered = 0
@@ -139,8 +137,7 @@ class Horizon:
     def _kin(
         self, need: Need, activation: Activation | None, missing: int, group: Group, slots: Slots
     ) -> Generator[Any, int, tuple[int, int]]:
-        """Return how firmly this group, and how firmly any group, may meet needs that one group must meet together
-        (L12)."""
+        """Return how firmly this group, and any group, may meet needs that one group must meet together (L12)."""
         kin = [n for n in need.clause.needs if n.bit & need.kin & missing]
         held = activation.held(need.kin) if activation is not None else None
         home = group if held is None else held.group.root()

@@ -24,8 +24,7 @@ if TYPE_CHECKING:
     from ravestate.policy.model import RulePlan
 
 MANY = 500
-"""The number of runs in one instant before the engine traces further runs. Most instants have fewer, so tracing costs
-them nothing."""
+"""The number of runs in one instant before the engine traces further runs; most instants have fewer."""
 
 TURNS = 500
 """The number of turns in one instant that start like any other run. `MANY` and `TURNS` make the 1,000 runs of L23."""

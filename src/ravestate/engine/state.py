@@ -47,8 +47,7 @@ class State:
         self.values: dict[int, Any] = {}
         """The slots that were written or read: index to value."""
         self._unseen: dict[int, dict[str, Any]] = {}
-        """The items of each collection that no code has read since its last change. They can change again without a
-        copy."""
+        """The items of each collection that no code has read since the last change. Changing them needs no copy."""
         self.live: dict[int, dict[Spike, None]] = {}
         """Live spikes by signal, oldest first."""
         self.active: dict[int, dict[Activation, None]] = {}
@@ -142,8 +141,7 @@ class State:
         return next((spike for spike in self.live.get(need.signal.index, ()) if self._fits(need, spike)), None)
 
     def _fits(self, need: Need, spike: Spike) -> bool:
-        """Return whether a live spike may meet a need: it is young enough, not given up and not consumed, and its
-        payload fits."""
+        """Return whether a live spike may meet a need: age and payload fit, and it was not given up or consumed."""
         rule = need.clause.rule
         if spike.born + need.max_age <= self.now and need.max_age:
             return False

@@ -73,8 +73,7 @@ class Causes:
         return found
 
     def closure(self, signal: int) -> int:
-        """Return, as bits, the signals on the signal's pathways: the signal and all that lead to it without
-        detachment."""
+        """Return the signals on a signal's pathways, as bits: itself, and all that lead to it without detachment."""
         return self._closures[self.components.of[signal]]
 
     @cached_property
@@ -126,8 +125,7 @@ class Causes:
         return frozenset(rules)
 
     def downstream(self, rule: RulePlan) -> tuple[Clause, ...]:
-        """Return the slot-writing clauses that the rule may trigger by a chain of non-detached effects, the best
-        first."""
+        """Return the slot-writing clauses that the rule may trigger by non-detached effects, the best first."""
         found = self._downstream.get(rule.index)
         if found is None:
             clauses: dict[Clause, None] = {}

@@ -61,8 +61,7 @@ def build(
     Args:
         modules: The modules, in order.
         rules: The rules, in order. A rule that a context added is in none of the modules.
-        settings: The values of each module's settings, by the module's name; a module that is missing here has its
-            defaults.
+        settings: The values of each module's settings, by the module's name; other modules have their defaults.
         faults: Faults found earlier.
 
     Raises:

@@ -140,8 +140,7 @@ class Clause:
     asks_detached: bool = False
     """Whether some, but not all, of its needs are detached."""
     simple: bool = False
-    """Whether it has one need without `min_age` and no guard. An activation of such a clause is ready as soon as it
-    holds a spike."""
+    """Whether it has one need without `min_age` and no guard: with a spike, an activation is ready at once."""
     reflexive: bool = False
     """Whether it hears the built-in flags; its activations change neither of them (L22)."""
     cyclic: bool = False

@@ -55,8 +55,7 @@ class Numbers:
         return float(number)
 
     def _setting(self, rule: Rule[Any, Any], ref: SettingRef, where: str) -> float | None:
-        """Return the value of a setting. A reference without a settings class means the settings of the rule's own
-        module."""
+        """Return the value of a setting. A reference without a settings class means the rule's own module."""
         own = self._named.get(rule.name.split(":")[0])
         module = own
         if ref.owner is not None and (own is None or own.settings is not ref.owner):

@@ -17,8 +17,7 @@ from ravestate.policy.completion import Completion
 from ravestate.policy.model import Clause, Need
 
 MAX_PATHWAYS = 256
-"""The maximum number of pathways listed for a clause or a signal, the cheapest ones. There may be exponentially
-many."""
+"""The maximum number of pathways listed for a clause or a signal: the cheapest of perhaps exponentially many."""
 
 MAX_UNIONS = 200_000
 """The maximum number of unions for one clause. A clause that needs more shows its least pathway alone."""

@@ -153,8 +153,7 @@ class Policy:
         return draw(self, format)
 
     def with_settings(self, settings: Mapping[str, Any]) -> Policy:
-        """Return this policy with the given settings instead of the defaults; if no rule names a setting, return it
-        unchanged.
+        """Return this policy with the given settings; if no rule names a setting, return it unchanged.
 
         Args:
             settings: By a module's name, an instance of its ``rs.Settings`` subclass.

@@ -43,8 +43,7 @@ class Context:
         seed: The seed of all random choices that rules make through ``ctx.random``; different every time by default.
         patience: Seconds that a rival under pressure has, unless its rule says otherwise (L16).
         trace: Whether to keep records of what happens, for ``trace`` and ``explain``; or a function that receives them.
-        journal: A function, e.g. a `Journal`. It receives every event with its time, and a `Taken` each time the engine
-            gives out effects.
+        journal: A function, e.g. a `Journal`. It receives each event, and each `Taken`, with its time.
 
     Raises:
         DeclarationErrors: The modules or the settings have faults.
@@ -217,8 +216,7 @@ class Context:
         self._running().receive(Emit(signal.name, payload))
 
     def wipe(self, signal: Signal[Any]) -> None:
-        """Withdraw the live spikes of a signal, and all spikes that they have caused (L20). Any thread may call
-        this."""
+        """Withdraw the live spikes of a signal, and all that they have caused (L20). Any thread may call this."""
         self._known(signal, self.policy.signals, "signal")
         self._running().receive(Wipe(signal.name))
 
@@ -260,7 +258,7 @@ class Context:
         """Call a function with every record from now on, and return a function that stops the calls.
 
         The observer runs on the context's loop, in the middle of an event. It must be quick, must not raise, and must not
-        act on the context. Without observers the engine makes no records, so observation has no cost until it is used.
+        act on the context. Without observers the engine makes no records, so there is no cost until then.
         """
         self._observers.append(observer)
         self._attach()

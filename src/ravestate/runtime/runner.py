@@ -135,8 +135,7 @@ class Runner:
                 log.exception("refused a request from another thread: %s", short(event))
 
     def add_rule(self, rule: Rule[Any, Any]) -> None:
-        """Add a rule to the engine's policy. Any thread may call this. The loop makes the new policy, so no rule is
-        lost.
+        """Add a rule to the engine's policy. Any thread may call this; the loop makes the new policy.
 
         Raises:
             DeclarationErrors: The rule does not fit.
@@ -370,8 +369,8 @@ class Runner:
     # ------------------------------------------------------------------------------------ the end
 
     async def quiet(self, slot: str | None = None) -> None:
-        """Wait until no foreground rule runs or waits for consent. With a slot, consider only rules that may lead to a
-        write of it."""
+        """Wait until no foreground rule runs or waits. With a slot, consider only rules that may lead to a write of
+        it."""
         await self.waits.until(lambda: self.waits.is_quiet(slot))
 
     def stop(self, failure: RavestateError | None) -> None:

@@ -55,7 +55,7 @@ class Waits:
         self.futures.clear()
 
     def is_quiet(self, slot: str | None = None) -> bool:
-        """Return whether no foreground rule runs or waits. With a slot, consider only rules that may lead to a write of
+        """Return whether no foreground rule runs or waits. With a slot, consider only rules that may cause a write of
         it."""
         alive = [activation.clause.rule for activation in (*self._engine.running.values(), *self._engine.waiting)]
         if slot is not None and alive:

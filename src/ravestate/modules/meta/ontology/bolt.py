@@ -33,8 +33,8 @@ LIVELY = 5.0
 class BoltStore:
     """A database on a server, by Neo4j's official driver.
 
-    The store has its own thread, and still uses the asynchronous driver, because a wait can be cancelled there. A
-    server that stalls costs `timeout` seconds and no thread.
+    The store has its own thread, and yet uses the asynchronous driver, because a wait for that driver can be cancelled.
+    So a server that stalls costs `timeout` seconds and no thread.
     """
 
     def __init__(self, url: str, user: str, password: str, database: str | None, timeout: float) -> None:
@@ -43,7 +43,7 @@ class BoltStore:
         Args:
             url: The address: ``bolt://localhost:7687``, or ``neo4j+s://...`` with encryption.
             user: The user name.
-            password: Empty for a server without passwords.
+            password: The password; empty for a server without passwords.
             database: The database's name on the server; None for the default one.
             timeout: Seconds to wait for each answer.
 
@@ -101,7 +101,7 @@ class BoltStore:
 
     @contextmanager
     def transaction(self) -> Generator[None]:
-        """Commit all statements inside together, or none."""
+        """Commit all statements in the ``with`` block together, or none."""
         if self._transaction is not None:
             yield
             return
@@ -184,7 +184,7 @@ class BoltStore:
         """Close the connections."""
         try:
             if self._driver is not None:
-                with contextlib.suppress(PlatformError):  # if the server does not answer, it has already closed them
+                with contextlib.suppress(PlatformError):  # a server that does not answer needs no farewell
                     self._wait(self._driver.close())
         finally:
             self._loop.run_until_complete(self._loop.shutdown_asyncgens())

@@ -68,7 +68,7 @@ def why_not_opened(path: Path, said: str, files: Iterable[Path]) -> str:
         return (
             f"memory {path} was written by {'a newer' if newer else 'an older'} version of ladybug (format {version[1]}; this one "
             f"reads {version[2]}): "
-            + ("pip install --upgrade ladybug" if newer else "export it with the older version, then import it with this one")
+            + ("pip install --upgrade ladybug" if newer else "export it with that version and import it with this one")
             + f", or {ELSE}. Nothing was changed"
         )
     if "Cannot open file" in said or "directory" in said:

@@ -117,7 +117,7 @@ class Memory:
         """Relate two nodes in memory; between related nodes, set the relation's properties.
 
         Raises:
-            RuleError: Memory does not have one of them. For other causes, see the class.
+            RuleError: Memory does not have one of the nodes. For other causes, see the class.
 
         Example:
             ::
@@ -150,8 +150,8 @@ class Memory:
         """Merge two nodes: `keep` gets the duplicate's relations, and the properties that it lacks.
 
         Raises:
-            RuleError: The types do not fit: `keep` must have the duplicate's type or a subtype. Or memory does not
-                have one of them.
+            RuleError: The types do not fit: `keep` must have the duplicate's type or a subtype. Or memory does not have
+                one of the nodes.
         """
         return self._do("merge", lambda graph: graph.merge(keep, duplicate))
 
@@ -162,7 +162,7 @@ class Memory:
         them. A person or robot with more than a name stays as well.
 
         Returns:
-            The removed nodes, `node` first; nothing if memory does not have it.
+            The removed nodes, `node` first; nothing if memory does not have `node`.
         """
         return self._do("forget", lambda graph: graph.forget(node))
 
@@ -174,8 +174,8 @@ class Memory:
         """Run several operations as one: all take effect, or none. In a file, no other operation runs between them.
 
         Args:
-            operations: A function of the graph, called in memory's thread. The graph has the operations of this class,
-                without replies and with properties as mappings. Do not keep it.
+            operations: A function of the graph, called in memory's thread. The graph has the operations of this class.
+                There they return plain results, and take properties as mappings. Do not keep the graph.
 
         Returns:
             The result of `operations`. An exception in it rolls all of them back.
@@ -200,7 +200,7 @@ class Memory:
         """Save all nodes and relations of a document from `export`, or none; return the number of nodes.
 
         Raises:
-            RuleError: It is not such a document. For other causes, see the class.
+            RuleError: The document is invalid. For other causes, see the class.
         """
         return self._do("load", lambda graph: graph.load(document))
 

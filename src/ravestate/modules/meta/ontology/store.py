@@ -40,7 +40,7 @@ class Store(Protocol):
     """
 
     def prepare(self, types: Types) -> None:
-        """Create what is missing for the types, properties and relations.
+        """Create the missing tables, columns or indexes for the types, properties and relations.
 
         Raises:
             PlatformError: The database uses these names for something else, or is newer.
@@ -64,7 +64,7 @@ class Store(Protocol):
         ...
 
     def transaction(self) -> AbstractContextManager[None]:
-        """Commit all statements inside together, or none. A transaction inside another is part of it.
+        """Commit all statements in the ``with`` block together, or none. A transaction inside another is part of it.
 
         Raises:
             PlatformError: The database failed.
@@ -92,7 +92,7 @@ def check_format(place: str, found: object) -> None:
     """Refuse a layout of a newer version.
 
     Raises:
-        PlatformError: It is newer.
+        PlatformError: The layout is newer.
     """
     if not isinstance(found, int) or found > FORMAT:
         raise PlatformError(

@@ -36,7 +36,7 @@ OF_A_RELATION = ("to", "has")
 
 
 def read_types(paths: Iterable[Path | Traversable]) -> Types:
-    """Read files in this order.
+    """Read files in the given order.
 
     Raises:
         DeclarationError: A file is invalid or contradicts another; the message names file and line.
@@ -65,7 +65,7 @@ def _read(own: tuple[tuple[Path, object], ...]) -> Types:
 
 
 def _state_of(path: Path) -> object:
-    """Return what changes with a file."""
+    """Return a value that changes when the file changes."""
     try:
         stat = path.stat()
     except OSError:  # reading the file reports that

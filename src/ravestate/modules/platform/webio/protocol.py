@@ -29,7 +29,7 @@ __all__ = [
 ]  # fmt: skip
 
 VERSION = 1
-"""The version of the protocol. A new frame or field keeps it; any other change raises it."""
+"""The version of the protocol. A new frame or field keeps the number; any other change raises it."""
 
 LONGEST_NAME = 80
 """The maximum number of characters of a name."""
@@ -113,7 +113,7 @@ def _spoken(version: int) -> int:
     return version
 
 
-# A description says what was expected, wherever a value is refused.
+# The message about a refused value contains its description.
 Number = Annotated[int, Field(strict=True, ge=0, le=GREATEST, description="a whole number from 0 on")]
 Version = Annotated[Number, AfterValidator(_spoken), Field(description=f"the version, {VERSION}")]
 Truth = Annotated[bool, Field(strict=True, description="true or false")]
