@@ -1,6 +1,6 @@
 // Written by tools/protocol.py from ravestate.modules.platform.webio.protocol: change that file, and run the tool.
 
-/** The version of the protocol. A new frame or field keeps the number; any other change raises it. */
+/** The version of the protocol. A new frame or field keeps it; any other change raises it. */
 export const VERSION = 1;
 
 /** The maximum number of characters that a visitor may say at once. */

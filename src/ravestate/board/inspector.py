@@ -110,7 +110,7 @@ class Inspector:
             title = self._title_of(session)
         try:
             if session is not None:
-                await asyncio.sleep(0)  # a new conversation begins
+                await asyncio.sleep(0)  # lets a new conversation begin
             seen = max(source.first - 1, source.last - BACKLOG)
             visitor = None if session is None else session.visitor
             whole = source.whole and seen == 0

@@ -216,7 +216,7 @@ class Recorders:
 
 
 def _fair(lengths: list[int], in_all: int) -> int:
-    """Return the maximum length for each, so that the total is at most `in_all`.
+    """Return the maximum length for each recorder, so that the total is at most `in_all`.
 
     Example:
         >>> _fair([10, 500, 700], 610)

@@ -63,7 +63,7 @@ class Rivals:
     def pressure(self, rule: RuleView, end: float) -> str:
         """Say which other rule waited until the patience of `rule` ran out."""
         pressed = self._history.pressed.get(rule.name, [])
-        times = bisect_right(pressed, end, key=lambda one: one.until)  # a rule's patience never changes
+        times = bisect_right(pressed, end, key=lambda one: one.until)  # in order: a rule's patience never changes
         ended = f"its patience ran out at {seconds(end)}"
         if not times:
             return ended

@@ -35,7 +35,7 @@ LONGEST = 120
 """The maximum number of seconds for reading a file."""
 
 CHUNK = 1000
-"""Records that pass between processes at once. While they are unpacked, no other thread runs."""
+"""The number of records in a message between processes. No other thread runs while a message is unpacked."""
 
 SURROGATE = re.compile(r"\\u[dD][89a-fA-F]")
 """One half of a surrogate pair in JSON."""

@@ -60,7 +60,7 @@ Reached = tuple[Verdict, str, float | None]
 """How far a rule came, the reason as text, and the time of that decision."""
 
 Judgement = tuple[Verdict, str, float | None, Attempt | None]
-"""A `Reached`, and the attempt that came so far."""
+"""A `Reached`, and the attempt that reached this point."""
 
 ORDER = {verdict: place for place, verdict in enumerate(Verdict)}
 
@@ -299,7 +299,7 @@ class _Inquiry:
             return Raiser(name, "not run", None, f"{name} did not run")
         self.asked.append(name)
         verdict, words, at, attempt = self.judge(rule)
-        if verdict in (Verdict.LACKED, Verdict.UNTOUCHED):  # one step further back
+        if verdict in (Verdict.LACKED, Verdict.UNTOUCHED):  # explain one step further back
             for lack in dict.fromkeys(attempt.lacks if attempt is not None else ()):
                 lacked = self.description.signal(lack)
                 for raiser in () if lacked is None else lacked.raisers:

@@ -53,7 +53,7 @@ else:
     TraceRecord = typing_extensions.TypeAliasType(
         "TraceRecord",
         Annotated[
-            Union[tuple(_shape(name, kind) for name, kind in KINDS.items())],  # noqa: UP007  # not known before
+            Union[tuple(_shape(name, kind) for name, kind in KINDS.items())],  # noqa: UP007  # known only now
             pydantic.Field(discriminator="kind"),
         ],
     )

@@ -39,7 +39,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_index(parser: argparse.ArgumentParser, *, later: bool = False) -> None:
-    """Add the option for the index. With `later`, the option follows an action, and keeps an earlier value."""
+    """Add the option for the index. With `later`, it may follow an action, and does not reset an earlier value."""
     parser.add_argument(
         "--index",
         metavar="FILE",

@@ -38,7 +38,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_place(parser: argparse.ArgumentParser, *, later: bool = False) -> None:
-    """Add the options that choose a memory. With `later`, the options follow an action, and keep earlier values."""
+    """Add the options that choose a memory. With `later`, they may follow an action, and keep earlier values."""
     default = argparse.SUPPRESS if later else None
     parser.add_argument(
         "--path",
@@ -81,7 +81,7 @@ def run(options: argparse.Namespace) -> int:
         unseen = memory.undeclared().result()
         if unseen:
             print(
-                f"ravestate memory: {memory.place} also has {', '.join(unseen)}, which no file of types has, so it is "
+                f"ravestate memory: {memory.place} also has {', '.join(unseen)}, which no file of types declares, so it is "
                 "hidden here: name the file with --set ontology.types=[FILE]",
                 file=sys.stderr,
             )
@@ -236,7 +236,7 @@ def _chosen(memory: Memory, which: str) -> Node:
     """Return the one node with this id or name, ignoring case.
 
     Raises:
-        UsageError: There is none, or there are several.
+        UsageError: No node matches, or several nodes do.
     """
     node = memory.get(which).result()
     if node is not None:

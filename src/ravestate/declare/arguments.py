@@ -21,7 +21,7 @@ R = TypeVar("R")
 
 
 def keywords(*options: str) -> Callable[[Callable[P, R]], Callable[P, R]]:
-    """Make a method refuse an unknown keyword with the nearest known one.
+    """Make a method refuse an unknown keyword; the message names the nearest known one.
 
     Args:
         options: Keywords that the method takes besides those in its signature.

@@ -16,7 +16,7 @@ from ravestate.draw.graph import EdgeKind
 
 VertexKind = Literal["node", "label", "dummy"]
 
-_SOLID: tuple[EdgeKind, ...] = ("writes", "emits")  # solid lines may overlap; dashes would fall out of step
+_SOLID: tuple[EdgeKind, ...] = ("writes", "emits")  # solid lines may overlap; dashes would not match
 
 
 @dataclass(frozen=True, slots=True)

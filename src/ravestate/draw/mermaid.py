@@ -79,7 +79,7 @@ def _label(node: Node) -> str:
 def _words(edge: Edge) -> str:
     words = _WORDS.get(edge.kind, "")
     if edge.kind == "condition_detached" and edge.label.startswith("until"):
-        words = ""  # an interruption never holds spikes
+        words = ""  # an interruption holds no spikes, so it is not called detached
     return ", ".join(word for word in (words, edge.label) if word)
 
 

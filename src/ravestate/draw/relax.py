@@ -34,7 +34,7 @@ def relax(graph: LayeredGraph, spread: float, room: float | None = None) -> list
         for v, gap in zip(layer, [*gaps[-1], 0.0], strict=True):
             middle[v] = y
             y += gap
-    before: list[list[tuple[int, float, float]]] = [[] for _ in middle]  # neighbour, its port against ours, weight
+    before: list[list[tuple[int, float, float]]] = [[] for _ in middle]  # neighbour, offset of its port, weight
     after: list[list[tuple[int, float, float]]] = [[] for _ in middle]
     for low, high in graph.segments:
         p, q = graph.ports[low], graph.ports[high]

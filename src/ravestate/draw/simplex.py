@@ -47,11 +47,11 @@ class _Simplex:
             self.surplus[u] += weight
             self.surplus[v] -= weight
         self.rank = _longest_paths(count, arcs)
-        self.tree_arcs: list[list[int]] = [[] for _ in range(count)]  # by vertex
+        self.tree_arcs: list[list[int]] = [[] for _ in range(count)]  # those of each vertex
         self.parent = [-1] * count  # the arc towards the root
         self.low = [0] * count  # the least number in the subtree, in postorder
         self.number = [0] * count
-        self.vertex = [0] * count  # by number
+        self.vertex = [0] * count  # the vertex with each number
         self.total = [0] * count  # surplus of the subtree
         self.tree: list[int] = []
         self.tight_tree()

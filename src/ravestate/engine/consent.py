@@ -1,8 +1,8 @@
 """Consent (L15): whether a ready activation may run now, and if not, which activations it waits for.
 
 A group refuses while one of the activation's slots is taken in it, or while there is a rival. A rival is another clause
-that writes one of these slots with greater effective utility. It has a stake in the group, and is still viable there.
-A rival with a stake holds a spike of the group, or is in stand-by, downstream of a live rule of the group.
+that writes one of these slots and has greater effective utility. It has a stake in the group, and is still viable
+there. A rival with a stake holds a spike of the group, or is in stand-by, downstream of a live rule of the group.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """The Signal-Rule-Slot automaton as a pure state machine.
 
-Four verbs: `receive` an event, `advance` to a time, ask for the `next_deadline`, take the `effects`.
+The engine has four verbs: `receive` an event, `advance` to a time, ask for the `next_deadline`, take the `effects`.
 Time is an argument, in seconds from any origin. Nothing here knows a clock, a thread or a loop.
 
 This file has the handlers of events, the outcomes of runs, and the handling of deadlines. The rest is in the layers
@@ -284,8 +284,7 @@ class Engine(Agenda):
     # ------------------------------------------------------------------------------------ outcomes
 
     def _consume(self, run: Activation, spikes: tuple[Spike, ...]) -> None:
-        """Settle Done: consume the slots in the run's groups, where other writers of the slots lose their spikes
-        (L18)."""
+        """Settle Done: consume the slots in the run's groups; there, their other writers lose the spikes (L18)."""
         rule = run.clause.rule
         if rule.slots:
             groups = _roots(run)

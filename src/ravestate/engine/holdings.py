@@ -129,7 +129,7 @@ class Holdings(State):
             self._deadlines.add(due, EXPIRE, spike)
 
     def _expire(self, spike: Spike, time: float) -> None:
-        """Let incomplete holders give a spike up that is too old for them (L14)."""
+        """Make incomplete holders give up a spike that is too old for them (L14)."""
         for holder in list(spike.holders):
             if holder.state is GATHERING:
                 old = [need for need in self._of_spike(holder, spike) if spike.born + need.max_age <= time]

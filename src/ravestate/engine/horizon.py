@@ -8,11 +8,11 @@ cuts off the causes that no live rule of the group can reach.
 A derivation has one of three strengths:
 
 ``FIRM``         it rests on work in progress: runs, ripening spikes, ready activations
-``SPECULATIVE``  some step of it needs an input, or a live rule of another group: it may never come, and
-                 only patience ends it
+``SPECULATIVE``  a step needs an input, or a live rule of another group: the signal may never come, and
+                 only patience ends the wait
 ``NO``           nothing leads to the signal
 
-A rule that would take one of the rival's own slots cannot help it: in one group a slot is written once (L19).
+A rule that would take one of the rival's own slots cannot help the rival: in one group a slot is written once (L19).
 
 A derivation may have as many steps as the policy has signals. So each of its steps is a generator, a `Step`: it yields
 the steps whose strengths it needs, and `_solve` keeps those that wait on a stack of its own.

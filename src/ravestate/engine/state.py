@@ -60,7 +60,7 @@ class State:
         """Ready activations that were refused consent."""
         self.alternatives: dict[Activation, tuple[tuple[Clause, ...], int, int]] = {}
         """Activations with a queue of alternatives (``conflict_sets.py``): the clauses of the conflict set, how many of
-        them have an activation, and the number that precedes the first activation's."""
+        them have an activation, and the activation number just before theirs."""
         self.hoping: dict[Activation, None] = {}
         """Waiting activations with a rival that a live rule of another causal group may yet help."""
         self.running: dict[int, Activation] = {}
@@ -73,9 +73,9 @@ class State:
         """Signals whose spikes are reported as effects."""
         self._out: list[Effect] = []
         self._acts = False  # whether one of these effects starts or cancels a run
-        self._free: list[Activation] = []  # ready, without need of consent
-        self._asking: dict[Activation, None] = {}  # ready, and about to ask for consent
-        self._refused: dict[Activation, None] = {}  # refused since the last search for a stalemate
+        self._free: list[Activation] = []  # ready activations that need no consent
+        self._asking: dict[Activation, None] = {}  # ready activations that are about to ask for consent
+        self._refused: dict[Activation, None] = {}  # activations refused since the last search for a stalemate
         self._dirty: dict[Group, None] = {}  # groups in which something ended
         self._stirred = False  # whether something ended that the `hoping` activations may have hoped for
         self._watches: dict[Clause, dict[Activation, Watch]] = {}

@@ -75,7 +75,7 @@ class GaveUp:
     spike: int
     signal: str
     reason: str
-    by: str = ""  # the rule that consumed it, or resigned on it
+    by: str = ""  # the rule that consumed the spike, or resigned
     run: int = 0  # the number of its run; 0 if there is none, or it is unknown
 
 

@@ -1,4 +1,4 @@
-"""The graph in which clauses are completed (L8), in bits.
+"""The graph in which clauses are completed (L8).
 
 Each signal is completed by one of its *alternatives*: a conjunction of signals that may cause it, or nothing, if it is
 an input or has no causes. A pathway of a clause is a set of signals. It holds the clause's own signals, and with each

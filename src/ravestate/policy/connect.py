@@ -55,7 +55,7 @@ def find_contests(signals: Iterable[SignalPlan]) -> None:
 
     One spike of the signal makes such a clause ready. The clauses write the same slots, and their order never changes.
     Only the first can get consent, unless it resigns or fails. Until then the engine makes no activations of the others
-    (``engine/contests.py``).
+    (``engine/conflict_sets.py``).
     """
     for signal in signals:
         contests: dict[tuple[frozenset[int], bool], list[Clause]] = {}

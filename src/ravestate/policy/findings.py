@@ -21,7 +21,7 @@ BREAKING = frozenset({"undeclared", "unknown", "await"})
 MAX_PEERS = 64
 """The search for ties compares each rule with at most this many others, those declared first.
 
-Without a limit the time would grow with the square of the number of rules; ``policy.conflicts()`` compares them all.
+Without a limit the time would grow with the square of the number of rules; ``policy.conflicts()`` compares all rules.
 """
 
 
@@ -34,7 +34,7 @@ class Finding:
             ``"never-wins"``, ``"tie"``, ``"cooldown"`` or ``"unheard"``.
         subject: The qualified name of the rule or signal.
         message: The remark, with the text to write instead.
-        rules: The listeners of a signal that no rule raises.
+        rules: For ``"unraised"``, the rules that hear the signal.
     """
 
     kind: str
@@ -47,7 +47,7 @@ class Finding:
 
 
 def find_all(policy: Policy, source: Source | None = None) -> tuple[Finding, ...]:
-    """Return all findings, those that break an agent first; at most one of each kind for a rule.
+    """Return all findings, those that break an agent first. A rule has at most one finding of each kind.
 
     Args:
         policy: The policy.

@@ -7,8 +7,8 @@ independent choices do not multiply. In a chain, a ring or a tree, a step or two
 causes to that of the effect.
 
 A choice among causes with common causes is the weighted set cover problem, for which no quick method is known. If a
-step leaves more sets than there is room for, the search follows the cheapest. Otherwise the result is exact: for
-policies of any size, unless dozens of their choices depend on each other.
+step leaves more sets than there is room for, the search follows only the cheapest ones. Otherwise the result is exact:
+for policies of any size, unless dozens of their choices depend on each other.
 """
 
 from __future__ import annotations

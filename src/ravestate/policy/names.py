@@ -77,7 +77,7 @@ class Names:
         return None
 
     def slot(self, slot: Slot[Any], where: str) -> SlotPlan | None:
-        """Return the record of a slot; arguments and faults as for `signal`."""
+        """Return the record of a slot. For the arguments and faults, see `signal`."""
         plan = self._slot_of.get(slot.name)
         if plan is not None and plan.slot is slot:
             return plan

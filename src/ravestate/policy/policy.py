@@ -132,7 +132,7 @@ class Policy:
     def findings(self, source: Source | None = None) -> tuple[Finding, ...]:
         """Return remarks on probable mistakes: rules that cannot run or win, endless loops, ties, signals without listeners.
 
-        A rule has at most one finding of each kind; of several ties, the one with the rule that is declared first.
+        A rule has at most one finding of each kind; of several ties, that with the first declared rule.
 
         Args:
             source: A function that returns the source of a rule's function, such as ``inspect.getsource``. With it, the
@@ -156,7 +156,7 @@ class Policy:
         """Return this policy with the given settings; if no rule names a setting, return it unchanged.
 
         Args:
-            settings: By a module's name, an instance of its ``rs.Settings`` subclass.
+            settings: For each module's name, an instance of the module's ``rs.Settings`` subclass.
 
         Raises:
             DeclarationErrors: The settings make a declaration impossible.

@@ -21,7 +21,7 @@ def assign_utilities(signals: Sequence[SignalPlan], rules: Sequence[RulePlan], c
     """Set the utility, the base and the least pathway of every clause, and mark cyclic clauses.
 
     Returns:
-        The graph in which clauses are completed, for all other pathways.
+        The graph in which clauses are completed, for listing their other pathways.
     """
     completion = Completion(signals, rules, causes)
     least = Least(completion)

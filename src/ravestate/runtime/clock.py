@@ -23,7 +23,7 @@ class Clock:
         return self._loop.time() - self._origin if self._halted is None else self._halted
 
     def on_loop(self, time: float) -> float:
-        """Convert a time on this clock to the loop's time (seconds). A later halt invalidates it."""
+        """Convert a time on this clock to the loop's time (seconds). A later halt invalidates the result."""
         return self._origin + time
 
     @property

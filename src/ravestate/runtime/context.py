@@ -224,7 +224,7 @@ class Context:
         """Add a rule over this context's signals and slots, to this context alone. Any thread may call this.
 
         Raises:
-            DeclarationErrors: The rule does not fit.
+            DeclarationErrors: The rule does not fit the policy.
         """
         self._running().add_rule(rule)
 

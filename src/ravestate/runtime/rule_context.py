@@ -170,7 +170,7 @@ class RuleContext:
         """Add a rule over this context's signals and slots, to this context alone.
 
         Raises:
-            DeclarationErrors: The rule does not fit.
+            DeclarationErrors: The rule does not fit the policy.
         """
         self._alive()
         self._host.add_rule(rule)
@@ -258,7 +258,7 @@ class Items(Mapping[str, V], Generic[V]):
         """Set an item. This raises ``added`` if the key is new, and ``changed`` if the item differs.
 
         Raises:
-            UndeclaredError: The rule does not declare ``writes`` of the collection.
+            UndeclaredError: The rule does not declare the collection in ``writes``.
         """
         self._own()[key] = item
         self._ctx._host.receive(Store(self._slot.name, key, item, self._ctx.run))  # pyright: ignore[reportPrivateUsage]
@@ -267,7 +267,7 @@ class Items(Mapping[str, V], Generic[V]):
         """Remove an item if it is there. This raises ``removed`` and ``changed``.
 
         Raises:
-            UndeclaredError: The rule does not declare ``writes`` of the collection.
+            UndeclaredError: The rule does not declare the collection in ``writes``.
         """
         self._own().pop(key, None)
         self._ctx._host.receive(Discard(self._slot.name, key, self._ctx.run))  # pyright: ignore[reportPrivateUsage]

@@ -138,7 +138,7 @@ class Runner:
         """Add a rule to the engine's policy. Any thread may call this; the loop makes the new policy.
 
         Raises:
-            DeclarationErrors: The rule does not fit.
+            DeclarationErrors: The rule does not fit the policy.
             RunEnded: The context has ended.
         """
         if threading.get_ident() == self._thread:
@@ -225,7 +225,7 @@ class Runner:
     def _perform(self, effect: Effect) -> None:
         kind = type(effect)
         if kind is Run:
-            self._run(effect)  # type: ignore[arg-type]  # its type has been looked at
+            self._run(effect)  # type: ignore[arg-type]  # its type has been checked
         elif kind is Spiked:
             self.listeners.tell(effect)  # type: ignore[arg-type]
         elif isinstance(effect, Ended):
@@ -369,8 +369,7 @@ class Runner:
     # ------------------------------------------------------------------------------------ the end
 
     async def quiet(self, slot: str | None = None) -> None:
-        """Wait until no foreground rule runs or waits. With a slot, consider only rules that may lead to a write of
-        it."""
+        """Wait until no foreground rule runs or waits. With a slot, consider only rules that may cause its write."""
         await self.waits.until(lambda: self.waits.is_quiet(slot))
 
     def stop(self, failure: RavestateError | None) -> None:

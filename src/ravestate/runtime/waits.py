@@ -55,8 +55,8 @@ class Waits:
         self.futures.clear()
 
     def is_quiet(self, slot: str | None = None) -> bool:
-        """Return whether no foreground rule runs or waits. With a slot, consider only rules that may cause a write of
-        it."""
+        """Return whether no foreground rule runs or waits. With a slot, consider only rules that may cause its
+        write."""
         alive = [activation.clause.rule for activation in (*self._engine.running.values(), *self._engine.waiting)]
         if slot is not None and alive:
             policy = self._engine.policy

@@ -226,4 +226,4 @@ class Simulation:
 
 
 simulate = Simulation
-"""Simulate modules: ``with simulate(module) as sim``. `Simulation` has the arguments."""
+"""Simulate modules: ``with simulate(module) as sim``. For the arguments, see `Simulation`."""

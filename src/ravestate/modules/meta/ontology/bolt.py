@@ -21,10 +21,10 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 
 META = "_ravestate"
-"""The label of the node with the number of the layout."""
+"""The label of the node that stores the format version."""
 
 SCHEMES = ("bolt", "bolt+s", "bolt+ssc", "neo4j", "neo4j+s", "neo4j+ssc")
-"""The schemes of addresses: ``+s`` is with encryption, ``+ssc`` with a self-signed certificate."""
+"""The schemes of addresses: ``+s`` means encryption, ``+ssc`` encryption with a self-signed certificate."""
 
 LIVELY = 5.0
 """Idle seconds after which the driver tests a connection before use: the server may have restarted."""
@@ -148,7 +148,7 @@ class BoltStore:
             if "DatabaseNotFound" in code or "DatabaseUnavailable" in code:
                 named = f"has no database {self._database!r}" if self._database else "has no database of its own choice"
                 raise PlatformError(
-                    f"memory {self._place} {named}: make it there, or name another with --set ontology.database=NAME"
+                    f"memory {self._place} {named}: create it there, or name another with --set ontology.database=NAME"
                 ) from error
             raise PlatformError(f"memory {self._place} failed: {error.message or error}") from error
         except (errors.DriverError, OSError, ValueError) as error:  # ValueError: an invalid port

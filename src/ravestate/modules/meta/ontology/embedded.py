@@ -179,7 +179,7 @@ class EmbeddedStore:
         self._files.restrict()
 
     def _attempt(self, *, trial: bool, whole_log: bool = True) -> str:
-        """Open the file and return why that failed; empty if it did not. `trial`: open it in another process first."""
+        """Open the file and return why that failed; empty if it did not. With `trial`, try in another process first."""
         if trial and not survives(self._path, whole_log=whole_log):
             return ENDS_PROCESS
         try:
@@ -206,7 +206,7 @@ class EmbeddedStore:
                 return problem
         except OSError as error:
             raise PlatformError(
-                f"memory {self._path} has a damaged log, which cannot be copied before it is mended: {error.strerror}"
+                f"memory {self._path} has a damaged log, which cannot be copied before its repair: {error.strerror}"
             ) from error
         log.warning(
             "memory %s has a damaged log: the part before the damage was read, and the log as it was is kept as %s",
@@ -235,7 +235,7 @@ class EmbeddedStore:
         )
 
     def purge(self) -> None:
-        """Rewrite the file without what was deleted: ladybug leaves the bytes in it.
+        """Rewrite the file without the deleted data, because ladybug leaves the bytes of that data in the file.
 
         If that fails, the deleted nodes are still forgotten; a warning says that the file still has their bytes.
         """
@@ -319,8 +319,8 @@ class EmbeddedStore:
             return  # the write itself reports it
         if free < RESERVE + needed:
             raise PlatformError(
-                f"memory {self._path} cannot be written: the disk is full ({free // 2**20} MB free, and it wants "
-                f"{(RESERVE + needed) // 2**20 + 1}). Make room; saved data is safe, and memory works again then"
+                f"memory {self._path} cannot be written: the disk is full ({free // 2**20} MB free, "
+                f"{(RESERVE + needed) // 2**20 + 1} MB needed). Make room; saved data is safe, and memory works again then"
             )
 
     def _be_writable(self, size: int) -> None:

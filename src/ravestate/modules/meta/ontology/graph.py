@@ -39,7 +39,7 @@ class Graph:
     def save(self, node: Node, of: str | None = None) -> Node:
         """Write a node's properties, whether or not memory has the node."""
         if of is not None and not self._types.is_a(node.type, of):
-            raise RuleError(f"{node.id} is a {node.type}, and a {of} is wanted")
+            raise RuleError(f"{node.id} is a {node.type}, not a {of}")
         return self._write(_known(node), self._types.stored(node.type, node.properties))
 
     def ensure(self, type: str, properties: Mapping[str, Value]) -> Node:
@@ -167,7 +167,7 @@ class Graph:
             return self._write(kept, self._types.stored(kept.type, missing))
 
     def _take_over(self, source: Node, name: str, target: Node, values: Mapping[str, Value]) -> None:
-        """Move a relation to other ends. The properties of an existing relation have priority."""
+        """Move a relation to other nodes. The properties of an existing relation have priority."""
         present: Mapping[str, Value] = {}
         for known, had, end in self._ends(source, back=False):
             if known == name and end.id == target.id:
@@ -220,7 +220,7 @@ class Graph:
         unknown |= {raw.label for _, raw in edges if raw.label not in self._types}
         if unknown:
             raise RuleError(
-                f"{node.id} is related by {', '.join(sorted(unknown))}, which no file of types has: name the file that has it in "
+                f"{node.id} is related by {', '.join(sorted(unknown))}, which no file of types declares: name the file that declares it in "
                 "the setting ontology.types"
             )
 

@@ -58,15 +58,15 @@ class Memory:
             RuleError: Memory is not open: ``await memory.opened()`` first.
         """
         if self._types is None:
-            raise RuleError(f"memory ({self.place}) is not open: write await memory.opened() before")
+            raise RuleError(f"memory ({self.place}) is not open: write await memory.opened() first")
         return self._types
 
     def opened(self) -> Reply[None]:
         """Wait until memory is open.
 
         Raises:
-            PlatformError: A package is missing, the file is in use, broken or newer, or the server refuses. The
-                message says what to do. All operations raise it too.
+            PlatformError: A package is missing; the file is in use, damaged or of a newer version; or the server
+                refuses. The message says what to do. All operations raise it too.
             DeclarationError: A file of types is invalid, or contradicts another.
         """
         return self._opened
@@ -90,7 +90,7 @@ class Memory:
 
         Args:
             node: The node to write.
-            of: The type that it must have, or a supertype of it.
+            of: The type that the node must have; subtypes are allowed.
 
         Returns:
             The node with all of its properties in memory.
@@ -158,8 +158,8 @@ class Memory:
     def forget(self, node: Node, /) -> Reply[list[Node]]:
         """Remove a node, its relations, and the nodes that only it needs. The file keeps no byte of them.
 
-        A node needs its relations' targets, and their targets in turn. They stay if a node that stays is related to
-        them. A person or robot with more than a name stays as well.
+        A node needs its relations' targets, and their targets in turn. These targets stay if a node that stays is
+        related to them. A person or robot with more than a name stays as well.
 
         Returns:
             The removed nodes, `node` first; nothing if memory does not have `node`.

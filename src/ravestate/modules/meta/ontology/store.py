@@ -12,7 +12,7 @@ from ravestate.errors import PlatformError
 from .types import Types
 
 FORMAT = 1
-"""The number of the layout of nodes and relations; a new layout has a greater one."""
+"""The version of the format of nodes and relations; a new format has a greater number."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,10 +89,10 @@ class Store(Protocol):
 
 
 def check_format(place: str, found: object) -> None:
-    """Refuse a layout of a newer version.
+    """Refuse a newer format.
 
     Raises:
-        PlatformError: The layout is newer.
+        PlatformError: The format is newer.
     """
     if not isinstance(found, int) or found > FORMAT:
         raise PlatformError(

@@ -119,7 +119,7 @@ class _Reader:
             while line[-1] in self._parents:
                 line.append(self._parents[line[-1]][0])
                 if line[-1] in line[:-1]:
-                    raise DeclarationError(f"{place}: {' is a '.join(line)}: types form no ring")
+                    raise DeclarationError(f"{place}: {' is a '.join(line)}: types must not form a cycle")
         for name, ends in self._ends.items():
             for (_, target), place in ends.items():
                 if target not in self._has:

@@ -263,7 +263,7 @@ def _template(text: str) -> Template:
 def _added(name: str, node: yaml.Node) -> bool:
     tag = str(node.tag)
     if tag.startswith("!") and tag != "!add":
-        raise fault(name, node, f"the only tag there is is !add, not {tag}{nearest(tag, ['!add'])}")
+        raise fault(name, node, f"the only tag is !add, not {tag}{nearest(tag, ['!add'])}")
     return tag == "!add"
 
 

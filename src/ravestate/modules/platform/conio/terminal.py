@@ -54,7 +54,7 @@ class Terminal:
 
         Args:
             prompt: The text before the line that the user types.
-            history: The file for typed lines. Without one, or if it cannot be written, they are kept for this session.
+            history: The file for typed lines. Without a writable file, the lines are kept for this session.
             on_key: Called with each key that changes the line, unless the line is empty afterwards.
             input: The keyboard, by default the terminal's.
             output: The screen, by default the terminal's.
@@ -78,7 +78,7 @@ class Terminal:
         self._context = contextvars.copy_context()
         stderr = sys.stderr
         self._patch.enter_context(patch_stdout(raw=True))  # other prints go above the prompt as well
-        if not stderr.isatty():  # redirected: it does not disturb the prompt
+        if not stderr.isatty():  # a redirected stream does not disturb the prompt
             self._patch.enter_context(contextlib.redirect_stderr(stderr))
         return self
 

@@ -34,7 +34,7 @@ class Access:
 
     A page that only this machine can reach needs no token, so any site in this machine's browser could talk to it. Two
     checks prevent that. Against DNS rebinding, the server answers only to names of this machine. It accepts only its
-    own origin and those in the settings. The names of headers are in lower case here.
+    own origin and those in the settings. All methods expect the names of headers in lower case.
 
     Args:
         settings: The settings of ``webio``.
@@ -64,14 +64,14 @@ class Access:
         if origin and not _is_own(origin, host):
             return (
                 f"{origin!r} may not inspect the agent; only the agent's own page at {host!r} may: open that page, "
-                "or let the proxy before it hand on the Host header"
+                "or make the proxy in front of it pass on the Host header"
             )
         return None
 
     def foreign_embedder(self, headers: Mapping[str, str]) -> str | None:
         """Return the origin of a site that tries to embed the page without permission; None for any other request.
 
-        Browsers send the headers for this over HTTPS and to this machine; widget.js allows them to.
+        Browsers send the necessary headers over HTTPS and to this machine, because widget.js permits it.
         """
         if headers.get("sec-fetch-dest") not in ("iframe", "frame"):
             return None
@@ -84,8 +84,7 @@ class Access:
         return _is_own(origin, host) or origin in self.origins
 
     def admits(self, token: str | None) -> bool:
-        """Return whether a token is right, or none is needed. The time taken does not reveal which character is
-        wrong."""
+        """Return whether a token is right, or none is needed. The time does not reveal which character is wrong."""
         return self._token is None or hmac.compare_digest(
             (token or "").encode("utf-8", "replace"), self._token.encode("utf-8", "replace")
         )

@@ -35,7 +35,7 @@ CONSOLES = ("conio",)
 """Platforms for a single user. With webio, each visitor's context would contain one."""
 
 MOST_LOGGED = 100
-"""The maximum number of sites that the log names, each once, so that strangers cannot fill it."""
+"""The maximum number of sites that the log names, each once, so that strangers cannot fill the log."""
 
 log = logging.getLogger("ravestate.webio")
 

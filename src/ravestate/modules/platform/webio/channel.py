@@ -12,8 +12,7 @@ from starlette.websockets import WebSocket, WebSocketDisconnect
 from .protocol import CLOSING_CODES, Error, ProtocolError, serialise
 
 LONGEST = 128 * 1024
-"""The maximum number of bytes of a frame: a text may have 10,000 characters, and JSON may need twelve bytes for
-each."""
+"""The maximum number of bytes of a frame. A text may have 10,000 characters, with twelve bytes each in JSON."""
 
 SILENT = 10.0
 """Seconds that a client has for its hello."""

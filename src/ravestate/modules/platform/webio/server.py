@@ -171,7 +171,7 @@ class _Uvicorn(uvicorn.Server):
         self.told = asyncio.Event()
 
     async def main_loop(self) -> None:
-        """Wait until `Server` ends this one."""
+        """Wait for the order to end."""
         self.listening.set()
         await self.told.wait()
 

@@ -53,7 +53,7 @@ class Sessions:
             name: The visitor's name, if it is known.
 
         Raises:
-            ProtocolError: There are too many already, or the agent is being switched off.
+            ProtocolError: There are too many conversations already, or the agent is being switched off.
         """
         if len(self._tasks) >= self._limit:
             await self._make_room()
@@ -71,7 +71,7 @@ class Sessions:
         """Add an onlooker.
 
         Raises:
-            ProtocolError: The conversation has too many already.
+            ProtocolError: The conversation has too many onlookers already.
         """
         if len(session.onlookers) >= ONLOOKERS:
             raise ProtocolError("full", f"{ONLOOKERS} windows show this conversation already: close one of them")
