@@ -1,7 +1,7 @@
 """Acyclic graphs: their topological order, and a small feedback arc set, whose edges the layout reverses.
 
 The heuristic of Eades, Lin and Smyth (1993) runs within each strongly connected component. It orders the vertices from
-both ends at once; the edges that point backwards in this order are the set. Two refinements: weak edges are reversed
+both ends at once; the edges that point backwards in this order form the set. Two refinements: weak edges are reversed
 first, and ties are broken by number, so that the result depends on the input alone.
 """
 
@@ -14,7 +14,7 @@ from collections.abc import Sequence
 from ravestate.policy.components import components
 
 STRONG = 1 << 20
-"""The weight of a strong edge. The layout reverses it only if reversing weak edges alone cannot break the cycle."""
+"""The weight of a strong edge. The layout reverses such an edge only if weak edges alone cannot break the cycle."""
 
 
 def feedback_arcs(count: int, edges: Sequence[tuple[int, int, int]]) -> list[bool]:
@@ -86,7 +86,7 @@ _LAST = (0, 2)
 
 
 def _urgency(out: int, into: int) -> tuple[int, int]:
-    """Return the sort key of a vertex: sinks, sources, sinks and then sources by strong edges, then the rest."""
+    """Return the sort key of a vertex: sinks, sources, then both if only strong edges count, then the rest."""
     if out == 0:
         return (0, 0)
     if into == 0:

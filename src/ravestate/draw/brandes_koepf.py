@@ -39,7 +39,7 @@ def brandes_koepf(graph: LayeredGraph) -> list[float]:
 
 
 def _forbidden(graph: LayeredGraph) -> set[int]:
-    """Return the segments that cross one between two dummies. These type 1 conflicts must not be aligned."""
+    """Return the segments that cross a segment between two dummies. These type 1 conflicts are never aligned."""
     place = places(graph.order)
     by_layer: list[list[tuple[int, int, int, bool]]] = [[] for _ in graph.order]
     for segment in range(len(graph.segments)):
@@ -58,7 +58,7 @@ def _forbidden(graph: LayeredGraph) -> set[int]:
 
 
 def _aligned(graph: LayeredGraph, crossed: set[int], from_left: bool, downwards: bool) -> list[float]:
-    """Return one of the four assignments."""
+    """Return the coordinates for one of the four alignments."""
     count = len(graph.layer)
     sign = 1.0 if downwards else -1.0
     order = graph.order if from_left else graph.order[::-1]
@@ -74,7 +74,7 @@ def _aligned(graph: LayeredGraph, crossed: set[int], from_left: bool, downwards:
             p, q = q, p
         towards[q.vertex].append((place[p.vertex], p.vertex, sign * (p.offset - q.offset), segment))
     root = list(range(count))
-    shift = [0.0] * count  # from the root of the block to the vertex
+    shift = [0.0] * count  # offset from the root of the block to the vertex
     taken = [False] * count
     for layer in order:
         limit = -1

@@ -28,7 +28,7 @@ class Link:
     kind: EdgeKind
     is_reversed: bool
     label: tuple[float, float] | None
-    """Width and height of its label, pixels."""
+    """The width and height of its label in pixels."""
 
 
 @dataclass(slots=True)
@@ -47,7 +47,7 @@ Chain = list[int]
 
 @dataclass(slots=True)
 class LayeredGraph:
-    """The graph: vertices by number, layers from top to bottom, ports, and segments between ports."""
+    """The graph: vertices by number, each layer from top to bottom, ports, and segments between ports."""
 
     layer: list[int] = field(default_factory=list[int])
     kind: list[VertexKind] = field(default_factory=list[VertexKind])

@@ -1,6 +1,6 @@
 """Layered layout after Sugiyama, Tagawa and Toda (1981), from left to right.
 
-1. Cycle removal reverses some edges (`acyclic`): detached ones and reads before others.
+1. Cycle removal reverses some edges (`acyclic`): preferably detached edges and reads.
 2. Layer assignment keeps edges short (`simplex`). Layers are bounded if the picture would be too tall (`bounded`).
 3. Dummies make the graph proper (`layered`). Crossing minimisation orders the layers (`crossings`).
 4. Coordinate assignment places ports and vertices (`ports`, `coordinates`).
@@ -183,7 +183,7 @@ def _extent(graph: LayeredGraph) -> Size:
 
 
 def _tightness(edge: Edge, kinds: Mapping[str, NodeKind]) -> int:
-    """Return the cost of a longer edge: junctions stay next to their rule, signals next to their slot."""
+    """Return the cost of an edge's length: junctions stay next to their rule, and signals next to their slot."""
     if kinds[edge.source] in JUNCTIONS:
         return 8
     if edge.kind == "emits" and kinds[edge.source] == "slot":
@@ -192,7 +192,7 @@ def _tightness(edge: Edge, kinds: Mapping[str, NodeKind]) -> int:
 
 
 def _pack(sizes: Sequence[Size]) -> list[Point]:
-    """Pack rectangles into rows, the highest first."""
+    """Pack rectangles into rows, the tallest first."""
     order = sorted(range(len(sizes)), key=lambda i: (-sizes[i][1], i))
     area = sum((width + _BETWEEN) * (height + _BETWEEN) for width, height in sizes)
     wide = max([(area * _ASPECT) ** 0.5, *(width for width, _ in sizes)], default=0.0)

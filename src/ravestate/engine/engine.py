@@ -284,7 +284,7 @@ class Engine(Agenda):
     # ------------------------------------------------------------------------------------ outcomes
 
     def _consume(self, run: Activation, spikes: tuple[Spike, ...]) -> None:
-        """Settle Done: consume the slots in the run's groups; there, their other writers lose the spikes (L18)."""
+        """Settle Done: consume the slots in the run's groups; take the spikes from the slots' other writers (L18)."""
         rule = run.clause.rule
         if rule.slots:
             groups = _roots(run)

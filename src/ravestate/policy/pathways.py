@@ -26,7 +26,7 @@ Costs = dict[int, int]
 """Sets of signals, with the information of each."""
 
 Search = Generator["Search", Costs, Costs]
-"""A computation that yields others and receives their results, so that deep causes need no deep recursion."""
+"""A computation that yields other computations and receives their results. So deep causes need no deep recursion."""
 
 
 class _Entangled(Exception):
