@@ -125,7 +125,7 @@ def _beats(engine: Engine, theirs: Clause, mine: Clause, worth: float) -> bool:
 
 
 def _crossing(engine: Engine, mine: Clause, theirs: Clause) -> float:
-    """Return the earliest time at which `mine` overtakes `theirs`: both climb linearly until they have recovered."""
+    """Return the earliest time at which `mine` overtakes `theirs`: both utilities climb linearly to recovery."""
     now = engine.now
     my_worth, my_slope, my_end = engine.recovery(mine)
     their_worth, their_slope, their_end = engine.recovery(theirs)
