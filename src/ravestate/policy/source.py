@@ -178,7 +178,7 @@ class _Reader:
 
 
 def _own(root: ast.AST, variables: Collection[str]) -> Iterator[ast.AST]:
-    """Yield a node and all nodes below it, except the branches that depend on one of `variables`."""
+    """Yield a node and all nodes below it, except guarded code, such as branches on one of `variables`."""
     stack = [root]
     while stack:
         node = stack.pop()
