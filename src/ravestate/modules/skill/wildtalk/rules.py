@@ -8,15 +8,16 @@ from contextlib import aclosing
 import ravestate as rs
 from ravestate.errors import PlatformError
 from ravestate.modules import interloc, rawio
-from ravestate.modules._bundled import ModelMissing, warn_once
 
 from .backend import Backend, Message, Role
+from .choosing import choose
 from .facts import asks_for_fact
 from .history import History
 from .listening import ListeningBackend
-from .llama import LlamaBackend, bundled_model, checked_model
-from .names import Settings, history, model, module, trouble
+from .llama import LlamaBackend, checked_model
+from .names import OLLAMA, Settings, history, model, module, trouble
 from .openai import OpenAIBackend
+from .pending import PendingBackend
 from .progress import ProgressBar
 from .transformers import TransformersBackend
 from .utterance import Utterance
@@ -33,17 +34,22 @@ LONGEST = 20_000
 
 @module.rule(when=rs.startup, writes=(model, trouble))
 async def choose_model(ctx: rs.RuleContext) -> None:
-    """Make the backend from the settings. A model file is checked now, and loaded at the first question."""
-    settings: Settings = ctx.settings
+    """Choose the backend. Early answers wait for the choice; a model is loaded at the first question."""
+    pending, backend, fault = PendingBackend(), None, None
+    ctx[model] = pending
     try:
-        ctx[model] = make_backend(settings)
-        if settings.backend == "llama":
-            await asyncio.to_thread(checked_model, settings.model_path)
-    except ModelMissing as error:
-        warn_once(ctx.log, error)
-        ctx[model] = ListeningBackend()
+        choice = await asyncio.to_thread(choose, ctx.settings)
+        ctx.log.info("%s", choice.text)
+        backend = make_backend(choice.settings)
+        if choice.settings.backend == "gguf" and choice.settings.model_path is not None:
+            await asyncio.to_thread(checked_model, choice.settings.model_path)
     except PlatformError as error:
+        fault = error
         tell(ctx, error)
+    finally:
+        if ctx[model] is pending:  # otherwise the designer has written one of their own
+            ctx[model] = backend
+        pending.resolve(backend, fault)
 
 
 @module.rule(when=rs.shutdown, reads=model)
@@ -168,15 +174,14 @@ def remember(ctx: rs.RuleContext, role: Role, text: str) -> None:
 
 
 def make_backend(settings: Settings) -> Backend:
-    """Return the backend that `settings` name.
+    """Return the backend that `settings` name; `choose` completes settings that leave it open.
 
     Raises:
         PlatformError: The server's address is malformed.
-        ModelMissing: The package of the bundled model is not installed.
     """
     if settings.backend == "openai":
         return OpenAIBackend(
-            settings.base_url,
+            settings.base_url or OLLAMA,
             settings.model or "llama3.2",
             api_key=settings.api_key,
             connect_timeout=settings.connect_timeout,
@@ -184,11 +189,11 @@ def make_backend(settings: Settings) -> Backend:
         )
     if settings.backend == "transformers":
         return TransformersBackend(settings.model or "gpt2", read_timeout=settings.read_timeout)
-    if settings.model_path is None:
-        bundled_model()
-    return LlamaBackend(
-        settings.model_path,
-        context_tokens=settings.context_tokens,
-        threads=settings.threads,
-        read_timeout=settings.read_timeout,
-    )
+    if settings.backend == "gguf" and settings.model_path is not None:
+        return LlamaBackend(
+            settings.model_path,
+            context_tokens=settings.context_tokens,
+            threads=settings.threads,
+            read_timeout=settings.read_timeout,
+        )
+    return ListeningBackend()
