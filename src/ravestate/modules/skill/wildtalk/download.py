@@ -28,7 +28,6 @@ SPARE = 64 << 20
 """Bytes that a download leaves free on the disk."""
 
 _AGAIN = (408, 429, 500, 502, 503, 504)
-_BLOCK = 1 << 20
 
 
 def size_of(number: float) -> str:
@@ -69,6 +68,12 @@ def download(model: CatalogueModel, progress: Progress, sleep: Callable[[float],
                 f"the disk is full; {_kept(model)}: free {size_of(model.size)} at {model.part.parent}, and repeat the command"
             ) from error
         raise PlatformError(f"{model.part} cannot be written: {error.strerror or error}") from error
+
+
+def _public(hub: str) -> str:
+    """Return the hub's address without a password."""
+    scheme, mark, rest = hub.rpartition("://")
+    return f"{scheme}{mark}{rest.rpartition('@')[2]}"
 
 
 def _headers(hub: str) -> dict[str, str]:
@@ -115,14 +120,14 @@ def _fetch(
         wait, reason = 2.0**failed, "it sent less than the whole file"
         try:
             wait, reason = _attempt(model, part, hub, client, progress) or (wait, reason)
+        except (httpx.InvalidURL, httpx.UnsupportedProtocol) as error:
+            raise PlatformError(f"HF_ENDPOINT is not a web address: {error}") from error
         except (httpx.TransportError, httpx.TooManyRedirects, httpx.DecodingError) as error:
             reason = str(error) or type(error).__name__
-        except httpx.InvalidURL as error:
-            raise PlatformError(f"HF_ENDPOINT={hub!r} is not a web address: {error}") from error
         failed = 0 if part.tell() > have else failed + 1
         if failed >= TRIES or wait > LONGEST:
             raise PlatformError(
-                f"{hub} does not deliver {model.file} ({reason}); {_kept(model)}. Check the network, or name a mirror in "
+                f"{_public(hub)} does not deliver {model.file} ({reason}); {_kept(model)}. Check the network, or name a mirror in "
                 f"HF_ENDPOINT, and repeat the command. Or copy any chat model in GGUF format into {model.part.parent}"
             )
         if part.tell() < model.size:
@@ -140,15 +145,16 @@ def _attempt(
         status = answer.status_code
         if status in _AGAIN:
             asked = answer.headers.get("Retry-After", "")
-            return (float(asked) if asked.isascii() and asked.isdigit() else 2.0), f"it answers {status}"
+            wait = float(asked) if asked.isascii() and asked.isdigit() else 2.0
+            return wait, f"it answers {status}" + (f" and asks to wait {wait:.0f} s" if wait > LONGEST else "")
         if status not in (200, 206):
             raise _refusal(model, hub, status)
         if status == 200 and have:  # this hub sends whole files only
             part.truncate(0)
             part.seek(0)
         elif status == 206 and not answer.headers.get("Content-Range", "").startswith(f"bytes {have}-"):
-            raise PlatformError(f"{hub} sent another part of {model.file} than was asked for")
-        for block in answer.iter_bytes(_BLOCK):
+            raise PlatformError(f"{_public(hub)} sent another part of {model.file} than was asked for")
+        for block in answer.iter_bytes():
             part.write(block)
             if part.tell() > model.size:
                 break  # not this file; the checksum will say so
@@ -158,6 +164,7 @@ def _attempt(
 
 
 def _refusal(model: CatalogueModel, hub: str, status: int) -> PlatformError:
+    hub = _public(hub)
     if status in (401, 403):
         return PlatformError(
             f"{hub} does not give {model.file} to everybody ({status}): put a token of your account there into HF_TOKEN"

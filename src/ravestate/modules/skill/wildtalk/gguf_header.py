@@ -17,7 +17,7 @@ LARGEST = 64 << 20
 """The maximum size of a header in bytes; the largest vocabularies take a quarter of it."""
 
 _STRING, _ARRAY = 8, 9
-_NUMBERS = dict(zip((0, 1, 2, 3, 4, 5, 6, 7, 10, 11, 12), "BbHhIif?Qqd", strict=True))
+_NUMBERS: dict[int, str] = dict(zip((0, 1, 2, 3, 4, 5, 6, 7, 10, 11, 12), "BbHhIif?Qqd", strict=True))
 _POOLING, _CHAT_TEMPLATE = ".pooling_type", "tokenizer.chat_template"
 _KEPT = ("general.architecture", "general.type")
 

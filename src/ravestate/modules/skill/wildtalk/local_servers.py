@@ -91,7 +91,7 @@ async def chat_models(base_url: str, key: str = "", patience: float = PATIENCE) 
                 if len(body) > LIMIT:
                     return ()
         return _chat_models(json.loads(body))
-    except (httpx.HTTPError, httpx.InvalidURL, OSError, TimeoutError, ValueError):
+    except (httpx.HTTPError, httpx.InvalidURL, OSError, RecursionError, TimeoutError, ValueError):
         return ()
 
 

@@ -80,5 +80,8 @@ history: rs.Collection[Message] = module.collection("history")
 model: rs.Slot[Backend | None] = module.slot("model", None, input=True)
 """The backend. You may write one of your own."""
 
+chosen: rs.Signal[object] = module.signal("chosen", payload=object)
+"""The backend that the settings, or what this machine has, led to; None if there is none."""
+
 trouble: rs.Slot[str] = module.slot("trouble", "")
 """The reason why the model does not answer; empty while it does. The log has it once."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 from contextlib import aclosing
+from typing import cast
 
 import ravestate as rs
 from ravestate.errors import PlatformError
@@ -15,7 +16,7 @@ from .facts import asks_for_fact
 from .history import History
 from .listening import ListeningBackend
 from .llama import LlamaBackend, checked_model
-from .names import OLLAMA, Settings, history, model, module, trouble
+from .names import OLLAMA, Settings, chosen, history, model, module, trouble
 from .openai import OpenAIBackend
 from .pending import PendingBackend
 from .progress import ProgressBar
@@ -32,7 +33,7 @@ LONGEST = 20_000
 """Characters of a message in the history; longer ones are cut."""
 
 
-@module.rule(when=rs.startup, writes=(model, trouble))
+@module.rule(when=rs.startup, writes=(model, trouble), emits=chosen)
 async def choose_model(ctx: rs.RuleContext) -> None:
     """Choose the backend. Early answers wait for the choice; a model is loaded at the first question."""
     pending, backend, fault = PendingBackend(), None, None
@@ -47,9 +48,17 @@ async def choose_model(ctx: rs.RuleContext) -> None:
         fault = error
         tell(ctx, error)
     finally:
-        if ctx[model] is pending:  # otherwise the designer has written one of their own
-            ctx[model] = backend
+        ctx.emit(chosen, backend)
         pending.resolve(backend, fault)
+
+
+@module.rule(when=chosen.max_age(None).detached(), writes=model)
+async def use(ctx: rs.RuleContext) -> rs.Resign | None:
+    """Replace the stand-in by the chosen backend, unless the designer has written one of their own."""
+    if not isinstance(ctx[model], PendingBackend):
+        return rs.Resign("there is another backend already")
+    ctx[model] = cast("Backend | None", ctx.payload(chosen))
+    return None
 
 
 @module.rule(when=rs.shutdown, reads=model)
