@@ -67,7 +67,7 @@ test: setup $(DONE)/browser $(DONE)/frontend ## set up and run the whole test su
 	@$(BIN)/python -m pytest -n 2 --dist loadfile $(ARGS)
 
 .PHONY: check
-check: lint types layers docs pages test ## run everything that continuous integration runs
+check: lint types layers docs pages compatibility test ## run everything that continuous integration runs
 
 .PHONY: lint
 lint: setup

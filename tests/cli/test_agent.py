@@ -367,7 +367,7 @@ def test_required_modules_have_settings_too(folder: Path) -> None:
     base = rs.Module("base")
     top = rs.Module("top", requires=[base])
     base.requires = [top]  # a cycle is the compiler's business
-    assert spec._with_required([top]) == [top, base]
+    assert spec.with_required([top]) == [top, base]
 
 
 @pytest.mark.parametrize("text", ["hello", "hello.greeting", "greeting=x", "=x", ".=x", "hello.=x", ".greeting=x"])

@@ -76,6 +76,8 @@ def test_modules_may_come_before_and_after_options(folder: Path, capsys: Capture
         (("run", "idle", "--sed=1"), "run", "unrecognized arguments: --sed=1; did you mean '--se"),
         (("memory", "list", "--pth", "x"), "memory list", "--pth; did you mean '--path'?"),
         (("board", "./guide.py", "--port", "8420"), "board", "--port 8420; write --set webio.port=8420"),
+        (("board", "--port", "80", "--host", "::1"), "board", "write --set webio.port=80"),
+        (("board", "--port"), "board", "write --set webio.port=PORT"),
         (("board", "--host=0.0.0.0"), "board", "--host=0.0.0.0; write --set webio.host=0.0.0.0"),
         (("genqa", "list", "extra"), "genqa list", "unrecognized arguments: extra"),
         (("genqa", "--nonsense", "list"), "genqa", "unrecognized arguments: --nonsense"),

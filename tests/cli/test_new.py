@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from cli.examples import call, complaints
+from ravestate.yaml_text import load_yaml
 
 Capture = pytest.CaptureFixture[str]
 
@@ -115,3 +116,9 @@ def test_a_keyword_is_refused_as_one(name: str, folder: Path, capsys: Capture) -
     code, _, errors = call(capsys, "new", name)
     assert code == 2 and f"{name!r} is a Python keyword" in errors
     assert list(folder.iterdir()) == []
+
+
+def test_a_name_that_yaml_reads_as_a_truth_value_works(folder: Path, capsys: Capture) -> None:
+    assert call(capsys, "new", "yes")[0] == 0
+    text = (folder / "yes" / "agent.yaml").read_text(encoding="utf-8")
+    assert "yes" in load_yaml(text, "agent.yaml")["settings"]

@@ -211,3 +211,22 @@ def test_the_advice_names_built_in_signals_as_they_are_imported() -> None:
         ctx[rs.pressure]
 
     assert acts(look)[1][0].endswith("write reads=rs.pressure")
+
+
+HAVE_LIGHT = False
+
+
+async def guarded(ctx: Any) -> None:
+    if HAVE_LIGHT:
+        ctx[face] = ctx[demo.slot_of_a_newer_version]
+    if hasattr(demo, "loudness"):
+        ctx[demo.loudness] = 1.0
+    try:
+        ctx.emit(demo.loud)
+    except AttributeError:
+        ctx[mood] = "quiet"
+
+
+def test_guarded_code_raises_no_alarm() -> None:
+    found, missing = acts(guarded, writes=mood)
+    assert (list(found.unknown), missing) == ([], [])

@@ -117,7 +117,12 @@ class CommandParser(argparse.ArgumentParser):
             alike = [o for o in self._option_string_actions if nearest(name.strip("-"), [o.strip("-")])]
             hint = nearest(name, alike)
             if name in ("--port", "--host") and self.prog.endswith((" board", " run")):
-                hint = f"; write --set webio.{name[2:]}={unknown[0].partition('=')[2] or ''.join(unknown[1:2])}"
+                after = [*(args or sys.argv[1:])]
+                after = after[after.index(name) + 1 :] if name in after else []
+                value = unknown[0].partition("=")[2] or next(
+                    (word for word in after[:1] if word[0] != "-"), name[2:].upper()
+                )
+                hint = f"; write --set webio.{name[2:]}={value}"
             self.error(f"unrecognized arguments: {' '.join(unknown)}{hint}")
         return options, unknown
 

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Literal
 
 from ravestate.errors import PlatformError, UsageError, nearest
-from ravestate.loading.spec import AgentSpec
+from ravestate.loading.spec import AgentSpec, with_required
 from ravestate.settings import variable_of
 
 COMPLETE = (
@@ -77,7 +77,7 @@ def names(options: argparse.Namespace) -> list[str]:
 
 def leave_out_absent(agent: AgentSpec, command: str) -> None:
     """Leave the modules out whose packages are absent, and name the line to type. A module with settings stays."""
-    present = [module.name for module in agent.modules]
+    present = [module.name for module in with_required(agent.modules)]
     needs = {name: PACKAGES[name] for name in present if name in PACKAGES}
     absent = {name for name, packages in needs.items() if not all(map(find_spec, packages))}
     if not absent:
@@ -93,6 +93,7 @@ def leave_out_absent(agent: AgentSpec, command: str) -> None:
         if module.name in COMPLETE and any(required.name in out for required in module.requires):
             out.add(module.name)
     agent.modules = [module for module in agent.modules if module.name not in out]
+    out -= {module.name for module in with_required(agent.modules)}  # a module of the user's needs it
     for name in out:
         agent.settings.pop(name, None)
     left = (
@@ -125,7 +126,7 @@ def choose_small_talk(agent: AgentSpec, command: str) -> None:
 
 def shown(kind: Literal["data", "state"], *parts: str) -> str:
     """Return the path of a file of the user, with ``~`` for their home."""
-    from ravestate.modules._folders import user_folder
+    from ravestate.folders import user_folder
 
     try:
         path, home = user_folder(kind).joinpath(*parts), Path.home()

@@ -120,7 +120,7 @@ class AgentSpec:
         if not equals or not dot or not module or not key:
             self.faults.append(f"--set {text}: write --set module.key=value, e.g. --set idle.bored_after=10")
             return
-        known = {found.name: found for found in _with_required(self.modules)}
+        known = {found.name: found for found in with_required(self.modules)}
         if module not in known:
             hint = ": name it too" if module in BUILT_IN else nearest(module, known) or nearest(module, BUILT_IN)
             self.faults.append(f"--set {text}: module {module!r} is not part of this agent{hint}")
@@ -146,7 +146,7 @@ class AgentSpec:
         if not self.faults:
             return
         try:
-            load_settings(_with_required(self.modules), self.settings)
+            load_settings(with_required(self.modules), self.settings)
         except DeclarationErrors as faults:
             self.faults += map(str, faults.exceptions)
         raise UsageError("\n".join(self.faults))
@@ -185,7 +185,7 @@ def _filled(value: Any, wrong: list[str]) -> Any:
     return value
 
 
-def _with_required(modules: Iterable[Module]) -> list[Module]:
+def with_required(modules: Iterable[Module]) -> list[Module]:
     """Return the modules and all that they require."""
     found = list(modules)
     for module in found:  # grows on the way

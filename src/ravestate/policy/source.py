@@ -1,8 +1,9 @@
 """The source of a rule's function: acts that its declaration lacks, names that do not exist, a forgotten ``await``.
 
 An act counts only if the function's globals or its closure lead to a slot or a signal. Everything else, such as names that
-the function binds itself, is checked when the rule runs (L3). So is a branch on a variable of an enclosing function: that
-function may make several rules with different declarations.
+the function binds itself, is checked when the rule runs (L3). So is guarded code: a branch on a variable of an enclosing
+function, which may make several rules with different declarations; a branch on a constant or on ``hasattr``; and the body
+of a ``try`` that expects a missing name.
 """
 
 from __future__ import annotations
@@ -107,7 +108,10 @@ class _Reader:
             for name in function.__code__.co_freevars
             if not isinstance(self._names.get(name), (Slot, Signal, ModuleType))
         }
-        """The variables of enclosing functions, but for slots and signals."""
+        self.variables |= {
+            name for name in function.__code__.co_names if name == "hasattr" or isinstance(self._names.get(name), bool)
+        }
+        """Names whose value may guard a branch: variables of enclosing functions, constants, and ``hasattr``."""
         for node in ast.walk(tree):
             for name in _bound(node):
                 if name == self._context and node is not arguments[0]:
@@ -179,7 +183,7 @@ def _own(root: ast.AST, variables: Collection[str]) -> Iterator[ast.AST]:
     while stack:
         node = stack.pop()
         yield node
-        decided = _is_decided(node, variables)
+        decided = _is_decided(node, variables) or _expects_missing_names(node)
         for name, value in ast.iter_fields(node):
             if decided and name in ("body", "orelse", "cases"):
                 continue
@@ -195,6 +199,15 @@ def _is_decided(node: ast.AST, variables: Collection[str]) -> bool:
     test = getattr(node, "subject" if isinstance(node, ast.Match) else "test", None)
     return isinstance(test, ast.AST) and any(
         isinstance(part, ast.Name) and part.id in variables for part in ast.walk(test)
+    )
+
+
+def _expects_missing_names(node: ast.AST) -> bool:
+    return isinstance(node, ast.Try) and any(
+        isinstance(part, ast.Name) and part.id in ("AttributeError", "NameError", "KeyError", "LookupError")
+        for handler in node.handlers
+        if handler.type is not None
+        for part in ast.walk(handler.type)
     )
 
 

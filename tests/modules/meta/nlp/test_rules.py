@@ -24,7 +24,9 @@ SLOTS = (
     nlp.tags,
     nlp.entities,
     nlp.triples,
+    nlp.normal,
     nlp.question,
+    nlp.analysis,
     nlp.yesno,
 )
 
@@ -49,6 +51,20 @@ def test_all_slots_are_written() -> None:
         assert sim.read(nlp.question) is None
         assert sim.read(nlp.yesno).no == 2
         assert [entity.text for entity in sim.read(nlp.entities)] == ["Berlin"]
+
+
+def test_the_analysis_is_one_record_with_acts_feelings_and_statements() -> None:
+    with simulate(nlp) as sim:
+        sim.say("Thank you! My mother is ill.")
+        seen = sim.read(nlp.analysis)
+        assert seen is not None
+        assert sim.read(nlp.normal) == seen.normal.text
+        assert (seen.text, seen.sentences) == ("Thank you! My mother is ill.", ("Thank you!", "My mother is ill."))
+        thanks = seen.act("thanks")
+        assert thanks is not None and thanks.text == "Thank you!" and thanks.score > 0.5
+        assert seen.feelings["illness"].text == "My mother is ill."
+        assert [statement.triple for statement in seen.statements] == list(sim.read(nlp.triples))
+        assert seen.act("farewell") is None
 
 
 def test_simultaneous_utterances_are_analysed_in_order(

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from ravestate.errors import PlatformError
-from ravestate.modules._sentences import Encoder
+from ravestate.language import Encoder
 from ravestate.modules.skill.agentqa import Life, Match, Router, Topic, read_life
 from ravestate.modules.skill.agentqa.router import Miss
 

@@ -329,7 +329,7 @@ def test_without_the_sentence_model_others_answer_and_it_says_what_to_install(
             self.folder = folder
 
         def __call__(self, life: Any) -> Router:
-            from ravestate.modules._sentences import Encoder
+            from ravestate.language import Encoder
 
             return Router(life, Encoder(self.folder))
 

@@ -265,3 +265,45 @@ def test_no_apology_for_words_that_others_replace() -> None:
         sim.say("1")
         sim.advance(100.0)
         assert sim.said[1:] == ["after 1"]
+
+
+def test_a_rule_that_waits_at_the_start_is_no_reason_to_fill() -> None:
+    module = rs.Module("early", requires=[rawio])
+    never = module.signal("never")
+
+    @module.rule(when=rs.startup, writes=rawio.output)
+    async def say(ctx: rs.RuleContext) -> rs.Resign:
+        return rs.Resign("there is nothing to say")
+
+    @module.rule(when=rs.startup & never, emits=never, writes=rawio.output)
+    async def prefer(ctx: rs.RuleContext) -> None: ...
+
+    @module.rule(when=rs.startup, emits=never)
+    async def wait(ctx: rs.RuleContext) -> rs.Resign:
+        await ctx.sleep(8.0)
+        return rs.Resign("there is nothing to wait for")
+
+    with simulate(fillers, module) as sim:
+        sim.advance(30.0)
+        assert sim.said == []
+
+
+def test_an_old_answer_does_not_end_the_wait_for_the_next() -> None:
+    module = rs.Module("turns", requires=[rawio])
+
+    @module.rule(when=rawio.input.changed, writes=rawio.output)
+    async def answer_late(ctx: rs.RuleContext) -> rs.Resign | None:
+        if ctx.payload(rawio.input.changed) == "first?":
+            await ctx.sleep(10.0)
+            ctx[rawio.output] = "first answer"
+            return None
+        await ctx.sleep(60.0)
+        return rs.Resign("no answer")
+
+    with simulate(fillers, module) as sim:
+        sim.say("first?")
+        sim.advance(9.5)
+        sim.say("second?")
+        sim.advance(70.0)
+        after = sim.said[sim.said.index("first answer") + 1 :]
+        assert after  # a filler, the delay, the loss: whatever it says, it is not silent

@@ -81,3 +81,11 @@ def test_a_user_hears_goodbye_only_once() -> None:
         sim.advance(120.0)
         sim.put(interloc.users, {})
         assert len(sim.said) == 4
+
+
+def test_a_user_who_was_greeted_hears_no_second_hello() -> None:
+    with simulate(hibye) as sim:
+        sim.put(interloc.users, {"door": None})
+        sim.say("hello")
+        assert sim.said[0] in phrases("greeting")
+        assert sim.said[1:] and sim.said[1] in phrases("returned")

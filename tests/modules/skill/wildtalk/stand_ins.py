@@ -109,8 +109,8 @@ PATH = f"/{MODEL.repository}/resolve/{MODEL.revision}/{MODEL.file}"
 class Hub:
     """A hub with one model. It redirects to a store of files, and does what `script` says, one entry a request.
 
-    An entry is a status, or a pair of a status and the seconds to wait, or ``("cut", bytes)``, or ``"whole"`` for a store
-    that knows no ranges. Without an entry the file is sent.
+    An entry is a status, or a status and the seconds to wait. ``("cut", bytes)`` breaks the connection after so many bytes.
+    ``"whole"`` sends the whole file whatever the range. Without an entry the file is sent.
     """
 
     def __init__(self, content: bytes = CONTENT) -> None:

@@ -16,7 +16,7 @@ HERE = "http://127.0.0.1:1234/v1"
 
 
 class Machine:
-    """What the choice finds."""
+    """The servers, files and packages that the choice finds."""
 
     def __init__(self, patch: pytest.MonkeyPatch, folder: Path) -> None:
         self.servers: list[LocalServer] = []

@@ -55,18 +55,18 @@ def test_the_best_is_the_largest_that_talks_fluently_and_fits() -> None:
 
 def test_the_folders_are_those_of_the_environment(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("sys.platform", "linux")
-    monkeypatch.setenv("HOME", "/home/ada")
+    monkeypatch.setenv("HOME", "/ada")
     for name in ("XDG_DATA_HOME", "XDG_CACHE_HOME", "HF_HOME", "HF_HUB_CACHE", "LLAMA_CACHE"):
         monkeypatch.delenv(name, raising=False)
     usual = [str(place) for place in folders()]
     assert usual == [
-        "/home/ada/.local/share/ravestate/models",
-        "/home/ada/.lmstudio/models",
-        "/home/ada/.cache/lm-studio/models",
-        "/home/ada/.cache/huggingface/hub",
-        "/home/ada/.cache/llama.cpp",
-        "/home/ada/.local/share/nomic.ai/GPT4All",
-        "/home/ada/.local/share/Jan/data",
+        "/ada/.local/share/ravestate/models",
+        "/ada/.lmstudio/models",
+        "/ada/.cache/lm-studio/models",
+        "/ada/.cache/huggingface/hub",
+        "/ada/.cache/llama.cpp",
+        "/ada/.local/share/nomic.ai/GPT4All",
+        "/ada/.local/share/Jan/data",
     ]
     monkeypatch.setenv("XDG_DATA_HOME", "/data")
     monkeypatch.setenv("HF_HOME", "/hf")

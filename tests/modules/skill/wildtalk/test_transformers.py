@@ -273,7 +273,7 @@ def test_a_model_is_fetched_from_a_hub_once(tiny: Path, tmp_path: Path, monkeypa
         monkeypatch.setattr(
             constants, "HUGGINGFACE_CO_URL_TEMPLATE", address + constants.HUGGINGFACE_CO_URL_TEMPLATE[22:]
         )
-        monkeypatch.setattr(library, "hf_api", lambda *_: HfApi(endpoint=address))
+        monkeypatch.setattr(library, "_hf_api", HfApi(endpoint=address))
         load()
     assert "someone/tiny" not in file._Model._loaded
     monkeypatch.setattr(constants, "HF_HUB_OFFLINE", True)

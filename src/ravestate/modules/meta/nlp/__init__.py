@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from ravestate.language.entity import Entity
+from ravestate.language.matcher import Match
+
 from . import rules
+from .analysis import Analysis
 from .answer import YesNo
-from .entity import Entity
 from .names import (
     Settings,
     about_agent,
+    analysis,
     entities,
     intent_bye,
     intent_hi,
@@ -15,6 +19,7 @@ from .names import (
     is_question,
     lemmas,
     module,
+    normal,
     pos,
     question,
     tags,
@@ -23,16 +28,23 @@ from .names import (
     triples,
     yesno,
 )
+from .phrase import Phrase
 from .question_word import QuestionWord
+from .statement import Statement
 from .triple import Triple
 
 __all__ = [
+    "Analysis",
     "Entity",
+    "Match",
+    "Phrase",
     "QuestionWord",
     "Settings",
+    "Statement",
     "Triple",
     "YesNo",
     "about_agent",
+    "analysis",
     "entities",
     "intent_bye",
     "intent_hi",
@@ -40,6 +52,7 @@ __all__ = [
     "is_question",
     "lemmas",
     "module",
+    "normal",
     "pos",
     "question",
     "rules",

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import ravestate as rs
+from ravestate.language.entity import Entity
 from ravestate.modules import interloc, rawio
 
+from .analysis import Analysis
 from .answer import YesNo
 from .context_lock import ContextLock
-from .entity import Entity
 from .question_word import QuestionWord
 from .triple import Triple
 
@@ -26,6 +27,9 @@ module = rs.Module("nlp", requires=[rawio, interloc], settings=Settings)
 text: rs.Slot[str] = module.slot("text", "", always=True)
 """The last analysed utterance. Rules that need both the text and its analysis wait for this slot, not for
 ``rawio.input``."""
+
+normal: rs.Slot[str] = module.slot("normal", "", always=True)
+"""The last utterance as written English: its normal form."""
 
 lock: rs.Slot[ContextLock] = module.slot("lock", ContextLock())
 """Analysis takes one utterance at a time: a later one may correct an earlier one (*no, Bremen*)."""
@@ -50,6 +54,9 @@ triples: rs.Slot[tuple[Triple, ...]] = module.slot("triples", (), always=True)
 
 question: rs.Slot[QuestionWord | None] = module.slot("question", None, always=True)
 """The kind of the first question; None if nothing is asked."""
+
+analysis: rs.Slot[Analysis | None] = module.slot("analysis", None, always=True)
+"""The whole analysis as one record, with acts, feelings and statements. Rules read it instead of analysing the text."""
 
 yesno: rs.Slot[YesNo] = module.slot("yesno", YesNo(), always=True)
 """The meaning as an answer: yes or no. This slot is written last."""

@@ -9,10 +9,10 @@ from functools import lru_cache
 from typing import Any
 
 from ravestate.errors import PlatformError
-from ravestate.modules._loading import LOADING
+from ravestate.language.entity import Entity
+from ravestate.language.loading import LOADING
 
 from .blocking import blocked
-from .entity import Entity
 from .preprocessing import READ_AS, preprocess
 from .repair import repaired
 from .tree import Tree, Word

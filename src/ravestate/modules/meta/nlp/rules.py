@@ -7,13 +7,16 @@ import contextlib
 
 import ravestate as rs
 from ravestate.errors import PlatformError
+from ravestate.language.bundled import ModelMissing, warn_once
+from ravestate.language.heap import give_back
+from ravestate.language.matcher import bundled_matcher
 from ravestate.modules import interloc, rawio
-from ravestate.modules._room import give_back
 
-from .analysis import analyse
+from .analysis import MATCHERS, analyse
 from .names import (
     Settings,
     about_agent,
+    analysis,
     entities,
     intent_bye,
     intent_hi,
@@ -22,6 +25,7 @@ from .names import (
     lemmas,
     lock,
     module,
+    normal,
     pos,
     question,
     tags,
@@ -42,10 +46,21 @@ def load(ctx: rs.RuleContext) -> None:
         give_back()
 
 
+@module.rule(when=rs.startup, background=True)
+def learn(ctx: rs.RuleContext) -> None:
+    """Load the matchers in the background; until then, they know only the examples themselves."""
+    try:
+        for name in MATCHERS:
+            bundled_matcher(name).load()
+        give_back()
+    except ModelMissing as error:
+        warn_once(ctx.log, error)
+
+
 @module.rule(
     when=rawio.input.changed,
     reads=(interloc.agent, lock),
-    writes=(text, tokens, lemmas, pos, tags, entities, triples, question, yesno),
+    writes=(text, normal, tokens, lemmas, pos, tags, entities, triples, question, analysis, yesno),
     emits=(is_question, about_agent, intent_play, intent_hi, intent_bye),
 )
 async def understand(ctx: rs.RuleContext) -> None:
@@ -58,6 +73,7 @@ async def understand(ctx: rs.RuleContext) -> None:
         seen = await asyncio.to_thread(analyse, heard, pipeline(settings.pipeline), names)
     words = seen.tree.words
     ctx[text] = heard
+    ctx[normal] = seen.normal.text
     ctx[tokens] = tuple(word.text for word in words)
     ctx[lemmas] = tuple(word.lemma for word in words)
     ctx[pos] = tuple(word.pos for word in words)
@@ -65,6 +81,7 @@ async def understand(ctx: rs.RuleContext) -> None:
     ctx[entities] = seen.entities
     ctx[triples] = seen.triples
     ctx[question] = seen.question
+    ctx[analysis] = seen
     ctx[yesno] = seen.yesno
     if seen.question is not None:
         ctx.emit(is_question, seen.question)

@@ -10,7 +10,7 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from ravestate.errors import PlatformError
-from ravestate.modules._loading import LOADING
+from ravestate.language.loading import LOADING
 
 from .store import FORMAT, RawNode, RawRelation, check_format
 from .types import Types

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any, cast
 
 from ravestate.errors import PlatformError
-from ravestate.modules._loading import LOADING
+from ravestate.language.loading import LOADING
 
 from .copying import copy_database
 from .database import connect, survives

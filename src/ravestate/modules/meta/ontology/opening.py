@@ -6,7 +6,7 @@ import os
 from pathlib import Path
 from typing import Any
 
-from ravestate.modules._folders import user_folder
+from ravestate.folders import user_folder
 
 from .memory import Memory
 from .names import Settings

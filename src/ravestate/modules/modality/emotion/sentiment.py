@@ -7,7 +7,7 @@ from importlib import import_module
 from typing import Any
 
 from ravestate.errors import PlatformError
-from ravestate.modules._loading import LOADING
+from ravestate.language.loading import LOADING
 
 
 def polarity(text: str) -> float:

@@ -12,7 +12,7 @@ from types import TracebackType
 from typing import Literal, Protocol, TextIO
 
 from ravestate.errors import PlatformError
-from ravestate.modules._folders import user_folder
+from ravestate.folders import user_folder
 from ravestate.modules._text import printable, without_controls
 
 _FULL = (errno.ENOSPC, errno.EFBIG, errno.EDQUOT)

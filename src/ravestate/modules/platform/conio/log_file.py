@@ -10,7 +10,7 @@ from collections.abc import Generator
 from logging.handlers import RotatingFileHandler
 from pathlib import Path
 
-from ravestate.modules._folders import user_folder
+from ravestate.folders import user_folder
 
 LARGEST = 1_000_000
 """The size in bytes after which a new log file begins; one old file is kept."""

@@ -11,9 +11,9 @@ from functools import cache, lru_cache
 from importlib import import_module
 from typing import TYPE_CHECKING
 
-from ravestate.modules._bundled import ModelMissing
-from ravestate.modules._loading import LOADING
-from ravestate.modules._sentences import Encoder
+from ravestate.language import Encoder
+from ravestate.language.bundled import ModelMissing
+from ravestate.language.loading import LOADING
 
 from .asking import Asked, about_agent, plain
 from .life import Life

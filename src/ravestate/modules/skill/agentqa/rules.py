@@ -9,9 +9,9 @@ from dataclasses import replace
 
 import ravestate as rs
 from ravestate.errors import PlatformError, RavestateError, RuleError
+from ravestate.language.bundled import ModelMissing, warn_once
+from ravestate.language.heap import give_back
 from ravestate.modules import idle, interloc, nlp, ontology, rawio, verbaliser
-from ravestate.modules._bundled import ModelMissing, warn_once
-from ravestate.modules._room import give_back
 from ravestate.modules.meta.verbaliser.intents import Intent
 
 from .asking import returns

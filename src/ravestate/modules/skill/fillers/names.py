@@ -24,6 +24,9 @@ module = rs.Module("fillers", requires=[rawio, idle, verbaliser], settings=Setti
 filled: rs.Slot[float | None] = module.slot("filled", None)
 """The time of the last filler, in seconds since the context began."""
 
+waiting = module.flag("waiting")
+"""Whether the user has said something and has heard no answer yet; fillers and apologies are for them alone."""
+
 promised = module.flag("promised")
 """Whether the agent still owes an answer after a filler."""
 

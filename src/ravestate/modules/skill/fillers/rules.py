@@ -6,7 +6,7 @@ import ravestate as rs
 from ravestate.modules import idle, rawio, verbaliser
 from ravestate.modules.meta.verbaliser.intents import Intent
 
-from .names import filled, late, lost, module, promised
+from .names import filled, late, lost, module, promised, waiting
 
 ENOUGH = 5.0
 """Seconds until another filler may follow."""
@@ -19,7 +19,7 @@ REMEMBERED = 120.0
     reads=filled,
     writes=promised,
     emits=idle.impatient,
-    until=rawio.input.changed | rawio.output.changed | rawio.speaking.true | rs.activity.false | idle.impatient,
+    until=rawio.input.changed | waiting.false | rawio.speaking.true | rs.activity.false | idle.impatient,
     detached=True,
     background=True,
 )
@@ -38,11 +38,13 @@ def _silent(speaking: bool) -> bool:
 
 @module.rule(
     when=idle.impatient.max_age(0.0) & rawio.speaking.holds(_silent),  # later, the answer may have come
-    reads=filled,
+    reads=(filled, waiting),
     writes=(verbaliser.intent, filled, promised),
 )
 async def fill_the_pause(ctx: rs.RuleContext) -> rs.Resign | None:
     """Say a filler while nothing else is said."""
+    if not ctx[waiting]:
+        return rs.Resign("the user waits for no answer")
     last = ctx[filled]
     if last is not None and ctx.now - last < ENOUGH:
         return rs.Resign(f"a pause was filled {ctx.now - last:.1f} s ago")
@@ -58,7 +60,7 @@ async def fill_the_pause(ctx: rs.RuleContext) -> rs.Resign | None:
     | rawio.input.changed.detached()
     | rawio.speaking.true.detached(),
     reads=(rawio.input, rawio.output, rawio.speaking, verbaliser.last, promised),
-    writes=promised,
+    writes=(promised, waiting),
     patience=0.0,
     detached=True,
     background=True,
@@ -73,6 +75,7 @@ async def notice_answer(ctx: rs.RuleContext) -> rs.Resign | None:
     if said is not None and ctx.payload(rawio.input.changed) not in (None, ctx[rawio.input]):
         return rs.Resign("this answers what the user said before")
     ctx[promised] = False
+    ctx[waiting] = said is None and bool((ctx.payload(rawio.input.changed) or "").strip())
     return None
 
 

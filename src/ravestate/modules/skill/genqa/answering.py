@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from ravestate.modules._sentences import Reranker
+from ravestate.language import Reranker
 
 from .confidence import confidence
 from .index import Found, Index

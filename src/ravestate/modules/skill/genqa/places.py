@@ -5,7 +5,7 @@ from __future__ import annotations
 import threading
 from pathlib import Path
 
-from ravestate.modules._folders import user_folder
+from ravestate.folders import user_folder
 
 from .answering import Answerer
 from .names import Settings

@@ -7,9 +7,9 @@ from dataclasses import replace
 
 import ravestate as rs
 from ravestate.errors import DeclarationError, DeclarationErrors, PlatformError
+from ravestate.language.bundled import ModelMissing, warn_once
+from ravestate.language.heap import give_back
 from ravestate.modules import nlp, verbaliser
-from ravestate.modules._bundled import ModelMissing, warn_once
-from ravestate.modules._room import give_back
 
 from .answering import Answer, Answerer
 from .names import Settings, before, found, module

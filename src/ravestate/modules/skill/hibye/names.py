@@ -9,3 +9,6 @@ module = rs.Module("hibye", requires=[rawio, interloc, verbaliser])
 
 parted: rs.Slot[float | None] = module.slot("parted", None)
 """The agent's last goodbye, in seconds since the context began."""
+
+greeted: rs.Slot[float | None] = module.slot("greeted", None)
+"""The agent's last greeting of a user who came, in seconds since the context began."""

@@ -6,17 +6,20 @@ import ravestate as rs
 from ravestate.modules import interloc, rawio, verbaliser
 from ravestate.modules.meta.verbaliser.intents import Intent
 
-from .names import module, parted
+from .names import greeted, module, parted
 from .words import is_farewell, is_greeting
 
 JUST_NOW = 60.0
-"""Seconds for which a goodbye counts: a user who leaves within this time hears no second one."""
+"""Seconds for which a greeting or a goodbye counts: the user hears no second one within this time."""
 
 
-@module.rule(when=interloc.users.added, writes=verbaliser.intent, weight=1.1)  # outranks a simultaneous goodbye
+@module.rule(
+    when=interloc.users.added, writes=(verbaliser.intent, greeted), weight=1.1
+)  # outranks a simultaneous goodbye
 async def greet_who_comes(ctx: rs.RuleContext) -> None:
     """Greet a user who comes."""
     name = ctx.payload(interloc.users.added).item
+    ctx[greeted] = ctx.now
     ctx[verbaliser.intent] = Intent("greeting", {"name": name}, __package__)
 
 
@@ -31,10 +34,13 @@ async def bid_farewell_to_who_leaves(ctx: rs.RuleContext) -> rs.Resign | None:
     return None
 
 
-@module.rule(when=rawio.input.changed.where(is_greeting), writes=verbaliser.intent)
+@module.rule(when=rawio.input.changed.where(is_greeting), reads=greeted, writes=(verbaliser.intent, greeted))
 async def answer_hello(ctx: rs.RuleContext) -> None:
-    """Answer a greeting."""
-    ctx[verbaliser.intent] = Intent("hello", package=__package__)
+    """Answer a greeting; after the agent's own, without a second hello."""
+    said = ctx[greeted]
+    returned = said is not None and ctx.now - said < JUST_NOW
+    ctx[greeted] = ctx.now
+    ctx[verbaliser.intent] = Intent("returned" if returned else "hello", package=__package__)
 
 
 @module.rule(when=rawio.input.changed.where(is_farewell), writes=(verbaliser.intent, parted))

@@ -10,7 +10,7 @@ from collections.abc import AsyncGenerator, Sequence
 from pathlib import Path
 
 from ravestate.errors import PlatformError
-from ravestate.modules._bundled import LANGUAGE_MODEL, folders_of, requirement
+from ravestate.language.bundled import LANGUAGE_MODEL, folders_of, requirement
 
 from . import llama_process
 from .backend import Message, Progress

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ravestate.errors import UsageError, nearest
-from ravestate.modules._folders import user_folder
+from ravestate.folders import user_folder
 from ravestate.yaml_text import load_yaml
 
 RECOMMENDED = "qwen2.5-1.5b"

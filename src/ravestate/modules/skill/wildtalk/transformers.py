@@ -17,7 +17,7 @@ from typing import Any, ClassVar, TypeVar, cast
 from weakref import WeakValueDictionary
 
 from ravestate.errors import PlatformError
-from ravestate.modules._loading import LOADING
+from ravestate.language.loading import LOADING
 
 from .backend import Message, Progress
 

@@ -6,7 +6,7 @@ from typing import Literal
 
 import pytest
 
-from ravestate.modules._folders import user_folder
+from ravestate.folders import user_folder
 
 
 @pytest.mark.parametrize(

@@ -36,9 +36,7 @@ def warn_once(log: logging.Logger, error: ModelMissing) -> None:
     """Log one warning per process about the missing sentence models, with the command that installs them."""
     message = str(error)
     if not folders_of(SENTENCE_MODELS):
-        message = (
-            f"the agent talks without the sentence models of agentqa and genqa; to install: {requirement(SENTENCE_MODELS)}"
-        )
+        message = f"the agent talks without the sentence models; to install: {requirement(SENTENCE_MODELS)}"
     with _warning:
         if message in _warned:
             return

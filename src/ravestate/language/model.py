@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ravestate.errors import PlatformError
-from ravestate.modules._bundled import SENTENCE_MODELS, ModelMissing, folders_of, requirement
-from ravestate.modules._loading import LOADING
+from ravestate.language.bundled import SENTENCE_MODELS, ModelMissing, folders_of, requirement
+from ravestate.language.loading import LOADING
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from ravestate.modules._room import give_back
+from ravestate.language.heap import give_back
 
 
 def test_the_c_library_returns_the_memory(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -13,8 +13,8 @@ import numpy as np
 import pytest
 
 import ravestate as rs
-from ravestate.modules._sentences import Encoder, Reranker, model
-from ravestate.modules._sentences.model import SentenceModel, folder_of, model_in
+from ravestate.language import Encoder, Reranker, model
+from ravestate.language.model import SentenceModel, folder_of, model_in
 
 
 def test_like_sentences_lie_near_each_other() -> None:
@@ -168,7 +168,7 @@ def test_a_broken_file_is_a_platform_error(tmp_path: Path) -> None:
 
 def test_the_library_reports_nothing(tmp_path: Path) -> None:
     """By default onnxruntime records its use in the user's folders, and reports it to its makers."""
-    program = "from ravestate.modules._sentences import Encoder; Encoder().encode(['Hello.'])"
+    program = "from ravestate.language import Encoder; Encoder().encode(['Hello.'])"
     environment = {k: v for k, v in os.environ.items() if not k.startswith(("ORT_", "XDG_"))}
     subprocess.run([sys.executable, "-c", program], env={**environment, "HOME": str(tmp_path)}, check=True)
     assert list(tmp_path.rglob("*")) == []

@@ -1,0 +1,235 @@
+"""A small classifier of sentences by meaning and spelling, with a class *none of these*.
+
+It is a kernel ridge regression over example sentences. The kernel adds a Gaussian of the distance in meaning (from an
+`Encoder`) and the cosine of the spelling (groups of three and four letters). Different shapes, such as *my* instead of
+*your*, lower both. Every list of sentences in the project
+that stands for a class is the examples of a matcher; there is no other way to recognise an utterance by its meaning.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+from .bundled import ModelMissing
+from .encoder import Encoder
+from .entity import Entity
+from .examples import bundled
+from .loading import LOADING
+from .normal import plain
+from .shape import likeness, shape
+from .spelling import Spelling
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+SHARPNESS = 4.0
+"""The slope of the similarity of meaning: the vectors of short sentences lie close together."""
+SPELLING = 0.1
+"""The weight of similar spelling; similar meaning has the weight 1. It tolerates typing errors."""
+SHAPE = 0.6
+"""The part of the similarity that two sentences lose whose shapes have nothing in common."""
+COMMON = 0.1
+"""The similarity of any two sentences; it allows classes of different sizes."""
+RIDGE = 0.1
+"""The ridge penalty: it limits the weight of a single example."""
+NONE = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Match:
+    """A sentence that resembles the examples of a class."""
+
+    score: float
+    """The confidence: the share of such sentences that belong to the class, 0 to 1."""
+    example: str
+    """The nearest example."""
+    margin: float
+    """The distance from the next best class, in scores of the regression: an example has about 1."""
+    entities: tuple[Entity, ...] = ()
+    """The named entities of the utterance, where nlp matched it."""
+    name: str = ""
+    """The class."""
+    text: str = ""
+    """The sentence."""
+
+
+class Matcher:
+    """A classifier for sentences: one of several classes, or none. Thread-safe.
+
+    Until the model is loaded, and where it is not installed, only the examples themselves are recognised, word for word.
+
+    Example:
+        ::
+
+            matcher = Matcher({"hours": ["when do you open", "how late are you open"]}, none=["I like tea"])
+            matcher.load()
+            matcher.match("At what time does the museum open?")     # Match(0.93, 'when do you open', ..., name='hours')
+    """
+
+    def __init__(
+        self,
+        examples: Mapping[str, Sequence[str]],
+        none: Sequence[str] = (),
+        *,
+        least: float = 0.5,
+        shapes: float = SHAPE,
+        encoder: Encoder | None = None,
+    ) -> None:
+        """Take the examples; nothing is loaded yet.
+
+        Args:
+            examples: Sentences by class.
+            none: Sentences that belong to no class.
+            least: The confidence below which a sentence belongs to no class.
+            shapes: The weight of the shape of a sentence (the persons that it mentions, whether it asks), 0 to 1.
+            encoder: By default the shared one.
+        """
+        pairs = [(plain(text), name) for name, texts in examples.items() for text in texts]
+        pairs += [(plain(text), NONE) for text in none]
+        self.least = least
+        self._shapes = shapes
+        self._pairs = tuple(dict(pairs).items())
+        self._exact = dict(self._pairs)
+        self._encoder = encoder or shared_encoder()
+        self._lock = threading.Lock()
+        self._learnt: _Learnt | None = None
+
+    @property
+    def loaded(self) -> bool:
+        """Whether it has learnt the examples."""
+        return self._learnt is not None
+
+    def load(self) -> None:
+        """Load the encoder and learn the examples, once.
+
+        Raises:
+            PlatformError: The sentence model is missing (`ModelMissing`) or broken. The message says what to do.
+        """
+        if self._learnt is not None:  # no lock is needed just to check
+            return
+        with self._lock:
+            if self._learnt is None:
+                try:
+                    with LOADING:
+                        import_module("numpy")
+                except ImportError as error:
+                    raise ModelMissing("sentence models need numpy: pip install 'ravestate[sentences]'") from error
+                self._learnt = _Learnt(self._pairs, self._encoder, self._shapes)
+
+    def match(self, sentence: str) -> Match | None:
+        """Return the class that a sentence belongs to; None if it belongs to none."""
+        return self.match_all([sentence])[0]
+
+    def match_all(self, sentences: Sequence[str]) -> list[Match | None]:
+        """Return the class of each sentence; None for one that belongs to none."""
+        bests = (ranked[0] if ranked else None for ranked in map(self.ranked, sentences))
+        return [best if best and best.name != NONE and best.score >= self.least else None for best in bests]
+
+    def ranked(self, sentence: str) -> list[Match]:
+        """Return all classes, best first; the class named by an empty string stands for none of them."""
+        text = plain(sentence)
+        if self._learnt is not None:
+            return self._learnt.ranked(text, sentence)
+        name = self._exact.get(text)
+        return [] if name is None else [Match(1.0, text, 1.0, name=name, text=sentence)]
+
+
+@cache
+def shared_encoder() -> Encoder:
+    """Return the bundled encoder, one for all matchers."""
+    return Encoder()
+
+
+@cache
+def bundled_matcher(name: str) -> Matcher:
+    """Return the matcher of a file of examples in this room, ``acts`` or ``feelings``; one for all contexts."""
+    examples = bundled(name)
+    return Matcher(examples.classes, (*examples.none, *bundled("none").none))
+
+
+class _Learnt:
+    """The classifier, after learning."""
+
+    def __init__(self, pairs: Sequence[tuple[str, str]], encoder: Encoder, shapes: float) -> None:
+        import numpy as np
+
+        self._encoder, self._weight = encoder, shapes
+        self._examples = [text for text, _ in pairs]
+        self._classes = [*dict.fromkeys(name for _, name in pairs if name != NONE), NONE]
+        self._of = np.array([self._classes.index(name) for _, name in pairs])
+        self._meanings = encoder.encode_lasting(self._examples)
+        self._spelling = Spelling(self._examples)
+        self._shapes = np.array([shape(text) for text in self._examples], dtype=np.int8)
+        kernel = self._kernel(self._examples, self._meanings)
+        kernel[np.diag_indices_from(kernel)] += RIDGE
+        inverse = np.linalg.inv(kernel)
+        targets = np.eye(len(self._classes))[self._of]
+        self._weights = inverse @ targets
+        # The scores of each example from a classifier that has learnt all the others, in closed form.
+        left_out = targets - self._weights / np.diag(inverse)[:, None]
+        self._slope, self._centre = _calibrated(_margins(left_out), left_out.argmax(axis=1) == self._of)
+
+    def ranked(self, text: str, sentence: str) -> list[Match]:
+        """Return all classes, best first."""
+        import numpy as np
+
+        meanings = self._encoder.encode([text])
+        kernel = self._kernel([text], meanings)[0]
+        scores = kernel @ self._weights
+        order = np.argsort(-scores, kind="stable")
+        found: list[Match] = []
+        for number in map(int, order):
+            others = np.delete(scores, number)
+            margin = float(scores[number] - others.max(initial=-1.0))
+            confidence = float(1 / (1 + np.exp(-self._slope * (margin - self._centre))))
+            near = self._examples[int(np.where(self._of == number, kernel, -np.inf).argmax())]
+            found.append(Match(confidence, near, margin, name=self._classes[number], text=sentence))
+        return found
+
+    def _kernel(self, texts: Sequence[str], meanings: NDArray[np.float32]) -> NDArray[np.float64]:
+        """Return the similarity of sentences (rows) and examples (columns)."""
+        import numpy as np
+
+        kernel = np.exp(SHARPNESS * (meanings.astype(np.float64) @ self._meanings.T - 1))
+        kernel += SPELLING * self._spelling.likeness(texts)
+        alike = likeness(np.array([shape(text) for text in texts], dtype=np.int8), self._shapes)
+        return kernel * (1 - self._weight * (1 - alike)) + COMMON
+
+
+def _margins(scores: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the distance of the best score in each row from the next best."""
+    import numpy as np
+
+    if scores.shape[1] < 2:
+        return scores[:, 0]
+    two = np.partition(scores, -2, axis=1)[:, -2:]
+    return two[:, 1] - two[:, 0]
+
+
+def _calibrated(margins: NDArray[np.float64], right: NDArray[np.bool_]) -> tuple[float, float]:
+    """Return slope and centre of the logistic curve from a margin to the share of right answers (Platt scaling)."""
+    import numpy as np
+
+    slope, bias = 6.0, 0.0
+    target = (right * (right.sum() + 1.0) / (right.sum() + 2.0)) + (~right / ((~right).sum() + 2.0))
+    for _ in range(30):  # Newton's method, with a weak prior on both parameters
+        share = 1 / (1 + np.exp(-np.clip(slope * margins + bias, -30, 30)))
+        weight = np.maximum(share * (1 - share), 1e-6)
+        error = share - target
+        gradient = np.array([error @ margins + 0.01 * (slope - 6.0), error.sum() + 0.01 * bias])
+        hessian = np.array(
+            [
+                [weight @ margins**2 + 0.01, weight @ margins],
+                [weight @ margins, weight.sum() + 0.01],
+            ]
+        )
+        step = np.linalg.solve(hessian, gradient)
+        slope, bias = slope - float(step[0]), bias - float(step[1])
+    slope = max(slope, 1.0)
+    return slope, -bias / slope
