@@ -102,10 +102,14 @@ def leave_out_absent(agent: AgentSpec, command: str) -> None:
     print(f"ravestate {command}: {left}pip install 'ravestate[chat]'", file=sys.stderr)
 
 
-def choose_small_talk(agent: AgentSpec, command: str) -> None:
-    """Choose the language model of `wildtalk` now, say which in one line, and set it in the agent's settings."""
+def choose_small_talk(agent: AgentSpec, command: str) -> str:
+    """Choose the language model of `wildtalk` now, say which in one line, and set it in the agent's settings.
+
+    Returns:
+        How to get a language model, if there is none.
+    """
     if all(module.name != "wildtalk" for module in agent.modules):
-        return
+        return ""
     from ravestate.modules import wildtalk
     from ravestate.modules.skill.wildtalk.choosing import choose
     from ravestate.settings import load_settings
@@ -113,15 +117,16 @@ def choose_small_talk(agent: AgentSpec, command: str) -> None:
     given = agent.settings.get("wildtalk", {})
     settings: wildtalk.Settings = load_settings([wildtalk.module], {"wildtalk": given})["wildtalk"]
     if settings.backend != "auto" or not settings.search:
-        return
+        return ""
     try:
         choice = choose(settings)
     except PlatformError as error:
         print(f"ravestate {command}: {error}", file=sys.stderr)
-        return
+        return ""
     found = {name: getattr(choice.settings, name) for name in ("backend", "base_url", "api_key", "model", "model_path")}
     agent.settings["wildtalk"] = {**given, **found}
     print(f"ravestate {command}: {choice.text}", file=sys.stderr)
+    return f"{choice.text[0].upper()}{choice.text[1:]}." if choice.settings.backend == "listen" else ""
 
 
 def shown(kind: Literal["data", "state"], *parts: str) -> str:
