@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import errno
 import hashlib
+import math
 import os
 import shutil
 import time
@@ -65,7 +66,7 @@ def download(model: CatalogueModel, progress: Progress, sleep: Callable[[float],
     except OSError as error:
         if error.errno == errno.ENOSPC:
             raise PlatformError(
-                f"the disk is full; {_kept(model)}: free {size_of(model.size)} at {model.part.parent}, and repeat the command"
+                f"the disk is full{_kept(model)}: free {size_of(model.size)} at {model.part.parent}, and repeat the command"
             ) from error
         raise PlatformError(f"{model.part} cannot be written: {error.strerror or error}") from error
 
@@ -90,17 +91,25 @@ def _headers(hub: str) -> dict[str, str]:
 
 @contextlib.contextmanager
 def _alone(model: CatalogueModel) -> Generator[IO[bytes]]:
-    """Open the unfinished file, and refuse a second process that fetches the same model."""
-    with model.part.open("ab") as part:
-        try:
-            import fcntl
+    """Open the unfinished file, and refuse a second process that fetches the same model. An empty file is removed."""
+    empty = False
+    try:
+        with model.part.open("ab") as part:
+            try:
+                import fcntl
 
-            fcntl.lockf(part, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except ImportError:  # Windows has no such lock
-            pass
-        except BlockingIOError:
-            raise PlatformError(f"another process fetches {model.name} just now") from None
-        yield part
+                fcntl.lockf(part, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except ImportError:  # Windows has no such lock
+                pass
+            except BlockingIOError:
+                raise PlatformError(f"another process fetches {model.name} just now") from None
+            try:
+                yield part
+            finally:
+                empty = not part.tell()
+    finally:
+        if empty:
+            model.part.unlink()
 
 
 def _fetch(
@@ -115,7 +124,7 @@ def _fetch(
     import httpx
 
     _make_room(model, part)
-    failed = 0
+    begin, failed = part.tell(), 0
     while (have := part.tell()) < model.size:
         wait, reason = 2.0**failed, "it sent less than the whole file"
         try:
@@ -124,10 +133,12 @@ def _fetch(
             raise PlatformError(f"HF_ENDPOINT is not a web address: {error}") from error
         except (httpx.TransportError, httpx.TooManyRedirects, httpx.DecodingError) as error:
             reason = str(error) or type(error).__name__
+            if isinstance(error, httpx.ConnectError) and have == begin:
+                wait = math.inf  # there is no network, or no such hub
         failed = 0 if part.tell() > have else failed + 1
         if failed >= TRIES or wait > LONGEST:
             raise PlatformError(
-                f"{_public(hub)} does not deliver {model.file} ({reason}); {_kept(model)}. Check the network, or name a mirror in "
+                f"{_public(hub)} does not deliver {model.file} ({reason}){_kept(model)}. Check the network, or name a mirror in "
                 f"HF_ENDPOINT, and repeat the command. Or copy any chat model in GGUF format into {model.part.parent}"
             )
         if part.tell() < model.size:
@@ -202,11 +213,12 @@ def _verify(model: CatalogueModel, part: IO[bytes]) -> None:
 
 
 def _kept(model: CatalogueModel) -> str:
-    """Return how much of a model has arrived, in words."""
+    """Return how much of a model has arrived, as the end of a message; empty for nothing."""
     have = model.part.stat().st_size if model.part.exists() else 0
-    return f"{size_of(have)} of {size_of(model.size)} are kept"
+    return f"; {size_of(have)} of {size_of(model.size)} are kept in {model.part}" if have else ""
 
 
 def interrupted(model: CatalogueModel) -> str:
     """Return the message for a download that the user interrupts."""
-    return f"interrupted; {_kept(model)} in {model.part}, and the same command goes on"
+    kept = _kept(model)
+    return f"interrupted{kept}, and the same command goes on" if kept else "interrupted; nothing had arrived yet"
