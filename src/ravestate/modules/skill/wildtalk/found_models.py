@@ -14,7 +14,7 @@ from .model_store import folder
 LEAST = 450_000_000
 """The smallest number of parameters: half a billion, as rounded in models' names."""
 
-BRISK = 4_500_000_000
+FLUENT = 4_500_000_000
 """The largest number of parameters with which a processor without a graphics card talks fluently."""
 
 SHARE = 0.6
@@ -85,9 +85,9 @@ def best_model(models: Iterable[FoundModel], memory: int | None = None) -> Found
     """
     most = (memory or _memory()) * SHARE
     fitting = [model for model in models if model.size <= most]
-    brisk = [model for model in fitting if model.parameters <= BRISK]
-    if brisk:
-        return max(brisk, key=lambda model: model.parameters)
+    fluent = [model for model in fitting if model.parameters <= FLUENT]
+    if fluent:
+        return max(fluent, key=lambda model: model.parameters)
     return min(fitting, key=lambda model: model.parameters, default=None)
 
 
