@@ -55,24 +55,35 @@ class Analysis:
     feelings: Mapping[str, Match] = field(default_factory=dict[str, Match])
     """The feelings, by the classes of ``feelings.yaml``, each with its best sentence."""
 
+    intents: Mapping[str, Match] = field(default_factory=dict[str, Match])
+    """The designer's intents (`nlp.intent`) by the names of their signals, each with its best sentence."""
+
     def act(self, name: str) -> Match | None:
         """Return the best sentence with the act `name`; None if there is none."""
         return self.acts.get(name)
 
 
-def analyse(text: str, pipeline: Pipeline, agent_names: Iterable[str] = ()) -> Analysis:
+def analyse(
+    text: str,
+    pipeline: Pipeline,
+    agent_names: Iterable[str] = (),
+    users: Iterable[str] = (),
+    designed: Matcher | None = None,
+) -> Analysis:
     """Analyse `text`. Blocks for a few milliseconds.
 
     Args:
         text: Any text; the analysis covers the beginning of a long one.
         pipeline: The pipeline; the first call loads it in about a second.
         agent_names: A text with one of them is about the agent. Case is ignored.
+        users: The names of the users present; the normal form knows them, as it knows those of the agent.
+        designed: The matcher of the designer's intents.
 
     Raises:
         PlatformError: spaCy or the pipeline is missing.
     """
     names = tuple(agent_names)
-    normal = pipeline.normalise(text, names)
+    normal = pipeline.normalise(text, (*names, *users))
     tree, entities = pipeline.read(normal)
     sentences = sentences_of(normal.text)
     statements = statements_of(tree, entities)
@@ -92,6 +103,7 @@ def analyse(text: str, pipeline: Pipeline, agent_names: Iterable[str] = ()) -> A
         statements=statements,
         acts=_best(bundled_matcher("acts"), sentences),
         feelings=_best(bundled_matcher("feelings"), sentences),
+        intents={name: match for name, match in _best(designed, sentences).items() if ":" in name} if designed else {},
     )
 
 
