@@ -84,6 +84,7 @@ WRITTEN: dict[str, str] = _table(
         "urself": "yourself",
         "r": "are",
         "n, nd": "and",
+        "hw": "how",
         "b4": "before",
         "c u, c ya, cu, cya": "see you",
         "l8r": "later",

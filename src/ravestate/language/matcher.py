@@ -38,6 +38,8 @@ COMMON = 0.1
 """The similarity of any two sentences; it allows classes of different sizes."""
 RIDGE = 0.1
 """The ridge penalty: it limits the weight of a single example."""
+DOUBT = 0.2
+"""The margin from which an example that the others would put into another class is worth a remark."""
 NONE = ""
 
 
@@ -122,6 +124,16 @@ class Matcher:
                     raise ModelMissing("sentence models need numpy: pip install 'ravestate[sentences]'") from error
                 self._learnt = _Learnt(self._pairs, self._encoder, self._shapes)
 
+    def confusions(self) -> list[tuple[str, str, str]]:
+        """Return the examples that the others let expect in another class: example, class, expected class.
+
+        Raises:
+            PlatformError: See `load`.
+        """
+        self.load()
+        assert self._learnt is not None
+        return self._learnt.confusions
+
     def match(self, sentence: str) -> Match | None:
         """Return the class that a sentence belongs to; None if it belongs to none."""
         return self.match_all([sentence])[0]
@@ -179,6 +191,11 @@ class _Learnt:
         self._weights = weights.astype(np.float32)
         # The scores of each example from a classifier that has learnt all the others, in closed form.
         left_out = targets - weights / np.diag(inverse)[:, None]
+        others = left_out.argmax(axis=1)
+        wrong = np.flatnonzero((others != self._of) & (_margins(left_out) > DOUBT))
+        self.confusions: list[tuple[str, str, str]] = [
+            (self._examples[n], self._classes[self._of[n]], self._classes[others[n]]) for n in map(int, wrong)
+        ]
         self._slope, self._centre = _calibrated(_margins(left_out), left_out.argmax(axis=1) == self._of)
 
     def ranked(self, sentences: Sequence[str], most: int | None) -> list[list[Match]]:
@@ -210,8 +227,10 @@ class _Learnt:
         """Return the similarity of sentences (rows) and examples (columns)."""
         import numpy as np
 
-        kernel = np.exp(SHARPNESS * (meanings @ self._meanings.T - 1)) + SPELLING * spelling
-        return kernel * (1 - self._weight * (1 - likeness(shapes, self._shapes))) + COMMON
+        kernel = np.exp(np.float32(SHARPNESS) * (meanings @ self._meanings.T - 1))
+        kernel += np.float32(SPELLING) * spelling
+        kernel *= 1 - self._weight * (1 - likeness(shapes, self._shapes))
+        return kernel + np.float32(COMMON)
 
 
 def _margins(scores: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -424,7 +424,13 @@ def _asks_anew(pieces: Sequence[_Piece], start: int, index: int) -> bool:
             first == "how" and third in _AUX and words[3:4] and words[3] in _SUBJECT
         )
         return bool(inverted) or (first in ("what", "how") and second == "about" and third == "you")
-    return first in ("do", "are", "can", "did", "would", "will", "have", "could") and second == "you" and third != ""
+    stated = any(word in _STARTER and word not in _AUX for word in before)
+    return (
+        stated
+        and first in ("do", "are", "can", "did", "would", "will", "have", "could")
+        and second == "you"
+        and third != ""
+    )
 
 
 def _joined(pieces: Sequence[_Piece], original: str) -> Normal:

@@ -36,7 +36,12 @@ def cafe() -> rs.Module:
 
 def test_an_intent_is_raised_for_what_resembles_its_examples() -> None:
     with simulate(cafe()) as sim:
-        for text in ("hi, when r u open tomorow", "can i reserve a table for friday", "my sister plays the violin", "hello"):
+        for text in (
+            "hi, when r u open tomorow",
+            "can i reserve a table for friday",
+            "my sister plays the violin",
+            "hello",
+        ):
             sim.say(text)
         assert sim.said == ["From ten to six.", "A table: friday (i would like to book a table)", "I see.", "I see."]
         assert sim.now == 0.0
@@ -138,7 +143,9 @@ def test_mistakes_of_the_designer(tmp_path: Path) -> None:
     nlp.intent(module, "price", examples=["how much is it"])
     with pytest.raises(rs.DeclarationError, match=r"has a signal 'price' already: choose another name"):
         nlp.intent(module, "price", examples=["what does it cost"])
-    with pytest.raises(rs.DeclarationError, match=r"test_intent.py:\d+\): the module needs nlp: .*requires=\[..., nlp\]"):
+    with pytest.raises(
+        rs.DeclarationError, match=r"test_intent.py:\d+\): the module needs nlp: .*requires=\[..., nlp\]"
+    ):
         nlp.intent(rs.Module("bare"), "price", examples=["how much is it"])
 
 

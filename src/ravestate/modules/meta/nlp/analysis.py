@@ -28,6 +28,9 @@ _SECOND_PERSON = word_set("you your yours yourself u ur")
 MATCHERS = ("acts", "feelings")
 """The files of examples whose classes an analysis names."""
 
+SHORT = 4
+"""The words of a part of a sentence that may be an act of its own."""
+
 
 @dataclass(frozen=True, slots=True)
 class Analysis:
@@ -101,7 +104,7 @@ def analyse(
         intent_bye=says_bye(tree.text),
         sentences=sentences,
         statements=statements,
-        acts=_best(bundled_matcher("acts"), sentences),
+        acts=_best(bundled_matcher("acts"), [*sentences, *_short_parts(sentences)]),  # first: it encodes all of them
         feelings=_best(bundled_matcher("feelings"), sentences),
         intents={name: match for name, match in _best(designed, sentences).items() if ":" in name} if designed else {},
     )
@@ -114,6 +117,12 @@ def _best(matcher: Matcher, sentences: Sequence[str]) -> dict[str, Match]:
         if match is not None and (match.name not in found or match.score > found[match.name].score):
             found[match.name] = match
     return found
+
+
+def _short_parts(sentences: Sequence[str]) -> list[str]:
+    """Return the short first and last parts of sentences with commas: *Thanks*, in *Thanks, when do you open?*"""
+    split = [[part.strip() for part in sentence.split(",")] for sentence in sentences]
+    return [part for parts in split if len(parts) > 1 for part in (parts[0], parts[-1]) if len(part.split()) <= SHORT]
 
 
 def _is_about_agent(tree: Tree, names: Iterable[str]) -> bool:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import dataclasses
 import sys
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import lru_cache
 from pathlib import Path
 from typing import Any, cast
@@ -82,6 +83,24 @@ def intents_of(policy: Policy) -> dict[str, tuple[str, ...]]:
     for rule in policy.rules.values():
         found |= getattr(rule.function, "declared", {})
     return found
+
+
+def doubtful_examples(intents: Intents) -> Iterator[tuple[str, str, str]]:
+    """Yield the examples that two intents share, and those that resemble another intent's: example, intent, other.
+
+    Without the sentence model, only those that are the same word for word.
+    """
+    owners: dict[str, str] = {}
+    for name, texts in intents.items():
+        for text in texts:
+            owner = owners.setdefault(plain(text), name)
+            if owner != name:
+                yield text, owner, name
+    with contextlib.suppress(PlatformError):
+        matcher = intent_matcher([intents])
+        confusions = matcher.confusions() if matcher else []
+        written = {plain(text): text for texts in intents.values() for text in texts}
+        yield from ((written[text], own, other) for text, own, other in confusions if {own, other} <= intents.keys())
 
 
 def intent_matcher(intents: Iterable[Intents]) -> Matcher | None:
