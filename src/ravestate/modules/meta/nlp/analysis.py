@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
+from ravestate.errors import PlatformError
 from ravestate.language.entity import Entity
 from ravestate.language.matcher import Match, Matcher, bundled_matcher
 from ravestate.language.normal import Normal
@@ -80,11 +82,14 @@ def analyse(
         pipeline: The pipeline; the first call loads it in about a second.
         agent_names: A text with one of them is about the agent. Case is ignored.
         users: The names of the users present; the normal form knows them, as it knows those of the agent.
-        designed: The matcher of the designer's intents.
+        designed: The matcher of the designer's intents. The first utterance waits until it has learnt them.
 
     Raises:
         PlatformError: spaCy or the pipeline is missing.
     """
+    if designed is not None:
+        with contextlib.suppress(PlatformError):  # without the sentence model, it knows the examples word for word
+            designed.load()
     names = tuple(agent_names)
     normal = pipeline.normalise(text, (*names, *users))
     tree, entities = pipeline.read(normal)
