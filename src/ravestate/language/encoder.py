@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from ravestate.folders import user_folder
 
-from .model import model_in
+from .model import SentenceModel, model_in
 
 if TYPE_CHECKING:
     import numpy as np
@@ -47,6 +47,7 @@ class Encoder:
                 ``1_Pooling/config.json`` if there is one. None: the bundled bge-small-en-v1.5 (English, 384 dimensions).
         """
         self._folder = folder
+        self._model: SentenceModel | None = None
         self._mean: bool | None = None
         self._lock = threading.Lock()
         self._latest: OrderedDict[str, NDArray[np.float32]] = OrderedDict()
@@ -58,7 +59,7 @@ class Encoder:
         Raises:
             PlatformError: A package or the model is missing or broken. The message says what to do.
         """
-        model_in(self._folder, BUNDLED)
+        self._loaded()
 
     def encode(self, texts: Sequence[str]) -> NDArray[np.float32]:
         """Return a row for each text: shape (n, d), float32, each of length 1.
@@ -68,7 +69,7 @@ class Encoder:
         Raises:
             PlatformError: See `load`.
         """
-        model = model_in(self._folder, BUNDLED)  # first: it says what to install
+        model = self._loaded()  # first: it says what to install
         import numpy as np
 
         with self._lock:
@@ -93,7 +94,7 @@ class Encoder:
         Raises:
             PlatformError: See `load`.
         """
-        model = model_in(self._folder, BUNDLED)
+        model = self._loaded()
         import numpy as np
 
         digest = hashlib.sha256(json.dumps([_identity(model.folder), list(texts)]).encode("utf-8", "replace"))
@@ -120,8 +121,13 @@ class Encoder:
             pass  # a folder that cannot be written only costs time
         return rows.astype(np.float32)  # the same as next time
 
+    def _loaded(self) -> SentenceModel:
+        if self._model is None:
+            self._model = model_in(self._folder, BUNDLED)
+        return self._model
+
     def _encode(self, texts: Sequence[str]) -> NDArray[np.float32]:
-        model = model_in(self._folder, BUNDLED)
+        model = self._loaded()
         import numpy as np
 
         if self._mean is None:
