@@ -11,27 +11,42 @@ from functools import cache
 
 from quality import modules
 from quality.measure import Result, labelled, measure_labels, measure_triples
+from ravestate.language.acts import acts
+from ravestate.language.matcher import bundled_matcher
+from ravestate.language.normal import normalise
+from ravestate.language.sentences import sentences
 from ravestate.modules import emotion
-from ravestate.modules.meta.idle.words import asks_for_quiet, takes_leave
 from ravestate.modules.meta.nlp import Settings
 from ravestate.modules.meta.nlp.analysis import analyse
 from ravestate.modules.meta.nlp.answer import yesno_of
 from ravestate.modules.meta.nlp.pipeline import pipeline
 
-LABELLED = ("questions_rows", "yesno_rows", "intents_rows", "quiet_rows", "emotion_rows")
+LABELLED = ("questions_rows", "yesno_rows", "intents_rows", "quiet_rows", "emotion_rows", "feelings_rows", "acts_rows")
 SETS = ("triples_rows", *LABELLED)
+
+
+def acts_of(text: str) -> frozenset[str]:
+    """The user's acts, by the room `language`."""
+    bundled_matcher("acts").load()
+    return frozenset(acts(sentences(normalise(text).text)))
+
+
+def acts_label(text: str) -> str:
+    """By the room `language`."""
+    return "+".join(sorted(acts_of(text))) or "-"
 
 
 def intents(text: str) -> str:
     """By nlp."""
+    bundled_matcher("acts").load()
     seen = analyse(text, pipeline(""), Settings().agent_names)
-    found = (seen.intent_hi and "hi", seen.intent_bye and "bye", seen.intent_play and "play")
-    return "+".join(filter(None, found)) or "-"
+    return "+".join(intent.removeprefix("intent_") for intent in seen.intents) or "-"
 
 
 def quiet(text: str) -> str:
     """By idle."""
-    return "quiet" if asks_for_quiet(text) else "leave" if takes_leave(text) else "-"
+    heard = acts_of(text)
+    return "quiet" if "quiet" in heard else "leave" if "farewell" in heard else "-"
 
 
 def feelings(text: str) -> str:
@@ -45,6 +60,8 @@ SEE: dict[str, Callable[[str], str]] = {
     "intents_rows": intents,
     "quiet_rows": quiet,
     "emotion_rows": feelings,
+    "feelings_rows": feelings,
+    "acts_rows": acts_label,
 }
 
 

@@ -10,12 +10,15 @@ from collections.abc import Callable
 
 from quality import measure
 from quality.modules import _seen
+from ravestate.language.acts import only
+from ravestate.language.matcher import bundled_matcher
+from ravestate.language.normal import normalise
+from ravestate.language.sentences import sentences
 from ravestate.modules.skill.agentqa.life_file import read_life
 from ravestate.modules.skill.agentqa.remarks import remark_in
 from ravestate.modules.skill.agentqa.router import Match, router_of
 from ravestate.modules.skill.genqa.question import as_question
 from ravestate.modules.skill.genqa.referring import Before, completed
-from ravestate.modules.skill.hibye.words import is_farewell, is_greeting
 from ravestate.modules.skill.persqa.talk import Talk
 from ravestate.modules.skill.persqa.topics import Fact
 from ravestate.modules.skill.persqa.understanding import Heard, understand
@@ -96,7 +99,9 @@ def wildtalk_facts(sentence: str) -> str:
 
 def hibye_words(sentence: str) -> str:
     """Return whether a sentence only greets, or only says goodbye."""
-    return "greeting" if is_greeting(sentence) else "farewell" if is_farewell(sentence) else "-"
+    bundled_matcher("acts").load()
+    said = sentences(normalise(sentence).text)
+    return next((act for act in ("greeting", "farewell") if only(act, said)), "-")
 
 
 SETS: dict[str, Callable[[str], str]] = {

@@ -33,7 +33,7 @@ COMPLETE = (
 PACKAGES = {
     "nlp": ("spacy",),
     "ontology": ("ladybug",),
-    "emotion": ("vaderSentiment",),
+    "emotion": ("numpy", "onnxruntime", "tokenizers"),
     "agentqa": ("numpy", "onnxruntime", "tokenizers"),
     "genqa": ("numpy", "onnxruntime", "tokenizers"),
     "conio": ("prompt_toolkit",),

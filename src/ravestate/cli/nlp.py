@@ -140,9 +140,8 @@ def _matches(found: Mapping[str, Match]) -> str:
 
 
 def _signals(seen: Analysis) -> list[str]:
-    flags = ("about_agent", "intent_play", "intent_hi", "intent_bye")
-    raised = [*(flag for flag in flags if getattr(seen, flag)), *seen.intents]
-    return raised if seen.question is None else ["is_question", *raised]
+    flags = {"is_question": seen.question is not None, "about_agent": seen.about_agent}
+    return [*(name for name, raised in flags.items() if raised), *seen.acted, *seen.intents]
 
 
 def _plain(text: str, seen: Analysis, scores: Mapping[str, float]) -> dict[str, Any]:

@@ -41,6 +41,8 @@ RIDGE = 0.1
 DOUBT = 0.2
 """The margin from which an example that the others would put into another class is worth a remark."""
 NONE = ""
+REMEMBERED = 256
+"""The latest sentences whose classes a matcher keeps: all skills ask for those of one utterance."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,10 +99,12 @@ class Matcher:
         self.least = least
         self._shapes = shapes
         self._pairs = tuple(dict(pairs).items())
-        self._exact = dict(self._pairs)
+        self.exact = dict(self._pairs)
         self._encoder = encoder or shared_encoder()
         self._lock = threading.Lock()
         self._learnt: _Learnt | None = None
+        self._matching = threading.Lock()
+        self._latest: dict[str, Match | None] = {}
 
     @property
     def loaded(self) -> bool:
@@ -134,14 +138,42 @@ class Matcher:
         assert self._learnt is not None
         return self._learnt.confusions
 
+    def prepare(self, sentences: Sequence[str]) -> None:
+        """Encode sentences in one run, for this matcher and others that match them next."""
+        if self._learnt is not None:
+            self._encoder.encode([plain(sentence) for sentence in sentences])
+
     def match(self, sentence: str) -> Match | None:
         """Return the class that a sentence belongs to; None if it belongs to none."""
         return self.match_all([sentence])[0]
 
     def match_all(self, sentences: Sequence[str]) -> list[Match | None]:
-        """Return the class of each sentence; None for one that belongs to none. The encoder runs once for all."""
-        bests = (ranked[0] if ranked else None for ranked in self.ranked_all(sentences, most=1))
-        return [best if best and best.name != NONE and best.score >= self.least else None for best in bests]
+        """Return the class of each sentence; None for one that belongs to none. The encoder runs once for all.
+
+        An example is recognised word for word, without the encoder.
+        """
+        if self._learnt is None:
+            found = list(map(self.match_exactly, sentences))
+        else:
+            with self._matching:  # several skills ask for the same sentences at the same time
+                found = self._remembered(sentences)
+        return [best if best and best.name != NONE and best.score >= self.least else None for best in found]
+
+    def _remembered(self, sentences: Sequence[str]) -> list[Match | None]:
+        new = {sentence: self.match_exactly(sentence) for sentence in sentences if sentence not in self._latest}
+        unknown = [sentence for sentence, match in new.items() if match is None]
+        new.update(zip(unknown, (ranked[0] for ranked in self.ranked_all(unknown, most=1)), strict=True))
+        self._latest.update(new)
+        found = [self._latest[sentence] for sentence in sentences]
+        for sentence in list(self._latest)[:-REMEMBERED]:
+            del self._latest[sentence]
+        return found
+
+    def match_exactly(self, sentence: str) -> Match | None:
+        """Return the class of an example, word for word; its name is empty for an example of no class."""
+        text = plain(sentence)
+        name = self.exact.get(text)
+        return None if name is None else Match(1.0, text, 1.0, name=name, text=sentence)
 
     def ranked(self, sentence: str) -> list[Match]:
         """Return all classes, best first; the class named by an empty string stands for none of them."""
@@ -151,8 +183,7 @@ class Matcher:
         """Return the classes of each sentence, best first; `most` of them."""
         if self._learnt is not None:
             return self._learnt.ranked(sentences, most)
-        exact = ((self._exact.get(text := plain(sentence)), text, sentence) for sentence in sentences)
-        return [[] if name is None else [Match(1.0, text, 1.0, name=name, text=given)] for name, text, given in exact]
+        return [[match] if match else [] for match in map(self.match_exactly, sentences)]
 
 
 @cache

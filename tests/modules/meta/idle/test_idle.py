@@ -4,7 +4,6 @@ import pytest
 
 import ravestate as rs
 from ravestate.modules import idle, rawio
-from ravestate.modules.meta.idle.words import asks_for_quiet, last_question, takes_leave
 from ravestate.testing import simulate
 
 watch = rs.Module("watch", requires=[rawio, idle])
@@ -187,13 +186,22 @@ def test_a_sent_line_is_followed_by_an_ordinary_silence() -> None:
         assert sim.read(times) == pytest.approx((12.0,))
 
 
-@pytest.mark.parametrize(
-    "text", ["x" * 1_000_000, "stop " * 200_000, "please " * 100_000, "bye " * 100_000, "?" * 100_000]
-)
-def test_endless_texts_are_read_quickly(text: str) -> None:
-    asks_for_quiet(text)
-    takes_leave(text)
-    last_question(text)
+def test_after_a_farewell_it_does_not_matter_how_fast_the_agent_answers() -> None:
+    swift = rs.Module("swift", requires=[rawio, idle])
+    bored = swift.slot("bored", 0)
+
+    @swift.rule(when=rawio.input.changed, writes=rawio.output)
+    async def reply(ctx: rs.RuleContext) -> None:
+        ctx[rawio.output] = "Bye."
+
+    @swift.rule(when=idle.bored, writes=bored)
+    async def count(ctx: rs.RuleContext) -> None:
+        ctx[bored] += 1
+
+    with simulate(swift) as sim:
+        sim.say("Goodbye!")
+        sim.advance(600.0)
+        assert sim.read(bored) == 0
 
 
 def test_nothing_is_left_when_all_is_quiet() -> None:

@@ -1,12 +1,11 @@
 """The laws of `recognise`; `tests/quality` measures which texts show which feeling."""
 
-import sys
-
 import pytest
 
-from ravestate.errors import PlatformError
+from ravestate.language.bundled import ModelMissing
+from ravestate.language.matcher import Matcher
 from ravestate.modules import emotion
-from ravestate.modules.modality.emotion import sentiment
+from ravestate.modules.modality.emotion import recogniser
 from ravestate.modules.modality.emotion.recogniser import recognise
 
 
@@ -45,14 +44,42 @@ def test_the_agent_is_known_by_its_names(sentence: str, feeling: str | None) -> 
     ],
 )
 def test_any_text_is_taken(text: str) -> None:
-    assert recognise(text) in (None, "surprised")
+    assert recognise(text) in (None, "surprised", "happy", "affectionate")
 
 
-def test_without_vader_it_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
-    sentiment._analyser.cache_clear()
-    monkeypatch.setitem(sys.modules, "vaderSentiment.vaderSentiment", None)
-    with pytest.raises(PlatformError, match=r"pip install 'ravestate\[emotion\]'"):
-        recognise("You are so clever!")
+@pytest.mark.parametrize(
+    ("text", "feeling"),
+    [
+        ("You are not nice.", None),
+        ("if you were nice, I would stay", None),
+        ("are you nice?", None),
+        ("the weather is nice", None),
+        ("my sister is so clever", None),
+        ("You are not clever, but you are very nice.", "shy"),
+        ("I got my results, and I failed", None),
+        ("I love you, you are so clever", "affectionate"),
+        ("My dog died.", "sad"),
+        ("🎉🎉", "happy"),
+    ],
+)
+def test_what_the_readme_promises(text: str, feeling: str | None) -> None:
+    assert recognise(text) == feeling
+
+
+def test_without_the_model_the_examples_count_and_other_words_say_what_to_install(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    class Missing(Matcher):
+        def load(self) -> None:
+            raise ModelMissing("pip install it")
+
+    without = Missing({"affection": ["I love you"]}, ["hello"])
+    monkeypatch.setattr(recogniser, "bundled_matcher", lambda _: without)
+    monkeypatch.setattr("ravestate.language.feelings.bundled_matcher", lambda _: without)
+    assert recognise("I love you!") == "affectionate"
+    assert recognise("Hello.") is None
+    with pytest.raises(ModelMissing, match="pip install it"):
+        recognise("I like you.")
 
 
 def test_the_package_offers_it() -> None:

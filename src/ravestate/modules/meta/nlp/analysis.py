@@ -4,18 +4,18 @@ from __future__ import annotations
 
 import contextlib
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
 from ravestate.errors import PlatformError
+from ravestate.language.acts import acts
 from ravestate.language.entity import Entity
+from ravestate.language.feelings import clauses, feelings
 from ravestate.language.matcher import Match, Matcher, bundled_matcher
 from ravestate.language.normal import Normal
 from ravestate.language.sentences import sentences as sentences_of
 
 from .answer import YesNo, yesno_of
-from .game import wants_to_play
-from .greeting import says_bye, says_hi
 from .inquiry import question_of
 from .pipeline import Pipeline
 from .question_word import QuestionWord
@@ -27,11 +27,11 @@ from .word_set import word_set
 
 _SECOND_PERSON = word_set("you your yours yourself u ur")
 
+INTENTS = {"play": "intent_play", "greeting": "intent_hi", "farewell": "intent_bye"}
+"""The acts that have a signal of nlp's, with its name."""
+
 MATCHERS = ("acts", "feelings")
 """The files of examples whose classes an analysis names."""
-
-SHORT = 4
-"""The words of a part of a sentence that may be an act of its own."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,9 +48,6 @@ class Analysis:
     yesno: YesNo
     question: QuestionWord | None
     about_agent: bool
-    intent_play: bool
-    intent_hi: bool
-    intent_bye: bool
     sentences: tuple[str, ...] = ()
     """The sentences of the normal form."""
     statements: tuple[Statement, ...] = ()
@@ -62,6 +59,11 @@ class Analysis:
 
     intents: Mapping[str, Match] = field(default_factory=dict[str, Match])
     """The designer's intents (`nlp.intent`) by the names of their signals, each with its best sentence."""
+
+    @property
+    def acted(self) -> tuple[str, ...]:
+        """The names of the signals that the acts raise: ``intent_hi``..."""
+        return tuple(signal for act, signal in INTENTS.items() if act in self.acts)
 
     def act(self, name: str) -> Match | None:
         """Return the best sentence with the act `name`; None if there is none."""
@@ -95,6 +97,7 @@ def analyse(
     tree, entities = pipeline.read(normal)
     sentences = sentences_of(normal.text)
     statements = statements_of(tree, entities)
+    bundled_matcher("acts").prepare([*sentences, *clauses(sentences, names)])  # one run of the encoder for all matchers
     return Analysis(
         text=text,
         normal=normal,
@@ -104,30 +107,18 @@ def analyse(
         yesno=yesno_of(tree.text),
         question=question_of(tree),
         about_agent=_is_about_agent(tree, names),
-        intent_play=wants_to_play(tree.text),
-        intent_hi=says_hi(tree.text),
-        intent_bye=says_bye(tree.text),
         sentences=sentences,
         statements=statements,
-        acts=_best(bundled_matcher("acts"), [*sentences, *_short_parts(sentences)]),  # first: it encodes all of them
-        feelings=_best(bundled_matcher("feelings"), sentences),
-        intents={name: match for name, match in _best(designed, sentences).items() if ":" in name} if designed else {},
+        acts=acts(sentences),
+        feelings=feelings(sentences, names),
+        intents=_intents(designed, sentences) if designed else {},
     )
 
 
-def _best(matcher: Matcher, sentences: Sequence[str]) -> dict[str, Match]:
-    """Return the classes of the sentences, each with the best of its sentences."""
-    found: dict[str, Match] = {}
-    for match in matcher.match_all(sentences):
-        if match is not None and (match.name not in found or match.score > found[match.name].score):
-            found[match.name] = match
-    return found
-
-
-def _short_parts(sentences: Sequence[str]) -> list[str]:
-    """Return the short first and last parts of sentences with commas: *Thanks*, in *Thanks, when do you open?*"""
-    split = [[part.strip() for part in sentence.split(",")] for sentence in sentences]
-    return [part for parts in split if len(parts) > 1 for part in (parts[0], parts[-1]) if len(part.split()) <= SHORT]
+def _intents(matcher: Matcher, sentences: Iterable[str]) -> dict[str, Match]:
+    """Return the designer's intents of the sentences, each with the best of its sentences."""
+    found = [match for match in matcher.match_all(tuple(sentences)) if match is not None and ":" in match.name]
+    return {match.name: match for match in sorted(found, key=lambda match: match.score)}
 
 
 def _is_about_agent(tree: Tree, names: Iterable[str]) -> bool:

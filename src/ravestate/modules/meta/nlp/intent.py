@@ -24,6 +24,9 @@ from .analysis import Analysis
 Intents = Mapping[str, tuple[str, ...]]
 """The examples of intents, by the qualified names of their signals."""
 
+OF_ACT, OF_NONE = 6, 60
+"""The examples of each act, and those of no act, that compete with the designer's intents."""
+
 _RULE = "learn_intents"
 
 
@@ -111,12 +114,20 @@ def intent_matcher(intents: Iterable[Intents]) -> Matcher | None:
 
 @lru_cache(maxsize=32)
 def _matcher(intents: tuple[tuple[str, tuple[str, ...]], ...]) -> Matcher:
-    """Return a matcher of intents and acts. An act that shares an example with an intent is the designer's own."""
+    """Return a matcher of intents and acts. An act that shares an example with an intent is the designer's own.
+
+    A designer writes a few examples, and an act has hundreds: a few of them compete, or else they would always win.
+    """
     taken = {plain(text) for _, texts in intents for text in texts}
     acts = bundled("acts")
-    rivals = {name: texts for name, texts in acts.classes.items() if taken.isdisjoint(map(plain, texts))}
-    none = [text for text in (*acts.none, *bundled("none").none) if plain(text) not in taken]
+    rivals = {name: _some(texts, OF_ACT) for name, texts in acts.classes.items() if taken.isdisjoint(map(plain, texts))}
+    none = [text for text in (*_some(acts.none, OF_NONE), *bundled("none").none) if plain(text) not in taken]
     return Matcher({**rivals, **dict(intents)}, none)
+
+
+def _some(texts: Sequence[str], number: int) -> Sequence[str]:
+    """Return at most about `number` of the texts, evenly spread."""
+    return texts[:: max(1, len(texts) // number)]
 
 
 def _requires_nlp(module: rs.Module) -> bool:

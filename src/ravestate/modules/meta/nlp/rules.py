@@ -38,6 +38,9 @@ from .names import (
 )
 from .pipeline import pipeline
 
+SIGNALS = {"intent_play": intent_play, "intent_hi": intent_hi, "intent_bye": intent_bye}
+"""The signals of the user's acts."""
+
 
 @module.rule(when=rs.startup, background=True)
 def load(ctx: rs.RuleContext) -> None:
@@ -72,7 +75,7 @@ def learn_intents(ctx: rs.RuleContext) -> None:
     when=rawio.input.changed,
     reads=(interloc.agent, interloc.users, intents, lock),
     writes=(text, normal, tokens, lemmas, pos, tags, entities, triples, question, analysis, yesno),
-    emits=(is_question, about_agent, intent_play, intent_hi, intent_bye),
+    emits=(is_question, about_agent, *SIGNALS.values()),
 )
 async def understand(ctx: rs.RuleContext) -> None:
     """Analyse the user's words: write all slots, then raise the signals."""
@@ -100,9 +103,5 @@ async def understand(ctx: rs.RuleContext) -> None:
         ctx.emit(is_question, seen.question)
     if seen.about_agent:
         ctx.emit(about_agent)
-    if seen.intent_play:
-        ctx.emit(intent_play)
-    if seen.intent_hi:
-        ctx.emit(intent_hi)
-    if seen.intent_bye:
-        ctx.emit(intent_bye)
+    for name in seen.acted:
+        ctx.emit(SIGNALS[name])

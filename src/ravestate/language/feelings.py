@@ -1,0 +1,85 @@
+"""What an utterance says of feelings: joy, grief, a compliment for the agent... The classes are those of ``feelings.yaml``."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection, Sequence
+
+from .matcher import Match, bundled_matcher
+from .normal import plain
+from .shape import shape
+
+LONGEST = 1000
+"""The characters of a sentence that count."""
+
+SHORTEST = 3
+"""The minimum number of words of a clause that shows a feeling of its own: "brilliant, it is broken" is no praise."""
+
+_CLAUSE_END = re.compile(
+    r"[,;:()–—…]+|\s-+\s|\b(?:but|although|though|however|because|while|yet|and (?=(?:i|you|we|he|she|it|they|my|your|our)\b))",
+    re.IGNORECASE,
+)
+_CONDITION = re.compile(r"\b(?:if|unless|whether)\b", re.IGNORECASE)
+_ASKED = frozenset({"affection", "astonishing"})
+"""Feelings that a question may show: "can I hug you?", "really?"."""
+
+_ENDINGS = (
+    (r"(?:'s| is| was)(?= (?:so|very|really|such|quite|a|an|the|not)\b)", "you are"),
+    (r" (?:is|was)\b", "you are"),
+    (r" has\b", "you have"),
+    (r"'s\b", "your"),
+    (r"\b", "you"),
+)
+"""The ends of the agent's name, and the words for both."""
+
+
+def feelings(sentences: Sequence[str], names: Collection[str] = ()) -> dict[str, Match]:
+    """Return the feelings in the sentences of an utterance, each with its best clause.
+
+    Args:
+        sentences: The sentences, in the normal form.
+        names: The agent's names: "Rosie is clever" means the same as "you are clever".
+    """
+    matcher = bundled_matcher("feelings")
+    found: dict[str, Match] = {}
+    for sentence in sentences:
+        sentence = addressed(sentence[:LONGEST], names)
+        whole = matcher.match_all([sentence])
+        parts = [] if _CONDITION.search(sentence) else _clauses(sentence, alone=whole == [None])
+        for match in (*whole, *matcher.match_all(parts)):
+            if match is None or (match.name not in _ASKED and _asks(sentence)):
+                continue
+            if match.name not in found or found[match.name].score < match.score:
+                found[match.name] = match
+    return found
+
+
+def clauses(sentences: Sequence[str], names: Collection[str] = ()) -> list[str]:
+    """Return all that `feelings` compares with the examples: the sentences and their clauses."""
+    spoken = [addressed(sentence[:LONGEST], names) for sentence in sentences]
+    return [*spoken, *(clause for sentence in spoken for clause in _clauses(sentence, alone=False))]
+
+
+def _clauses(sentence: str, alone: bool) -> list[str]:
+    """Return the clauses of a compound sentence; only the longer ones if the sentence shows no feeling as a whole."""
+    parts = [part for part in _CLAUSE_END.split(sentence) if plain(part)]
+    least = SHORTEST if alone else 1
+    return [part for part in parts if len(part.split()) >= least] if len(parts) > 1 else []
+
+
+def _asks(sentence: str) -> bool:
+    """Return whether a sentence asks for yes or no. The examples decide about those with a question word."""
+    return "?" in sentence and shape(plain(sentence))[3] < 2
+
+
+def addressed(sentence: str, names: Collection[str]) -> str:
+    """Return the sentence with "you" in place of the agent's names and "this robot".
+
+    Example:
+        >>> addressed("Rosie's voice is nice, and this robot is clever", ["Rosie"])
+        'your voice is nice, and you are clever'
+    """
+    agent = "|".join(["th(?:is|at) (?:little |cute )?robot", *(re.escape(name) for name in names if name)])
+    for ending, instead in _ENDINGS:
+        sentence = re.sub(rf"(?<!\w)(?:{agent}){ending}", instead, sentence, flags=re.IGNORECASE)
+    return sentence

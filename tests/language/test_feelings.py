@@ -1,0 +1,65 @@
+"""Feelings in an utterance. `tests/quality` measures how many sentences are understood."""
+
+import pytest
+
+from ravestate.language import feelings as room
+from ravestate.language.feelings import addressed, feelings
+from ravestate.language.matcher import Matcher
+
+EXAMPLES = {
+    "compliment": ["you are clever", "you are not only clever"],
+    "affection": ["I love you", "can I hug you"],
+    "joy": ["I won"],
+}
+
+
+@pytest.fixture(autouse=True)
+def lexicon(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Without the model: the examples alone count."""
+    matcher = Matcher(EXAMPLES)
+    monkeypatch.setattr(room, "bundled_matcher", lambda _: matcher)
+
+
+@pytest.mark.parametrize(
+    ("text", "found"),
+    [
+        ("You are clever!", "compliment"),
+        ("You are clever?", ""),
+        ("You are not only clever.", "compliment"),
+        ("Can I hug you?", "affection"),
+        ("The bus was late, but you are clever.", "compliment"),
+        ("I won and you are clever", "compliment joy"),
+        ("If I won, you are clever.", ""),
+        ("", ""),
+    ],
+)
+def test_each_clause_counts_unless_it_is_asked_or_a_condition(text: str, found: str) -> None:
+    assert " ".join(sorted(feelings([text]))) == found
+
+
+def test_the_nearest_example_is_denied_as_the_clause_is(monkeypatch: pytest.MonkeyPatch) -> None:
+    from ravestate.language.matcher import Match
+
+    class Near(Matcher):
+        def match_all(self, sentences):
+            return [Match(0.9, "you are clever", 0.5, name="compliment", text=text) for text in sentences]
+
+    monkeypatch.setattr(room, "bundled_matcher", lambda _: Near({}))
+    assert feelings(["You are not clever."]) == {}
+    assert list(feelings(["You are smart."])) == ["compliment"]
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("Rosie is clever", "you are clever"),
+        ("rosie's so cute", "you are so cute"),
+        ("Rosie's voice", "your voice"),
+        ("I love Rosie.", "I love you."),
+        ("Rosalie is clever", "Rosalie is clever"),
+        ("this little robot is great", "you are great"),
+        ("Rosie has won", "you have won"),
+    ],
+)
+def test_the_agents_names_mean_you(text: str, said: str) -> None:
+    assert addressed(text, ["Rosie", ""]) == said
