@@ -83,6 +83,7 @@ class Matcher:
         *,
         least: float = 0.5,
         shapes: float = SHAPE,
+        centre: float | None = None,
         encoder: Encoder | None = None,
     ) -> None:
         """Take the examples; nothing is loaded yet.
@@ -92,12 +93,14 @@ class Matcher:
             none: Sentences that belong to no class.
             least: The confidence below which a sentence belongs to no class.
             shapes: The weight of the shape of a sentence (the persons that it mentions, whether it asks), 0 to 1.
+            centre: The margin with the confidence 0.5. By default, the examples tell: each is matched by the others. A class of
+                three examples loses too much without one of them, so give 0 for such classes.
             encoder: By default the shared one.
         """
         pairs = [(plain(text), name) for name, texts in examples.items() for text in texts]
         pairs += [(plain(text), NONE) for text in none]
         self.least = least
-        self._shapes = shapes
+        self._shapes, self._centre = shapes, centre
         self._pairs = tuple(dict(pairs).items())
         self.exact = dict(self._pairs)
         self._encoder = encoder or shared_encoder()
@@ -126,7 +129,7 @@ class Matcher:
                         import_module("numpy")
                 except ImportError as error:
                     raise ModelMissing("sentence models need numpy: pip install 'ravestate[sentences]'") from error
-                self._learnt = _Learnt(self._pairs, self._encoder, self._shapes)
+                self._learnt = _Learnt(self._pairs, self._encoder, self._shapes, self._centre)
 
     def confusions(self) -> list[tuple[str, str, str]]:
         """Return the examples that the others let expect in another class: example, class, expected class.
@@ -202,7 +205,9 @@ def bundled_matcher(name: str) -> Matcher:
 class _Learnt:
     """The classifier, after learning."""
 
-    def __init__(self, pairs: Sequence[tuple[str, str]], encoder: Encoder, shapes: float) -> None:
+    def __init__(
+        self, pairs: Sequence[tuple[str, str]], encoder: Encoder, shapes: float, centre: float | None
+    ) -> None:
         import numpy as np
 
         self._encoder, self._weight = encoder, shapes
@@ -227,7 +232,9 @@ class _Learnt:
         self.confusions: list[tuple[str, str, str]] = [
             (self._examples[n], self._classes[self._of[n]], self._classes[others[n]]) for n in map(int, wrong)
         ]
-        self._slope, self._centre = _calibrated(_margins(left_out), left_out.argmax(axis=1) == self._of)
+        self._slope, self._centre = _calibrated(_margins(left_out), others == self._of)
+        if centre is not None:
+            self._centre = centre
 
     def ranked(self, sentences: Sequence[str], most: int | None) -> list[list[Match]]:
         """Return `most` classes of each sentence, best first."""

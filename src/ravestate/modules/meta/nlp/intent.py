@@ -24,8 +24,8 @@ from .analysis import Analysis
 Intents = Mapping[str, tuple[str, ...]]
 """The examples of intents, by the qualified names of their signals."""
 
-OF_ACT, OF_NONE = 6, 60
-"""The examples of each act, and those of no act, that compete with the designer's intents."""
+OF_ACT = 12
+"""The examples of each act that compete with the designer's intents."""
 
 _RULE = "learn_intents"
 
@@ -120,14 +120,13 @@ def _matcher(intents: tuple[tuple[str, tuple[str, ...]], ...]) -> Matcher:
     """
     taken = {plain(text) for _, texts in intents for text in texts}
     acts = bundled("acts")
-    rivals = {name: _some(texts, OF_ACT) for name, texts in acts.classes.items() if taken.isdisjoint(map(plain, texts))}
-    none = [text for text in (*_some(acts.none, OF_NONE), *bundled("none").none) if plain(text) not in taken]
-    return Matcher({**rivals, **dict(intents)}, none)
-
-
-def _some(texts: Sequence[str], number: int) -> Sequence[str]:
-    """Return at most about `number` of the texts, evenly spread."""
-    return texts[:: max(1, len(texts) // number)]
+    rivals = {
+        name: texts[:: max(1, len(texts) // OF_ACT)]
+        for name, texts in acts.classes.items()
+        if taken.isdisjoint(map(plain, texts))
+    }
+    none = [text for text in (*bundled("everyday").none, *bundled("none").none) if plain(text) not in taken]
+    return Matcher({**rivals, **dict(intents)}, none, centre=0.0)
 
 
 def _requires_nlp(module: rs.Module) -> bool:
