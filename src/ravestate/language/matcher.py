@@ -1,7 +1,8 @@
 """A small classifier of sentences by meaning and spelling, with a class *none of these*.
 
 It is a kernel ridge regression over example sentences. The kernel adds a Gaussian of the distance in meaning (from an
-`Encoder`) and the cosine of the spelling (groups of three and four letters). Every list of sentences in the project
+`Encoder`) and the cosine of the spelling (groups of three and four letters). Different shapes, such as *my* instead of
+*your*, lower both. Every list of sentences in the project
 that stands for a class is the examples of a matcher; there is no other way to recognise an utterance by its meaning.
 """
 
@@ -20,6 +21,7 @@ from .entity import Entity
 from .examples import bundled
 from .loading import LOADING
 from .normal import plain
+from .shape import likeness, shape
 from .spelling import Spelling
 
 if TYPE_CHECKING:
@@ -30,6 +32,8 @@ SHARPNESS = 4.0
 """The slope of the similarity of meaning: the vectors of short sentences lie close together."""
 SPELLING = 0.1
 """The weight of similar spelling; similar meaning has the weight 1. It tolerates typing errors."""
+SHAPE = 0.6
+"""The part of the similarity that two sentences lose whose shapes have nothing in common."""
 COMMON = 0.1
 """The similarity of any two sentences; it allows classes of different sizes."""
 RIDGE = 0.1
@@ -74,6 +78,7 @@ class Matcher:
         none: Sequence[str] = (),
         *,
         least: float = 0.5,
+        shapes: float = SHAPE,
         encoder: Encoder | None = None,
     ) -> None:
         """Take the examples; nothing is loaded yet.
@@ -82,11 +87,13 @@ class Matcher:
             examples: Sentences by class.
             none: Sentences that belong to no class.
             least: The confidence below which a sentence belongs to no class.
+            shapes: The weight of the shape of a sentence (the persons that it mentions, whether it asks), 0 to 1.
             encoder: By default the shared one.
         """
         pairs = [(plain(text), name) for name, texts in examples.items() for text in texts]
         pairs += [(plain(text), NONE) for text in none]
         self.least = least
+        self._shapes = shapes
         self._pairs = tuple(dict(pairs).items())
         self._exact = dict(self._pairs)
         self._encoder = encoder or shared_encoder()
@@ -113,7 +120,7 @@ class Matcher:
                         import_module("numpy")
                 except ImportError as error:
                     raise ModelMissing("sentence models need numpy: pip install 'ravestate[sentences]'") from error
-                self._learnt = _Learnt(self._pairs, self._encoder)
+                self._learnt = _Learnt(self._pairs, self._encoder, self._shapes)
 
     def match(self, sentence: str) -> Match | None:
         """Return the class that a sentence belongs to; None if it belongs to none."""
@@ -149,15 +156,16 @@ def bundled_matcher(name: str) -> Matcher:
 class _Learnt:
     """The classifier, after learning."""
 
-    def __init__(self, pairs: Sequence[tuple[str, str]], encoder: Encoder) -> None:
+    def __init__(self, pairs: Sequence[tuple[str, str]], encoder: Encoder, shapes: float) -> None:
         import numpy as np
 
-        self._encoder = encoder
+        self._encoder, self._weight = encoder, shapes
         self._examples = [text for text, _ in pairs]
         self._classes = [*dict.fromkeys(name for _, name in pairs if name != NONE), NONE]
         self._of = np.array([self._classes.index(name) for _, name in pairs])
         self._meanings = encoder.encode_lasting(self._examples)
         self._spelling = Spelling(self._examples)
+        self._shapes = np.array([shape(text) for text in self._examples], dtype=np.int8)
         kernel = self._kernel(self._examples, self._meanings)
         kernel[np.diag_indices_from(kernel)] += RIDGE
         inverse = np.linalg.inv(kernel)
@@ -189,8 +197,9 @@ class _Learnt:
         import numpy as np
 
         kernel = np.exp(SHARPNESS * (meanings.astype(np.float64) @ self._meanings.T - 1))
-        kernel += SPELLING * self._spelling.likeness(texts) + COMMON
-        return kernel
+        kernel += SPELLING * self._spelling.likeness(texts)
+        alike = likeness(np.array([shape(text) for text in texts], dtype=np.int8), self._shapes)
+        return kernel * (1 - self._weight * (1 - alike)) + COMMON
 
 
 def _margins(scores: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -1,0 +1,71 @@
+"""The shape of a sentence: the persons that it mentions, and whether it asks. It knows closed classes of words only.
+
+*What are my hobbies* and *what are your hobbies* have almost the same meaning for an encoder, and the same spelling. Their
+shapes tell them apart.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+WEIGHTS = (0.4, 0.4, 0.1, 0.1)
+"""The weights of the features, which add up to 1: the agent, the user, others, the order of the words."""
+
+_AGENT = frozenset(["you", "your", "yours", "yourself"])
+_USER = frozenset(["i", "me", "my", "mine", "myself", "we", "us", "our", "ours"])
+_OTHERS = frozenset(["he", "him", "his", "she", "her", "hers", "it", "its", "they", "them", "their", "theirs"])
+_QUESTION_WORDS = frozenset(["who", "whom", "whose", "what", "which", "where", "when", "why", "how"])
+_AUXILIARIES = frozenset(
+    [
+        "do",
+        "does",
+        "did",
+        "am",
+        "is",
+        "are",
+        "was",
+        "were",
+        "have",
+        "has",
+        "had",
+        "can",
+        "could",
+        "will",
+        "would",
+        "may",
+        "might",
+        "shall",
+        "should",
+        "must",
+    ]
+)
+
+
+def shape(text: str) -> tuple[bool, bool, bool, int]:
+    """Return the features of a text in the plain form: mentions the agent, the user, others; the order of its words.
+
+    Example:
+        >>> shape("what are my hobbies"), shape("you have a father")
+        ((False, True, False, 2), (True, False, False, 0))
+    """
+    words = text.split()
+    known = set(words)
+    mentioned = (not _AGENT.isdisjoint(known), not _USER.isdisjoint(known), not _OTHERS.isdisjoint(known))
+    for index, word in enumerate(words):
+        if word in _QUESTION_WORDS:
+            return *mentioned, 2
+        if word in _AUXILIARIES:
+            inverted = index == 0 or words[index - 1] not in _AGENT | _USER | _OTHERS
+            return *mentioned, 1 if inverted else 0
+    return *mentioned, 0
+
+
+def likeness(texts: NDArray[np.int8], others: NDArray[np.int8]) -> NDArray[np.float64]:
+    """Return the weighted share of equal features: rows for `texts` (n, 4), columns for `others` (m, 4)."""
+    import numpy as np
+
+    return (texts[:, None, :] == others[None]).astype(np.float64) @ np.array(WEIGHTS)
