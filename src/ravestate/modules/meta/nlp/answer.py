@@ -54,7 +54,9 @@ _YES = word_set("yes yeah yep yup yea ya yah yay yess aye ok okay okey sure")
 _NO = word_set("no nope nah nay naw")
 _AUXILIARIES = word_set("am is are was were do does did have has had can could will would shall should may might must")
 _PRONOUNS = word_set("i you he she it we they that this there")
-_NO_NOUN = _PRONOUNS | _FILLERS | _NO | word_set("my your the a because not never thank thanks but if let sir ma'am maam way")
+_NO_NOUN = (
+    _PRONOUNS | _FILLERS | _NO | word_set("my your the a because not never thank thanks but if let sir ma'am maam way")
+)
 """Words that do not continue a *no* before a noun: *no brothers*."""
 _LONGEST = 400
 """Answers are short: the rest of a long text is not read."""
