@@ -74,7 +74,7 @@ class Assertion:
     @cached_property
     def question(self) -> bool:
         """Whether the clause is asked."""
-        if self._clause.unknown is not None or self._inverted:
+        if self._clause.unknown is not None or self._clause.inverted:
             return True
         if self._above is not None:
             return self._dependent and self._above.question and not self._given
@@ -211,16 +211,6 @@ class Assertion:
         """Whether it shares the flags of the clause above."""
         dep = self._clause.verb.dep
         return dep in ("ccomp", "xcomp", "acl") or (dep == "conj" and not self._clause.own_subjects)
-
-    @cached_property
-    def _inverted(self) -> bool:
-        """Whether the verb or its auxiliary precedes the subject: *do you live here*."""
-        clause = self._clause
-        subjects = [word for word in clause.own_subjects if word.dep in SUBJECTS]
-        heads = [word for word in clause.own if word.dep in ("aux", "auxpass") or word in clause.chain]
-        if not subjects or not heads or any(word.low in ("so", "neither", "nor", "there") for word in clause.own):
-            return False
-        return heads[0].index < subjects[0].index and clause.verb.dep != "relcl"
 
     @property
     def _ends_otherwise(self) -> bool:

@@ -39,6 +39,7 @@ _SENSES = word_set("be feel look seem sound taste smell")
 _STATES = word_set("better worse well fine good bad great ok okay awful hard")
 """Adjectives that the tagger mistakes for adverbs."""
 
+_GIVING = word_set("give tell show send lend buy bring teach")
 _OWN_STATES = word_set("live like love hate want need miss hope wish prefer")
 """Verbs of states, which no request has: *live in Rome* stands for *I live in Rome*."""
 
@@ -79,11 +80,11 @@ class Clause:
         for clause in list(clauses.values()):
             for verb in clause.chain[1:]:
                 clauses[verb.index] = clause
-        return [clause for clause in dict.fromkeys(clauses.values()) if not clause._is_tag and not clause._is_lets]
+        return list(dict.fromkeys(clauses.values()))
 
     def readings(self) -> Iterator[tuple[Triple, Part, Part]]:
         """Yield a triple for each pair of subject and object, with its phrases."""
-        subjects, objects = self._parts()
+        subjects, objects = self._parts() if not self.is_tag and not self._is_lets else ([], [])
         for subject in subjects:
             for object, contrasted in objects or [(NOTHING, False)]:
                 predicate = ("not " if self.negated != contrasted else "") + self.predicate
@@ -107,7 +108,8 @@ class Clause:
             words += ["not"] * any(child.low in NEGATIONS for child in self.tree.children(verb, "neg"))
             joined = verb == self.verb and is_infinitive(self.tree, self.tree.head(verb))
             words += ["to"] * (joined or is_infinitive(self.tree, verb))
-            words.append(with_particles(self.tree, verb, verb.low))
+            words += [word.low for word in self.tree.children(verb, "auxpass")]
+            words += [with_particles(self.tree, verb, verb.low)] * (verb.low not in _FEELINGS)
         return " ".join(words)
 
     @cached_property
@@ -134,7 +136,7 @@ class Clause:
     def passive(self) -> Word | None:
         """The auxiliary of a passive."""
         for child in self.tree.children(self.chain[0], "auxpass"):
-            return child
+            return child if lemma_of(self.chain[0]) != "be" else None
         head = self.head_clause  # born and raised
         joined = self.verb.dep == "conj" and self.verb.tag == "VBN" and not self.own_subjects
         return head.passive if joined and head is not None and not self.tree.children(self.verb, "aux") else None
@@ -142,7 +144,9 @@ class Clause:
     @property
     def requests(self) -> bool:
         """Whether it demands something: *give me the book*, *let's play*."""
-        return not self.own_subjects and self.verb.dep in ("ROOT", "conj", "ccomp") and self.subjects in ([YOU], [_WE])
+        if self.own_subjects and not any(clause._is_lets for clause in self._clauses.values()):
+            return False
+        return self.verb.dep in ("ROOT", "conj", "ccomp") and self.subjects in ([YOU], [_WE])
 
     @cached_property
     def _inherited(self) -> list[Word]:
@@ -156,7 +160,7 @@ class Clause:
     def _agents(self) -> list[Word]:
         """The agents of a passive, after *by*."""
         by = [] if self.passive is None or self._feels else self.tree.children(self.chain[0], "agent")
-        return [word for agent in by for word in self.tree.children(agent, "pobj")]
+        return self.tree.children_of(by, "pobj")
 
     @property
     def _feels(self) -> bool:
@@ -192,7 +196,34 @@ class Clause:
         return sorted(found, key=lambda word: word.index)
 
     @cached_property
-    def _is_tag(self) -> bool:
+    def _is_relative(self) -> bool:
+        """Whether it is a relative clause, and no question: *Tom, where do you live*."""
+        asked = [word for word in self.tree.children(self.verb, "aux", *SUBJECTS) if word.low != "to"][:1]
+        return self.verb.dep == "relcl" and not (asked and asked[0].dep == "aux" and self._has_subject)
+
+    @property
+    def _has_subject(self) -> bool:
+        return bool(self.tree.children(self.verb, *SUBJECTS))
+
+    @cached_property
+    def inverted(self) -> bool:
+        """Whether the verb or its auxiliary precedes the subject: *do you live here*."""
+        heads = [word for word in self.own if word.dep in ("aux", "auxpass") or word in (self.verb, *self.chain)]
+        subjects = [word for word in self.own_subjects if word.dep not in ("dobj", "appos")]
+        before = self.tree.before(heads[0])
+        if not subjects or (before is not None and before.low in ("so", "neither", "nor")):
+            return False
+        if self.tree.children_of(self.chain, "expl"):
+            subjects = self.tree.children_of(self.chain, "expl")
+        first = self.tree.subtree(subjects[0])[0]
+        return heads[0].index < first.index and heads[0].low in AUXILIARIES and not self._is_statement_of(first)
+
+    def _is_statement_of(self, subject: Word) -> bool:
+        """Return whether a *be* before *a* has no subject: *was a nice day*."""
+        return self._is_copula and self.unknown is None and subject.low in ("a", "an") and not self._objects()
+
+    @cached_property
+    def is_tag(self) -> bool:
         """Whether it is a question tag: *don't you?*."""
         before = self.tree.before(self.verb)
         rest = [word for word in self.tree.words[self.verb.index + 1 :] if word.low not in NEGATIONS]
@@ -200,7 +231,9 @@ class Clause:
             return False
         if any(word.low in QUESTION_WORDS for word in self.own) or before.pos in ("PRON", "CCONJ", "SCONJ", "INTJ"):
             return False
-        return rest[1:2] in ([], [w for w in rest[1:2] if w.pos == "PUNCT"]) and min(self._clauses) < self.verb.index
+        return rest[1:2] in ([], [w for w in rest[1:2] if w.pos == "PUNCT"]) and (
+            min(self._clauses) < self.verb.index or self.negated
+        )
 
     @cached_property
     def _is_lets(self) -> bool:
@@ -235,10 +268,10 @@ class Clause:
         """The subjects of the clause itself. The parser attaches some to an auxiliary or an adjective."""
         verbs = dict.fromkeys([self.verb, *self.chain])
         tree, last = self.tree, self.chain[-1]
-        there = [word for verb in verbs for word in tree.children(verb, "attr", "dobj") if tree.children(verb, "expl")]
-        found = there or [word for verb in verbs for word in tree.children(verb, *SUBJECTS)]
+        there = tree.children_of(verbs, "attr", "dobj") if tree.children_of(verbs, "expl") else []
+        found = there or tree.children_of(verbs, *SUBJECTS)
         beside = [*tree.children(self.verb, "aux", "auxpass"), *tree.children(last, "acomp", "attr")]
-        found = found or [word for other in beside for word in tree.children(other, *SUBJECTS)]
+        found = found or tree.children_of(beside, *SUBJECTS)
         if not found and (before := tree.before(self.verb)) is not None and before.dep == "appos":
             return [before]  # I have a sister her name is Lisa
         if self._is_copula and self.unknown is not None and found in ([], [self.unknown.top]):  # who is your friend
@@ -251,7 +284,7 @@ class Clause:
         """The subjects; those of the head clause if the clause has none."""
         own, head, verb = self.own_subjects, self.head_clause, self.verb
         above = self.tree.head(verb)
-        if own and own[0].low in _RELATIVE and verb.dep == "relcl" and len(own) == 1:
+        if own and own[0].low in _RELATIVE and self._is_relative and len(own) == 1:
             return self._antecedent
         if own and own[0].low in ("'s", "us", "s"):
             return [_WE]
@@ -288,15 +321,17 @@ class Clause:
         tree, verbs = self.tree, self.chain[::-1]
         if lacks_copula(tree, self.verb):
             return self._written([self.verb], self.verb)
-        if self.passive is not None and self._feels:
-            return [(phrase_of(tree, self.chain[0], adjective_phrase(tree, self.chain[0], self.chain[0])), False)]
-        relative = self.verb.dep == "relcl" and bool(self.own_subjects) and self.own_subjects[0].low not in _RELATIVE
+        if verbs[0].low in _FEELINGS and tree.children(verbs[0], "auxpass"):
+            return [(phrase_of(tree, verbs[0], adjective_phrase(tree, verbs[0], verbs[0])), False)]
+        relative = self._is_relative and bool(self.own_subjects) and self.own_subjects[0].low not in _RELATIVE
+        relative = relative and not any(word.low == "whose" or word.dep == "mark" for word in self.own)
         for verb in verbs:
             direct = [word for word in tree.children(verb, *_DIRECT) if self._is_free(word)]
             if not direct:  # it makes me happy
                 small = [word for word in tree.children(verb, "ccomp") if word.index not in self._clauses]
-                direct = [subject for word in small for subject in tree.children(word, *SUBJECTS)]
-            if direct and not (relative and direct[0].low in _RELATIVE):
+                direct = tree.children_of(small, *SUBJECTS)
+            given = lemma_of(verb) in _GIVING and direct and direct[0].pos == "PRON"  # the book you gave me
+            if direct and not (relative and (given or direct[0].low in _RELATIVE)):
                 return self._written(direct[:1], verb)
         if relative and not self._runs_on:
             return [(part, False) for part in self._antecedent]
@@ -359,7 +394,7 @@ class Clause:
     @cached_property
     def unknown(self) -> _Unknown | None:
         """The unknown, if the clause asks with a question word."""
-        if self.verb.dep == "relcl":
+        if self._is_relative:
             return None
         for word in self.own:
             kind = kind_at(self.tree.words, word.index) if word.low in QUESTION_WORDS else None
@@ -396,7 +431,7 @@ class Clause:
 
     def _whose(self, phrase: Phrase) -> Phrase:
         """Replace *whose* in a relative clause: *whose father* becomes *the boy's father*."""
-        if self.verb.dep != "relcl" or not phrase.text.lower().startswith("whose "):
+        if not self._is_relative or not phrase.text.lower().startswith("whose "):
             return phrase
         owner = self._antecedent[0]
         assert isinstance(owner, Phrase)

@@ -64,7 +64,10 @@ def conjuncts(tree: Tree, head: Word, clauses: Container[int]) -> list[Word]:
     """Return `head` with its conjuncts, without the verbs in `clauses` (indices)."""
     found = [head]
     for word in found:  # the list grows in the loop
-        found += [child for child in tree.children(word, "conj") if child.index not in clauses]
+        listed = [
+            child for child in tree.children(word, "appos") if child.pos == word.pos and tree.children(child, "conj")
+        ]
+        found += [child for child in (*listed, *tree.children(word, "conj")) if child.index not in clauses]
     return found
 
 
