@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 BUNDLED = "bge_small_en"
 REMEMBERED = 1024
 """The latest sentences whose vectors an encoder keeps: all skills ask for those of one utterance."""
+FILES = 50
+"""The latest files with vectors of examples that the cache keeps."""
 
 
 class Encoder:
@@ -48,6 +50,7 @@ class Encoder:
         self._mean: bool | None = None
         self._lock = threading.Lock()
         self._latest: OrderedDict[str, NDArray[np.float32]] = OrderedDict()
+        self._lasting: dict[str, NDArray[np.float16]] = {}
 
     def load(self) -> None:
         """Load the model now; otherwise the first `encode` does.
@@ -84,7 +87,8 @@ class Encoder:
     def encode_lasting(self, texts: Sequence[str]) -> NDArray[np.float32]:
         """Return the vectors of texts that stay the same from start to start, such as examples, from a file.
 
-        The first call encodes them and writes the file to the user's cache; a file that is missing or broken does no harm.
+        The first call encodes those that no other call had, and writes the file to the user's cache. A file that is
+        missing or broken does no harm.
 
         Raises:
             PlatformError: See `load`.
@@ -95,21 +99,26 @@ class Encoder:
         digest = hashlib.sha256(json.dumps([_identity(model.folder), list(texts)]).encode("utf-8", "replace"))
         file = user_folder("cache") / "vectors" / f"{digest.hexdigest()[:32]}.npy"
         try:
-            found = np.load(file, allow_pickle=False)
-            if found.shape == (len(texts), model.width):
-                return found.astype(np.float32)
+            rows = np.load(file, allow_pickle=False)
+            if rows.shape == (len(texts), model.width):
+                os.utime(file)
+                self._lasting.update(zip(texts, rows, strict=True))
+                return rows.astype(np.float32)
         except (OSError, ValueError, EOFError):
             pass
-        vectors = self._encode(texts)
+        new = [text for text in dict.fromkeys(texts) if text not in self._lasting]
+        self._lasting.update(zip(new, self._encode(new).astype(np.float16), strict=True))
+        rows = np.array([self._lasting[text] for text in texts], dtype=np.float16).reshape(len(texts), model.width)
         try:
             file.parent.mkdir(parents=True, exist_ok=True)
             handle, name = tempfile.mkstemp(dir=file.parent)
             with os.fdopen(handle, "wb") as out:
-                np.save(out, vectors.astype(np.float16))
+                np.save(out, rows)
             os.replace(name, file)
+            _remove_stale(file.parent)
         except OSError:
             pass  # a folder that cannot be written only costs time
-        return vectors.astype(np.float16).astype(np.float32)  # the same as next time
+        return rows.astype(np.float32)  # the same as next time
 
     def _encode(self, texts: Sequence[str]) -> NDArray[np.float32]:
         model = model_in(self._folder, BUNDLED)
@@ -122,6 +131,12 @@ class Encoder:
             rows[indices] = _pooled(hidden, mask, self._mean)
         norms = np.linalg.norm(rows, axis=1, keepdims=True)
         return rows / np.maximum(norms, 1e-12)
+
+
+def _remove_stale(folder: Path) -> None:
+    """Remove the files of vectors that nobody has read for longest, beyond the latest `FILES`."""
+    for file in sorted(folder.glob("*.npy"), key=lambda file: file.stat().st_mtime, reverse=True)[FILES:]:
+        file.unlink(missing_ok=True)
 
 
 def _pooled(hidden: NDArray[Any], mask: NDArray[Any], mean: bool) -> NDArray[Any]:

@@ -38,6 +38,8 @@ COMMON = 0.1
 """The similarity of any two sentences; it allows classes of different sizes."""
 RIDGE = 0.1
 """The ridge penalty: it limits the weight of a single example."""
+DOUBT = 0.2
+"""The margin from which an example that the others would put into another class is worth a remark."""
 NONE = ""
 
 
@@ -122,22 +124,35 @@ class Matcher:
                     raise ModelMissing("sentence models need numpy: pip install 'ravestate[sentences]'") from error
                 self._learnt = _Learnt(self._pairs, self._encoder, self._shapes)
 
+    def confusions(self) -> list[tuple[str, str, str]]:
+        """Return the examples that the others let expect in another class: example, class, expected class.
+
+        Raises:
+            PlatformError: See `load`.
+        """
+        self.load()
+        assert self._learnt is not None
+        return self._learnt.confusions
+
     def match(self, sentence: str) -> Match | None:
         """Return the class that a sentence belongs to; None if it belongs to none."""
         return self.match_all([sentence])[0]
 
     def match_all(self, sentences: Sequence[str]) -> list[Match | None]:
-        """Return the class of each sentence; None for one that belongs to none."""
-        bests = (ranked[0] if ranked else None for ranked in map(self.ranked, sentences))
+        """Return the class of each sentence; None for one that belongs to none. The encoder runs once for all."""
+        bests = (ranked[0] if ranked else None for ranked in self.ranked_all(sentences, most=1))
         return [best if best and best.name != NONE and best.score >= self.least else None for best in bests]
 
     def ranked(self, sentence: str) -> list[Match]:
         """Return all classes, best first; the class named by an empty string stands for none of them."""
-        text = plain(sentence)
+        return self.ranked_all([sentence])[0]
+
+    def ranked_all(self, sentences: Sequence[str], most: int | None = None) -> list[list[Match]]:
+        """Return the classes of each sentence, best first; `most` of them."""
         if self._learnt is not None:
-            return self._learnt.ranked(text, sentence)
-        name = self._exact.get(text)
-        return [] if name is None else [Match(1.0, text, 1.0, name=name, text=sentence)]
+            return self._learnt.ranked(sentences, most)
+        exact = ((self._exact.get(text := plain(sentence)), text, sentence) for sentence in sentences)
+        return [[] if name is None else [Match(1.0, text, 1.0, name=name, text=given)] for name, text, given in exact]
 
 
 @cache
@@ -166,40 +181,56 @@ class _Learnt:
         self._meanings = encoder.encode_lasting(self._examples)
         self._spelling = Spelling(self._examples)
         self._shapes = np.array([shape(text) for text in self._examples], dtype=np.int8)
-        kernel = self._kernel(self._examples, self._meanings)
+        kernel = self._kernel(self._meanings, self._spelling.among, self._shapes)
+        kernel = kernel.astype(np.float64)
         kernel[np.diag_indices_from(kernel)] += RIDGE
+        del self._spelling.among  # a large matrix that only learning needs
         inverse = np.linalg.inv(kernel)
         targets = np.eye(len(self._classes))[self._of]
-        self._weights = inverse @ targets
+        weights = inverse @ targets
+        self._weights = weights.astype(np.float32)
         # The scores of each example from a classifier that has learnt all the others, in closed form.
-        left_out = targets - self._weights / np.diag(inverse)[:, None]
+        left_out = targets - weights / np.diag(inverse)[:, None]
+        others = left_out.argmax(axis=1)
+        wrong = np.flatnonzero((others != self._of) & (_margins(left_out) > DOUBT))
+        self.confusions: list[tuple[str, str, str]] = [
+            (self._examples[n], self._classes[self._of[n]], self._classes[others[n]]) for n in map(int, wrong)
+        ]
         self._slope, self._centre = _calibrated(_margins(left_out), left_out.argmax(axis=1) == self._of)
 
-    def ranked(self, text: str, sentence: str) -> list[Match]:
-        """Return all classes, best first."""
+    def ranked(self, sentences: Sequence[str], most: int | None) -> list[list[Match]]:
+        """Return `most` classes of each sentence, best first."""
         import numpy as np
 
-        meanings = self._encoder.encode([text])
-        kernel = self._kernel([text], meanings)[0]
-        scores = kernel @ self._weights
-        order = np.argsort(-scores, kind="stable")
-        found: list[Match] = []
-        for number in map(int, order):
-            others = np.delete(scores, number)
-            margin = float(scores[number] - others.max(initial=-1.0))
-            confidence = float(1 / (1 + np.exp(-self._slope * (margin - self._centre))))
-            near = self._examples[int(np.where(self._of == number, kernel, -np.inf).argmax())]
-            found.append(Match(confidence, near, margin, name=self._classes[number], text=sentence))
+        if not sentences:
+            return []
+        texts = [plain(sentence) for sentence in sentences]
+        shapes = np.array([shape(text) for text in texts], dtype=np.int8)
+        kernels = self._kernel(self._encoder.encode(texts), self._spelling.likeness(texts), shapes)
+        found: list[list[Match]] = []
+        for sentence, kernel, scores in zip(sentences, kernels, kernels @ self._weights, strict=True):
+            order = [int(number) for number in np.argsort(-scores, kind="stable")[:most]]
+            found.append([self._match(number, sentence, kernel, scores) for number in order])
         return found
 
-    def _kernel(self, texts: Sequence[str], meanings: NDArray[np.float32]) -> NDArray[np.float64]:
+    def _match(self, number: int, sentence: str, kernel: NDArray[np.float32], scores: NDArray[np.float32]) -> Match:
+        import numpy as np
+
+        margin = float(scores[number] - np.delete(scores, number).max(initial=-1.0))
+        confidence = float(1 / (1 + np.exp(-self._slope * (margin - self._centre))))
+        near = self._examples[int(np.where(self._of == number, kernel, -np.inf).argmax())]
+        return Match(confidence, near, margin, name=self._classes[number], text=sentence)
+
+    def _kernel(
+        self, meanings: NDArray[np.float32], spelling: NDArray[np.float32], shapes: NDArray[np.int8]
+    ) -> NDArray[np.float32]:
         """Return the similarity of sentences (rows) and examples (columns)."""
         import numpy as np
 
-        kernel = np.exp(SHARPNESS * (meanings.astype(np.float64) @ self._meanings.T - 1))
-        kernel += SPELLING * self._spelling.likeness(texts)
-        alike = likeness(np.array([shape(text) for text in texts], dtype=np.int8), self._shapes)
-        return kernel * (1 - self._weight * (1 - alike)) + COMMON
+        kernel = np.exp(np.float32(SHARPNESS) * (meanings @ self._meanings.T - 1))
+        kernel += np.float32(SPELLING) * spelling
+        kernel *= 1 - self._weight * (1 - likeness(shapes, self._shapes))
+        return kernel + np.float32(COMMON)
 
 
 def _margins(scores: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
+from ravestate.errors import PlatformError
 from ravestate.language.entity import Entity
 from ravestate.language.matcher import Match, Matcher, bundled_matcher
 from ravestate.language.normal import Normal
@@ -27,6 +29,9 @@ _SECOND_PERSON = word_set("you your yours yourself u ur")
 
 MATCHERS = ("acts", "feelings")
 """The files of examples whose classes an analysis names."""
+
+SHORT = 4
+"""The words of a part of a sentence that may be an act of its own."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,24 +60,38 @@ class Analysis:
     feelings: Mapping[str, Match] = field(default_factory=dict[str, Match])
     """The feelings, by the classes of ``feelings.yaml``, each with its best sentence."""
 
+    intents: Mapping[str, Match] = field(default_factory=dict[str, Match])
+    """The designer's intents (`nlp.intent`) by the names of their signals, each with its best sentence."""
+
     def act(self, name: str) -> Match | None:
         """Return the best sentence with the act `name`; None if there is none."""
         return self.acts.get(name)
 
 
-def analyse(text: str, pipeline: Pipeline, agent_names: Iterable[str] = ()) -> Analysis:
+def analyse(
+    text: str,
+    pipeline: Pipeline,
+    agent_names: Iterable[str] = (),
+    users: Iterable[str] = (),
+    designed: Matcher | None = None,
+) -> Analysis:
     """Analyse `text`. Blocks for a few milliseconds.
 
     Args:
         text: Any text; the analysis covers the beginning of a long one.
         pipeline: The pipeline; the first call loads it in about a second.
         agent_names: A text with one of them is about the agent. Case is ignored.
+        users: The names of the users present; the normal form knows them, as it knows those of the agent.
+        designed: The matcher of the designer's intents. The first utterance waits until it has learnt them.
 
     Raises:
         PlatformError: spaCy or the pipeline is missing.
     """
+    if designed is not None:
+        with contextlib.suppress(PlatformError):  # without the sentence model, it knows the examples word for word
+            designed.load()
     names = tuple(agent_names)
-    normal = pipeline.normalise(text, names)
+    normal = pipeline.normalise(text, (*names, *users))
     tree, entities = pipeline.read(normal)
     sentences = sentences_of(normal.text)
     statements = statements_of(tree, entities)
@@ -90,8 +109,9 @@ def analyse(text: str, pipeline: Pipeline, agent_names: Iterable[str] = ()) -> A
         intent_bye=says_bye(tree.text),
         sentences=sentences,
         statements=statements,
-        acts=_best(bundled_matcher("acts"), sentences),
+        acts=_best(bundled_matcher("acts"), [*sentences, *_short_parts(sentences)]),  # first: it encodes all of them
         feelings=_best(bundled_matcher("feelings"), sentences),
+        intents={name: match for name, match in _best(designed, sentences).items() if ":" in name} if designed else {},
     )
 
 
@@ -102,6 +122,12 @@ def _best(matcher: Matcher, sentences: Sequence[str]) -> dict[str, Match]:
         if match is not None and (match.name not in found or match.score > found[match.name].score):
             found[match.name] = match
     return found
+
+
+def _short_parts(sentences: Sequence[str]) -> list[str]:
+    """Return the short first and last parts of sentences with commas: *Thanks*, in *Thanks, when do you open?*"""
+    split = [[part.strip() for part in sentence.split(",")] for sentence in sentences]
+    return [part for parts in split if len(parts) > 1 for part in (parts[0], parts[-1]) if len(part.split()) <= SHORT]
 
 
 def _is_about_agent(tree: Tree, names: Iterable[str]) -> bool:
