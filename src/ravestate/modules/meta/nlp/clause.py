@@ -36,11 +36,11 @@ _FEELINGS = word_set(
 _PURSUITS = word_set("hobby job passion dream goal plan interest pastime task habit")
 """Subjects before a gerund that names them: *my hobby is reading*."""
 _SENSES = word_set("be feel look seem sound taste smell")
-_STATES = word_set("better worse well fine good bad great ok okay awful hard")
+_STATES = word_set("better worse well fine good bad great ok okay awful hard alone")
 """Adjectives that the tagger mistakes for adverbs."""
 
 _GIVING = word_set("give tell show send lend buy bring teach")
-_OWN_STATES = word_set("live like love hate want need miss hope wish prefer")
+_OWN_STATES = word_set("live like love hate want need miss hope prefer know understand")
 """Verbs of states, which no request has: *live in Rome* stands for *I live in Rome*."""
 
 Part = Phrase | QuestionWord
@@ -231,9 +231,9 @@ class Clause:
             return False
         if any(word.low in QUESTION_WORDS for word in self.own) or before.pos in ("PRON", "CCONJ", "SCONJ", "INTJ"):
             return False
-        return rest[1:2] in ([], [w for w in rest[1:2] if w.pos == "PUNCT"]) and (
-            min(self._clauses) < self.verb.index or self.negated
-        )
+        after = self.tree.after(self.verb)
+        denied = after is not None and after.low in NEGATIONS
+        return all(word.pos == "PUNCT" for word in rest[1:2]) and (min(self._clauses) < self.verb.index or denied)
 
     @cached_property
     def _is_lets(self) -> bool:
@@ -274,9 +274,9 @@ class Clause:
         found = found or tree.children_of(beside, *SUBJECTS)
         if not found and (before := tree.before(self.verb)) is not None and before.dep == "appos":
             return [before]  # I have a sister her name is Lisa
-        if self._is_copula and self.unknown is not None and found in ([], [self.unknown.top]):  # who is your friend
-            others = [word for word in tree.children(last, "attr", "dobj") if word.pos not in ("ADJ", "ADV")]
-            found = [word for word in others if word != self.unknown.top][:1] or [self.unknown.top]
+        if self._is_copula and self.unknown is not None and (not found or self.unknown.top in found):
+            others = found + [word for word in tree.children(last, "attr", "dobj") if word.pos not in ("ADJ", "ADV")]
+            found = [word for word in others if word != self.unknown.top][:1] or [self.unknown.top]  # who is your friend
         return found
 
     @cached_property
@@ -306,7 +306,8 @@ class Clause:
         auxiliaries = [word.low for word in self.tree.children(self.verb, "aux", "auxpass")]
         if self.verb.lemma.lower() == "thank" or self.verb.low == "am" or set(auxiliaries) & {"am", "have"}:
             return [_I]
-        states = lemma_of(self.verb) in _OWN_STATES or (lemma_of(self.verb) == "have" and self.negated)
+        has = lemma_of(self.verb) in ("have", "get") and (self.negated or len(self.chain) > 1)
+        states = lemma_of(self.verb) in _OWN_STATES or has
         request = (self.verb.tag in ("VB", "VBP") or "do" in auxiliaries) and not states
         return [YOU] if request else [_I] if states or self.verb.tag in ("VBD", "VBG") else [NOTHING]
 
@@ -318,7 +319,7 @@ class Clause:
 
     def _objects(self) -> list[tuple[Part, bool]]:
         """Return the first of the kinds of objects that the clause has."""
-        tree, verbs = self.tree, self.chain[::-1]
+        tree, verbs = self.tree, list(dict.fromkeys([*self.chain[::-1], self.verb]))
         if lacks_copula(tree, self.verb):
             return self._written([self.verb], self.verb)
         if verbs[0].low in _FEELINGS and tree.children(verbs[0], "auxpass"):
@@ -332,7 +333,8 @@ class Clause:
                 direct = tree.children_of(small, *SUBJECTS)
             given = lemma_of(verb) in _GIVING and direct and direct[0].pos == "PRON"  # the book you gave me
             if direct and not (relative and (given or direct[0].low in _RELATIVE)):
-                return self._written(direct[:1], verb)
+                strays = [w for w in tree.children(verb, "conj") if w.index not in self._clauses and w.pos not in VERBAL]
+                return self._written([direct[0], *(word for word in strays if word.index > direct[0].index)], verb)
         if relative and not self._runs_on:
             return [(part, False) for part in self._antecedent]
         for verb in verbs:
@@ -341,10 +343,11 @@ class Clause:
             if states or indirect:
                 return self._written(states or indirect, verb)
         subjects = self.own_subjects if self._is_copula and self.unknown is None else []
-        for word in subjects:  # is Berlin the capital, are cats nice
-            beside = [other for other in tree.children(word, "appos", "amod", "npadvmod") if other.index > word.index]
-            if beside and word.index > self.verb.index:
-                return self._written(beside, self.verb)
+        if self._beside:
+            return self._written(self._beside, self.verb)
+        after = tree.after(verbs[0])  # my name is Tom I live in Berlin
+        if subjects and after is not None and after.dep in ("npadvmod", "compound") and tree.head(after).index > after.index:
+            return [(phrase_of(tree, after, [after]), False)] if tree.head(after).pos in VERBAL else []
         for head in (*verbs, *subjects):
             if found := self._in_phrases(head, of=head in verbs):
                 return found
@@ -356,6 +359,14 @@ class Clause:
             if (other := self._clauses.get(word.index)) and between and all(w.dep in ("cc", "prt") for w in between):
                 return other._objects()
         return []
+
+    @cached_property
+    def _beside(self) -> list[Word]:
+        """The predicate that the parser takes for a part of the subject: *is Berlin the capital*, *are cats nice*."""
+        subjects = self.own_subjects if self._is_copula and self.unknown is None else []
+        beside = self.tree.children_of(subjects, "appos", "amod", "npadvmod")
+        asked = bool(subjects) and subjects[0].index > self.verb.index
+        return [word for word in beside if asked and word.index > subjects[0].index]
 
     def _is_free(self, word: Word) -> bool:
         """Return whether a word is neither a verb of the chain, nor the unknown, nor the subject."""
@@ -424,6 +435,7 @@ class Clause:
                 else:
                     gerund = word.pos in VERBAL and word.dep != "ROOT"
                     words = gerund_phrase(self.tree, word) if gerund else noun_phrase(self.tree, word)
+                words = [other for other in words if other == word or other not in self._beside]
                 first = self.tree.before(self.tree.subtree(word)[0]), self.tree.subtree(word)[0]
                 contrasted = any(w is not None and w.low == "not" and self._denies_conjunct(w) for w in first)
                 found.append((self._whose(phrase_of(self.tree, word, words)), word.dep == "conj" and contrasted))
