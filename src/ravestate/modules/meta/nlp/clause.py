@@ -43,6 +43,8 @@ _GIVING = word_set("give tell show send lend buy bring teach")
 _OWN_STATES = word_set("live like love hate want need miss hope prefer know understand")
 """Verbs of states, which no request has: *live in Rome* stands for *I live in Rome*."""
 
+_NOMINAL = ("NOUN", "PROPN", "ADJ", "NUM")
+
 Part = Phrase | QuestionWord
 NOTHING = Phrase("")
 YOU = Phrase("you", person="you")
@@ -78,8 +80,7 @@ class Clause:
             if heads_clause(tree, word):
                 clauses[word.index] = cls(tree, word, clauses)
         for clause in list(clauses.values()):
-            for verb in clause.chain[1:]:
-                clauses[verb.index] = clause
+            clauses |= {verb.index: clause for verb in clause.chain if verb != clause.verb}
         return list(dict.fromkeys(clauses.values()))
 
     def readings(self) -> Iterator[tuple[Triple, Part, Part]]:
@@ -250,7 +251,8 @@ class Clause:
             gerunds = conjuncts(self.tree, self.verb, self._clauses.keys() - {self.verb.index})
             return self.subjects, [(phrase_of(self.tree, verb, self._gerund(verb)), False) for verb in gerunds]
         if self._agents:
-            asked = [(part, False) for part in self.subjects]
+            given = self._written(self.tree.children(self.chain[0], "dobj"))  # I was given a watch by my aunt
+            asked = given or [(part, False) for part in self.subjects]
             if unknown is not None and unknown.top.dep == "agent":  # who was it written by
                 return [unknown.kind], asked
             return [part for part, _ in self._written(self._agents)], asked
@@ -276,7 +278,9 @@ class Clause:
             return [before]  # I have a sister her name is Lisa
         if self._is_copula and self.unknown is not None and (not found or self.unknown.top in found):
             others = found + [word for word in tree.children(last, "attr", "dobj") if word.pos not in ("ADJ", "ADV")]
-            found = [word for word in others if word != self.unknown.top][:1] or [self.unknown.top]  # who is your friend
+            found = [word for word in others if word != self.unknown.top][:1] or [
+                self.unknown.top
+            ]  # who is your friend
         return found
 
     @cached_property
@@ -333,7 +337,7 @@ class Clause:
                 direct = tree.children_of(small, *SUBJECTS)
             given = lemma_of(verb) in _GIVING and direct and direct[0].pos == "PRON"  # the book you gave me
             if direct and not (relative and (given or direct[0].low in _RELATIVE)):
-                strays = [w for w in tree.children(verb, "conj") if w.index not in self._clauses and w.pos not in VERBAL]
+                strays = [w for w in tree.children(verb, "conj") if w.index not in self._clauses and w.pos in _NOMINAL]
                 return self._written([direct[0], *(word for word in strays if word.index > direct[0].index)], verb)
         if relative and not self._runs_on:
             return [(part, False) for part in self._antecedent]
@@ -346,7 +350,12 @@ class Clause:
         if self._beside:
             return self._written(self._beside, self.verb)
         after = tree.after(verbs[0])  # my name is Tom I live in Berlin
-        if subjects and after is not None and after.dep in ("npadvmod", "compound") and tree.head(after).index > after.index:
+        if (
+            subjects
+            and after is not None
+            and after.dep in ("npadvmod", "compound")
+            and tree.head(after).index > after.index
+        ):
             return [(phrase_of(tree, after, [after]), False)] if tree.head(after).pos in VERBAL else []
         for head in (*verbs, *subjects):
             if found := self._in_phrases(head, of=head in verbs):

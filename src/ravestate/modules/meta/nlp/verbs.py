@@ -46,7 +46,9 @@ def lemma_of(verb: Word) -> str:
 def chain_of(tree: Tree, verb: Word) -> list[Word]:
     """Return `verb` with the verbs that it governs: *want to become*."""
     chain = [verb]
-    if mistaken := [word for word in tree.children(verb, "aux") if lemma_of(word) in _GERUND_TAKERS and verb.tag == "VBG"]:
+    if mistaken := [
+        word for word in tree.children(verb, "aux") if lemma_of(word) in _GERUND_TAKERS and verb.tag == "VBG"
+    ]:
         return mistaken + chain  # I enjoy cooking
     if lemma_of(verb) == "be":  # it's raining
         return next((chain_of(tree, child) for child in tree.children(verb, "xcomp") if child.tag == "VBG"), chain)
