@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from functools import cache
 
-from quality import modules
+from quality import measure, modules
 from quality.measure import Result, labelled, measure_labels, measure_triples
 from ravestate.language.matcher import bundled_matcher
 from ravestate.modules import emotion
@@ -20,7 +20,7 @@ from ravestate.modules.meta.nlp.answer import YesNo, yesno_of
 from ravestate.modules.meta.nlp.pipeline import pipeline
 
 LABELLED = ("questions_rows", "yesno_rows", "intents_rows", "quiet_rows", "emotion_rows")
-SETS = ("triples_rows", *LABELLED)
+SETS = ("triples_rows", "typed_rows", *LABELLED)
 
 
 def intents(text: str) -> str:
@@ -65,12 +65,29 @@ def _part(word: str) -> str:
     return "" if word == "_" else word.replace("_", " ")
 
 
+def _same(triples: Iterable[tuple[str, str, str]]) -> Iterable[tuple[str, str, str]]:
+    return triples
+
+
+def _in_lower_case(triples: Iterable[tuple[str, str, str]]) -> Iterable[tuple[str, str, str]]:
+    """Return triples in lower case: people type either case."""
+    return [(subject.lower(), predicate, thing.lower()) for subject, predicate, thing in triples]
+
+
+def typed() -> list[tuple[str, str]]:
+    """The messages as people type them, with their triples."""
+    text = (measure.HERE / "typed_rows.yaml").read_text(encoding="utf-8")
+    return list(measure.yaml.safe_load(text).items())
+
+
 @cache
 def measured(name: str) -> Result:
     """Measure one of `SETS`."""
-    if name == "triples_rows":
-        cases = [(text, triples_of(notation)) for text, notation in labelled(name)]
-        result = measure_triples(modules.triples, cases)
+    if name in ("triples_rows", "typed_rows"):
+        rows = labelled(name) if name == "triples_rows" else typed()
+        cased = _same if name == "triples_rows" else _in_lower_case
+        cases = [(text, frozenset(cased(triples_of(notation)))) for text, notation in rows]
+        result = measure_triples(lambda text: cased(modules.triples(text)), cases)
         return Result(name, result.cases, result.shares, result.misses)
     return measure_labels(name, SEE[name], labelled(name))
 
