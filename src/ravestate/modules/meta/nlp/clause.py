@@ -97,11 +97,9 @@ class Clause:
     def predicate(self) -> str:
         """The lemma; in a chain the first verb's lemma, then the others as written."""
         first, *others = self._inherited + self.chain
-        if self._names_pursuit or lacks_copula(self.tree, self.verb):
-            return "be"
+        if self._names_pursuit or lacks_copula(self.tree, self.verb) or (self.passive is not None and self._feels):
+            return self.lemma
         lemma = lemma_of(first)
-        if self.passive is not None and self._feels:
-            return lemma_of(self.passive)
         if self.passive is not None and not self._agents and first == self.verb:
             lemma = f"{lemma_of(self.passive)} {first.low}"
         words = [with_particles(self.tree, first, lemma)]
@@ -112,6 +110,13 @@ class Clause:
             words += [word.low for word in self.tree.children(verb, "auxpass")]
             words += [with_particles(self.tree, verb, verb.low)] * (verb.low not in _FEELINGS)
         return " ".join(words)
+
+    @cached_property
+    def lemma(self) -> str:
+        """The lemma of the last verb of the predicate."""
+        if self._names_pursuit or lacks_copula(self.tree, self.verb):
+            return "be"
+        return lemma_of(self.passive) if self.passive is not None and self._feels else lemma_of(self.chain[-1])
 
     @cached_property
     def negated(self) -> bool:
@@ -174,11 +179,8 @@ class Clause:
         pursuit = any(word.lemma.lower() in _PURSUITS for word in self.own_subjects)
         if self.verb.dep == "conj" and self.head_clause is not None and not self.own_subjects:
             return self.verb.tag == "VBG" and self.head_clause._names_pursuit
-        return (
-            pursuit
-            and self.verb.tag == "VBG"
-            and any(lemma_of(w) == "be" for w in self.tree.children(self.verb, "aux"))
-        )
+        being = any(lemma_of(word) == "be" for word in self.tree.children(self.verb, "aux"))
+        return pursuit and being and self.verb.tag == "VBG"
 
     # ---------------------------------------------------------------------------------- its neighbours
 
@@ -199,12 +201,8 @@ class Clause:
     @cached_property
     def _is_relative(self) -> bool:
         """Whether it is a relative clause, and no question: *Tom, where do you live*."""
-        asked = [word for word in self.tree.children(self.verb, "aux", *SUBJECTS) if word.low != "to"][:1]
-        return self.verb.dep == "relcl" and not (asked and asked[0].dep == "aux" and self._has_subject)
-
-    @property
-    def _has_subject(self) -> bool:
-        return bool(self.tree.children(self.verb, *SUBJECTS))
+        deps = [word.dep for word in self.tree.children(self.verb, "aux", *SUBJECTS)]
+        return self.verb.dep == "relcl" and not (deps[:1] == ["aux"] and set(deps) & set(SUBJECTS))
 
     @cached_property
     def inverted(self) -> bool:
@@ -217,11 +215,9 @@ class Clause:
         if self.tree.children_of(self.chain, "expl"):
             subjects = self.tree.children_of(self.chain, "expl")
         first = self.tree.subtree(subjects[0])[0]
-        return heads[0].index < first.index and heads[0].low in AUXILIARIES and not self._is_statement_of(first)
-
-    def _is_statement_of(self, subject: Word) -> bool:
-        """Return whether a *be* before *a* has no subject: *was a nice day*."""
-        return self._is_copula and self.unknown is None and subject.low in ("a", "an") and not self._objects()
+        if self._is_copula and self.unknown is None and first.low in ("a", "an") and not self._objects():
+            return False  # was a nice day
+        return heads[0].index < first.index and heads[0].low in AUXILIARIES
 
     @cached_property
     def is_tag(self) -> bool:
@@ -278,9 +274,7 @@ class Clause:
             return [before]  # I have a sister her name is Lisa
         if self._is_copula and self.unknown is not None and (not found or self.unknown.top in found):
             others = found + [word for word in tree.children(last, "attr", "dobj") if word.pos not in ("ADJ", "ADV")]
-            found = [word for word in others if word != self.unknown.top][:1] or [
-                self.unknown.top
-            ]  # who is your friend
+            return [word for word in others if word != self.unknown.top][:1] or [self.unknown.top]  # who is your friend
         return found
 
     @cached_property
@@ -308,6 +302,8 @@ class Clause:
     def _unsaid(self) -> list[Part]:
         """Return the implied subject: *you* of a request, *I* of a note such as *am tired*."""
         auxiliaries = [word.low for word in self.tree.children(self.verb, "aux", "auxpass")]
+        if any("?" in word.low for word in self.own):  # like it?
+            return [YOU]
         if self.verb.lemma.lower() == "thank" or self.verb.low == "am" or set(auxiliaries) & {"am", "have"}:
             return [_I]
         has = lemma_of(self.verb) in ("have", "get") and (self.negated or len(self.chain) > 1)

@@ -144,7 +144,7 @@ def phrase_of(tree: Tree, head: Word, words: list[Word]) -> Phrase:
     before = tree.head(head)
     return Phrase(
         tree.phrase(words),
-        head="" if noun is None else noun.lemma.lower(),
+        head="" if noun is None else noun.lemma.lower() if noun.pos == "NOUN" else noun.low,
         names=tuple(names),
         owner=None
         if owner is None
