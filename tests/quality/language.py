@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from functools import cache
 
-from quality import modules
+from quality import measure, modules
 from quality.measure import Result, labelled, measure_labels, measure_triples
 from ravestate.language.acts import acts
 from ravestate.language.matcher import bundled_matcher
@@ -18,11 +18,11 @@ from ravestate.language.sentences import sentences
 from ravestate.modules import emotion
 from ravestate.modules.meta.nlp import Settings
 from ravestate.modules.meta.nlp.analysis import analyse
-from ravestate.modules.meta.nlp.answer import yesno_of
+from ravestate.modules.meta.nlp.answer import YesNo, yesno_of
 from ravestate.modules.meta.nlp.pipeline import pipeline
 
 LABELLED = ("questions_rows", "yesno_rows", "intents_rows", "quiet_rows", "emotion_rows", "feelings_rows", "acts_rows")
-SETS = ("triples_rows", *LABELLED)
+SETS = ("triples_rows", "typed_rows", *LABELLED)
 
 
 def acts_of(text: str) -> frozenset[str]:
@@ -43,6 +43,12 @@ def intents(text: str) -> str:
     return "+".join(intent.removeprefix("intent_") for intent in seen.intents) or "-"
 
 
+def answered(text: str) -> YesNo:
+    """By nlp, with the examples learnt."""
+    bundled_matcher("answers").load()
+    return yesno_of(text)
+
+
 def quiet(text: str) -> str:
     """By idle."""
     heard = acts_of(text)
@@ -56,7 +62,7 @@ def feelings(text: str) -> str:
 
 SEE: dict[str, Callable[[str], str]] = {
     "questions_rows": modules.questions,
-    "yesno_rows": lambda text: modules.yesno_label(yesno_of(text)),
+    "yesno_rows": lambda text: modules.yesno_label(answered(text)),
     "intents_rows": intents,
     "quiet_rows": quiet,
     "emotion_rows": feelings,
@@ -75,12 +81,29 @@ def _part(word: str) -> str:
     return "" if word == "_" else word.replace("_", " ")
 
 
+def _same(triples: Iterable[tuple[str, str, str]]) -> Iterable[tuple[str, str, str]]:
+    return triples
+
+
+def _in_lower_case(triples: Iterable[tuple[str, str, str]]) -> Iterable[tuple[str, str, str]]:
+    """Return triples in lower case: people type either case."""
+    return [(subject.lower(), predicate, thing.lower()) for subject, predicate, thing in triples]
+
+
+def typed() -> list[tuple[str, str]]:
+    """The messages as people type them, with their triples."""
+    text = (measure.HERE / "typed_rows.yaml").read_text(encoding="utf-8")
+    return list(measure.yaml.safe_load(text).items())
+
+
 @cache
 def measured(name: str) -> Result:
     """Measure one of `SETS`."""
-    if name == "triples_rows":
-        cases = [(text, triples_of(notation)) for text, notation in labelled(name)]
-        result = measure_triples(modules.triples, cases)
+    if name in ("triples_rows", "typed_rows"):
+        rows = labelled(name) if name == "triples_rows" else typed()
+        cased = _same if name == "triples_rows" else _in_lower_case
+        cases = [(text, frozenset(cased(triples_of(notation)))) for text, notation in rows]
+        result = measure_triples(lambda text: cased(modules.triples(text)), cases)
         return Result(name, result.cases, result.shares, result.misses)
     return measure_labels(name, SEE[name], labelled(name))
 

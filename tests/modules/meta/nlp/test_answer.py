@@ -5,6 +5,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from quality.measure import labelled
+from ravestate.language.examples import bundled
+from ravestate.language.matcher import Matcher, bundled_matcher
+from ravestate.language.normal import plain
+from ravestate.modules.meta.nlp import answer
 from ravestate.modules.meta.nlp.answer import YesNo, yesno_of
 
 MEANINGS = (
@@ -46,3 +50,46 @@ def test_every_text_has_one_of_six_values(text: str) -> None:
 
 def test_a_long_text_is_no_more_work_than_a_short_one() -> None:
     assert yesno_of("yes " * 50_000) == MEANINGS[0]
+
+
+@pytest.mark.parametrize(
+    ("text", "meaning"),
+    [
+        ("yes", YesNo(2, 0, False)),
+        ("no, thanks", YesNo(0, 2, False)),
+        ("of course", YesNo(2, 0, False)),
+        ("maybe", YesNo(0, 0, True)),
+        ("I do", YesNo(2, 0, False)),
+        ("probably not", YesNo(0, 1, False)),
+        ("yes, but not now", YesNo(0, 1, False)),
+        ("I like tea", YesNo()),
+    ],
+)
+def test_common_answers_need_no_sentence_model(text: str, meaning: YesNo, monkeypatch: pytest.MonkeyPatch) -> None:
+    examples = bundled("answers")
+    unloaded = Matcher(examples.classes, examples.none)
+    monkeypatch.setattr(answer, "bundled_matcher", lambda name: unloaded)
+    assert yesno_of(text) == meaning
+
+
+def test_no_answer_is_also_a_sentence_of_no_class() -> None:
+    answers = {plain(text) for texts in bundled("answers").classes.values() for text in texts}
+    assert answers.isdisjoint(map(plain, (*bundled("answers").none, *bundled("none").none)))
+
+
+@pytest.mark.parametrize(
+    ("text", "meaning"),
+    [
+        ("I have no brothers", YesNo()),
+        ("no brothers", YesNo()),
+        ("is it really?", YesNo()),
+        ("yes, and you?", YesNo(2, 0, False)),
+        ("no, I guess", YesNo(0, 1, False)),
+        ("maybe, why not", YesNo(1, 0, False)),
+        ("not really, no", YesNo(0, 2, False)),
+        ("thanks, but no", YesNo(0, 2, False)),
+    ],
+)
+def test_the_parts_of_an_answer_are_weighed(text: str, meaning: YesNo) -> None:
+    bundled_matcher("answers").load()
+    assert yesno_of(text) == meaning

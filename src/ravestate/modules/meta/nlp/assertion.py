@@ -27,11 +27,11 @@ _KNOWN_AS_TRUE = word_set(
     "know remember see notice forget realise realize find learn discover understand mean show prove"
 )
 _IMAGINED = word_set("wish imagine dream pretend suppose hope doubt fantasise fantasize")
-_LEARNT = word_set("hear read tell")
 _WANTED = word_set("want wan hope plan intend wish dream decide aim like love need prepare promise expect")
 _DOUBTS = word_set("maybe perhaps possibly probably")
 _REPORTS = word_set("apparently supposedly allegedly reportedly")
 _UNREAL = word_set("would 'd could might may should")
+_CONDITIONS = ("if", "unless", "whether")
 _SOON = word_set("tomorrow next soon tonight later")
 _TIMES = word_set(
     "yesterday today now once ago recently currently nowadays formerly previously soon lately tomorrow tonight"
@@ -44,6 +44,7 @@ class Assertion:
     def __init__(self, tree: Tree, clause: Clause, entities: Sequence[Entity] = ()) -> None:
         self._tree = tree
         self._clause = clause
+        self._low = {word.low for word in clause.own}
         self._times = [
             [part.lower() for part in entity.text.split()] for entity in entities if entity.label in ("DATE", "TIME")
         ]
@@ -51,13 +52,12 @@ class Assertion:
 
     def statement(self, triple: Triple, subject: Part, object: Part) -> Statement:
         """Return the statement of a triple of this clause."""
-        verb = self._clause.chain[-1]
         negated = triple.predicate.startswith("not ")
         return Statement(
             triple,
             subject if isinstance(subject, Phrase) else NOTHING,
             object if isinstance(object, Phrase) else NOTHING,
-            verb=lemma_of(verb),
+            verb=self._clause.lemma,
             phrases=tuple(self._phrases()),
             when=self._when,
             negated=negated != self._denied_above,
@@ -74,7 +74,7 @@ class Assertion:
     @cached_property
     def question(self) -> bool:
         """Whether the clause is asked."""
-        if self._clause.unknown is not None or self._inverted:
+        if self._clause.unknown is not None or self._clause.inverted:
             return True
         if self._above is not None:
             return self._dependent and self._above.question and not self._given
@@ -84,43 +84,38 @@ class Assertion:
     @cached_property
     def hearsay(self) -> bool:
         """Whether somebody else says it."""
-        if any(word.low in _REPORTS for word in self._clause.own) or "according" in [w.low for w in self._clause.own]:
+        if self._low & (_REPORTS | {"according"}):
             return True
         if self._above is None:
             return False
         said = self._above._clause
         if self._clause.verb.dep in ("ccomp", "parataxis") and not self._given:
-            speakers = said.own_subjects
-            if any(person_of(word) != "I" and word.low not in ("it", "that", "this", "what") for word in speakers):
-                return lemma_of(said.chain[-1]) != "be"
-            if lemma_of(said.chain[-1]) in _LEARNT and (said.passive is not None or lemma_of(said.chain[-1]) != "tell"):
+            speakers = [word for word in said.own_subjects if word.low not in ("it", "that", "this", "what")]
+            if any(person_of(word) != "I" for word in speakers):
+                return said.lemma != "be"
+            if said.lemma in ("hear", "read") or (said.lemma == "tell" and said.passive is not None):
                 return True
-            if said.negated and lemma_of(said.chain[-1]) in ("say", "tell", "claim"):
+            if said.negated and said.lemma in ("say", "tell", "claim"):
                 return True
         return self._dependent and self._above.hearsay
 
     @cached_property
     def conditional(self) -> bool:
         """Whether it is imagined."""
-        own = self._clause.own
-        if any(word.low in ("if", "unless", "whether") and word.dep in ("mark", "advmod") for word in own):
-            return True
-        if any(word.low in _DOUBTS for word in own):
-            return True
-        if any(word.low in _UNREAL and word.dep == "aux" for word in own) and not self._wished:
-            return True
-        for child in self._tree.children(self._clause.verb, "advcl"):
-            if any(word.low in ("if", "unless") for word in self._tree.children(child, "mark")):
-                return True
-        if self._above is None:
-            return False
-        if lemma_of(self._above._clause.chain[-1]) in _IMAGINED and self._clause.verb.dep in (
-            "ccomp",
-            "xcomp",
-            "advcl",
+        if self._low & _DOUBTS or any(
+            word.low in _CONDITIONS and word.dep in ("mark", "advmod") for word in self._clause.own
         ):
             return True
-        return self._dependent and self._above.conditional
+        if any(word.low in _UNREAL and word.dep == "aux" for word in self._clause.own) and not self._wished:
+            return True
+        conditions = self._tree.children(self._clause.verb, "advcl")
+        if any(word.low in ("if", "unless") for word in self._tree.children_of(conditions, "mark")):
+            return True
+        head = self._tree.head(self._clause.verb)
+        imagined = lemma_of(head) in _IMAGINED or head.low in _IMAGINED
+        if imagined and self._clause.verb.dep in ("ccomp", "xcomp", "advcl"):
+            return True
+        return self._above is not None and self._dependent and self._above.conditional
 
     @cached_property
     def plan(self) -> bool:
@@ -141,7 +136,7 @@ class Assertion:
         if self._above is None or not self._dependent:
             return False
         wanted = self._clause.verb.dep in ("xcomp", "ccomp") and self._clause.verb.tag == "VB"
-        return self._above.plan or (wanted and lemma_of(self._above._clause.chain[-1]) in _WANTED)
+        return self._above.plan or (wanted and self._above._clause.lemma in _WANTED)
 
     @cached_property
     def past(self) -> bool:
@@ -180,8 +175,7 @@ class Assertion:
     @cached_property
     def _goes_on(self) -> bool:
         """Whether a perfect says that it is still so: *I have lived here since 2010*."""
-        words = [word.low for word in self._clause.own]
-        return any(word in ("since", "for", "always", "been") for word in words) or "all" in words
+        return bool(self._low & {"since", "for", "always", "been", "all"})
 
     @cached_property
     def _wished(self) -> bool:
@@ -197,30 +191,19 @@ class Assertion:
         if self._above is None or self._clause.verb.dep not in ("ccomp", "csubj"):
             return False
         said = self._above._clause
-        return said.negated and lemma_of(said.chain[-1]) in ("think", "believe", "be", "feel", "guess")
+        return said.negated and said.lemma in ("think", "believe", "be", "feel", "guess")
 
     @cached_property
     def _given(self) -> bool:
         """Whether the clause above takes it as true: *you know that I live here*."""
         assert self._above is not None
-        open = any(word.low in ("if", "whether") for word in self._clause.own)
-        return not open and lemma_of(self._above._clause.chain[-1]) in _KNOWN_AS_TRUE
+        return not self._low & {"if", "whether"} and self._above._clause.lemma in _KNOWN_AS_TRUE
 
     @cached_property
     def _dependent(self) -> bool:
         """Whether it shares the flags of the clause above."""
         dep = self._clause.verb.dep
         return dep in ("ccomp", "xcomp", "acl") or (dep == "conj" and not self._clause.own_subjects)
-
-    @cached_property
-    def _inverted(self) -> bool:
-        """Whether the verb or its auxiliary precedes the subject: *do you live here*."""
-        clause = self._clause
-        subjects = [word for word in clause.own_subjects if word.dep in SUBJECTS]
-        heads = [word for word in clause.own if word.dep in ("aux", "auxpass") or word in clause.chain]
-        if not subjects or not heads or any(word.low in ("so", "neither", "nor", "there") for word in clause.own):
-            return False
-        return heads[0].index < subjects[0].index and clause.verb.dep != "relcl"
 
     @property
     def _ends_otherwise(self) -> bool:
@@ -233,12 +216,17 @@ class Assertion:
     def _phrases(self) -> Iterator[Phrase]:
         tree = self._tree
         for word in self._clause.own:
-            if word.dep == "pobj" and self._stands_beside(word):
+            beside = word.dep in ("pobj", "oprd") and not any(
+                above.dep in SUBJECTS or above.low == "of" for above in self._above_in_clause(word)
+            )
+            if beside:
                 yield phrase_of(tree, word, noun_phrase(tree, word))
 
-    def _stands_beside(self, word: Word) -> bool:
-        """Return whether its preposition belongs to the predicate, and not to the subject."""
-        return not any(above.dep in SUBJECTS or above.low == "of" for above in self._tree.ancestors(word))
+    def _above_in_clause(self, word: Word) -> Iterator[Word]:
+        for above in self._tree.ancestors(word):
+            if above in self._clause.chain or above == self._clause.verb:
+                return
+            yield above
 
     @cached_property
     def _when(self) -> str:

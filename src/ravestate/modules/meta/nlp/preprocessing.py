@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import re
 
-READ_AS = {"have": "like"}
-"""Replaced lemmas. In short sentences, the small pipelines often mistake *like* for a preposition; they handle *have*
-correctly."""
+READ_AS = {"have": "like", "stay": "live", "stays": "live"}
+"""Replaced lemmas. In short sentences, the small pipelines often mistake *like* for a preposition, and *lives* for a noun;
+they handle *have* and *stays* correctly."""
 
 # Control characters, and surrogates, which cannot be encoded.
 _UNREADABLE = dict.fromkeys((*range(0x20), *range(0x7F, 0xA0), *range(0xD800, 0xE000)), " ")
@@ -19,6 +19,11 @@ _LIKES = re.compile(
     # "My friends like", but not "friends like you"
     r"|(?:^|[.!?] )(?:(?:my|our|his|her|their|your|the|most|many|some|all) )?(?:\w+s|children|people|men|women) "
     r"(?P<plural>like)\b(?! (?:you|me|him|her|us|them|this|that|these|those)\b)",
+    re.IGNORECASE,
+)
+_LIVES = re.compile(
+    r"(?<!\bmy )(?<!\bour )(?<!\bhis )(?<!\bher )(?<!\btheir )(?<!\byour )(?<!\bthe )(?<!\bof )\blives?(?= (?:in|at|near|with|"
+    r"here|there|alone|on|abroad|together|next)\b)",
     re.IGNORECASE,
 )
 
@@ -34,4 +39,4 @@ def preprocess(text: str) -> str:
     for found in _LIKES.finditer(copy):
         start, end = found.span(found.lastgroup or 0)
         copy = copy[:start] + "have" + copy[end:]
-    return copy
+    return _LIVES.sub(lambda found: "stays" if found[0].lower() == "lives" else "stay", copy)

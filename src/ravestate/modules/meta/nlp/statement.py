@@ -29,7 +29,8 @@ class Statement:
     verb: str
     """The lemma of the last verb of the predicate: ``live``, also for *used to live* and *want to live*."""
     phrases: tuple[Phrase, ...] = ()
-    """All prepositional phrases of the clause, in order: *as a nurse*, *in a hospital*, *in Hamburg*."""
+    """All prepositional phrases of the clause, in order: *as a nurse*, *in a hospital*, *in Hamburg*; and what somebody is
+    called, without a preposition: *Rex*, in *we named our dog Rex*."""
     when: str = ""
     """The time that the clause names: ``two years ago``, ``since 2010``, ``next month``."""
     negated: bool = False
