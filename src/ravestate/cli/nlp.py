@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 import dataclasses
 import json
 import sys
@@ -34,11 +35,16 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
+    from ravestate.language.bundled import ModelMissing
+    from ravestate.language.matcher import bundled_matcher
     from ravestate.modules._text import printable
     from ravestate.modules.meta.nlp import Settings
-    from ravestate.modules.meta.nlp.analysis import analyse
+    from ravestate.modules.meta.nlp.analysis import MATCHERS, analyse
     from ravestate.modules.meta.nlp.pipeline import pipeline
 
+    with contextlib.suppress(ModelMissing):  # the examples themselves are known without the model
+        for name in MATCHERS:
+            bundled_matcher(name).load()
     names: Sequence[str] = options.agent_names or Settings().agent_names
     texts: Iterable[str] = [" ".join(options.text)] if options.text else _lines()
     for number, text in enumerate(map(printable, texts)):  # without control codes for the terminal
@@ -87,9 +93,8 @@ def _answer(seen: Analysis) -> str:
 
 
 def _signals(seen: Analysis) -> list[str]:
-    flags = ("about_agent", "intent_play", "intent_hi", "intent_bye")
-    raised = [flag for flag in flags if getattr(seen, flag)]
-    return raised if seen.question is None else ["is_question", *raised]
+    flags = {"is_question": seen.question is not None, "about_agent": seen.about_agent}
+    return [*(name for name, raised in flags.items() if raised), *seen.intents]
 
 
 def _plain(text: str, seen: Analysis) -> dict[str, Any]:

@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 BUNDLED = "bge_small_en"
 REMEMBERED = 1024
 """The latest sentences whose vectors an encoder keeps: all skills ask for those of one utterance."""
+FILES = 50
+"""The latest files with vectors of examples that the cache keeps."""
 
 
 class Encoder:
@@ -97,6 +99,7 @@ class Encoder:
         try:
             found = np.load(file, allow_pickle=False)
             if found.shape == (len(texts), model.width):
+                os.utime(file)
                 return found.astype(np.float32)
         except (OSError, ValueError, EOFError):
             pass
@@ -107,6 +110,7 @@ class Encoder:
             with os.fdopen(handle, "wb") as out:
                 np.save(out, vectors.astype(np.float16))
             os.replace(name, file)
+            _remove_stale(file.parent)
         except OSError:
             pass  # a folder that cannot be written only costs time
         return vectors.astype(np.float16).astype(np.float32)  # the same as next time
@@ -122,6 +126,12 @@ class Encoder:
             rows[indices] = _pooled(hidden, mask, self._mean)
         norms = np.linalg.norm(rows, axis=1, keepdims=True)
         return rows / np.maximum(norms, 1e-12)
+
+
+def _remove_stale(folder: Path) -> None:
+    """Remove the files of vectors that nobody has read for longest, beyond the latest `FILES`."""
+    for file in sorted(folder.glob("*.npy"), key=lambda file: file.stat().st_mtime, reverse=True)[FILES:]:
+        file.unlink(missing_ok=True)
 
 
 def _pooled(hidden: NDArray[Any], mask: NDArray[Any], mean: bool) -> NDArray[Any]:

@@ -95,7 +95,7 @@ class Matcher:
         self.least = least
         self._shapes = shapes
         self._pairs = tuple(dict(pairs).items())
-        self._exact = dict(self._pairs)
+        self.exact = dict(self._pairs)
         self._encoder = encoder or shared_encoder()
         self._lock = threading.Lock()
         self._learnt: _Learnt | None = None
@@ -127,17 +127,32 @@ class Matcher:
         return self.match_all([sentence])[0]
 
     def match_all(self, sentences: Sequence[str]) -> list[Match | None]:
-        """Return the class of each sentence; None for one that belongs to none."""
-        bests = (ranked[0] if ranked else None for ranked in map(self.ranked, sentences))
-        return [best if best and best.name != NONE and best.score >= self.least else None for best in bests]
+        """Return the class of each sentence; None for one that belongs to none. The encoder runs once for all.
+
+        An example is recognised word for word, without the encoder.
+        """
+        found = [self.match_exactly(sentence) for sentence in sentences]
+        if self._learnt is not None:
+            unknown = [place for place, match in enumerate(found) if match is None]
+            for place, ranked in zip(unknown, self.ranked_all([sentences[place] for place in unknown], 1), strict=True):
+                found[place] = ranked[0]
+        return [best if best and best.name != NONE and best.score >= self.least else None for best in found]
+
+    def match_exactly(self, sentence: str) -> Match | None:
+        """Return the class of an example, word for word; its name is empty for an example of no class."""
+        text = plain(sentence)
+        name = self.exact.get(text)
+        return None if name is None else Match(1.0, text, 1.0, name=name, text=sentence)
 
     def ranked(self, sentence: str) -> list[Match]:
         """Return all classes, best first; the class named by an empty string stands for none of them."""
-        text = plain(sentence)
+        return self.ranked_all([sentence])[0]
+
+    def ranked_all(self, sentences: Sequence[str], most: int | None = None) -> list[list[Match]]:
+        """Return the classes of each sentence, best first; `most` of them."""
         if self._learnt is not None:
-            return self._learnt.ranked(text, sentence)
-        name = self._exact.get(text)
-        return [] if name is None else [Match(1.0, text, 1.0, name=name, text=sentence)]
+            return self._learnt.ranked(sentences, most)
+        return [[match] if match else [] for match in map(self.match_exactly, sentences)]
 
 
 @cache
@@ -166,40 +181,49 @@ class _Learnt:
         self._meanings = encoder.encode_lasting(self._examples)
         self._spelling = Spelling(self._examples)
         self._shapes = np.array([shape(text) for text in self._examples], dtype=np.int8)
-        kernel = self._kernel(self._examples, self._meanings)
+        kernel = self._kernel(self._meanings, self._spelling.among, self._shapes)
+        kernel = kernel.astype(np.float64)
         kernel[np.diag_indices_from(kernel)] += RIDGE
+        del self._spelling.among  # a large matrix that only learning needs
         inverse = np.linalg.inv(kernel)
         targets = np.eye(len(self._classes))[self._of]
-        self._weights = inverse @ targets
+        weights = inverse @ targets
+        self._weights = weights.astype(np.float32)
         # The scores of each example from a classifier that has learnt all the others, in closed form.
-        left_out = targets - self._weights / np.diag(inverse)[:, None]
+        left_out = targets - weights / np.diag(inverse)[:, None]
         self._slope, self._centre = _calibrated(_margins(left_out), left_out.argmax(axis=1) == self._of)
 
-    def ranked(self, text: str, sentence: str) -> list[Match]:
-        """Return all classes, best first."""
+    def ranked(self, sentences: Sequence[str], most: int | None) -> list[list[Match]]:
+        """Return `most` classes of each sentence, best first."""
         import numpy as np
 
-        meanings = self._encoder.encode([text])
-        kernel = self._kernel([text], meanings)[0]
-        scores = kernel @ self._weights
-        order = np.argsort(-scores, kind="stable")
-        found: list[Match] = []
-        for number in map(int, order):
-            others = np.delete(scores, number)
-            margin = float(scores[number] - others.max(initial=-1.0))
-            confidence = float(1 / (1 + np.exp(-self._slope * (margin - self._centre))))
-            near = self._examples[int(np.where(self._of == number, kernel, -np.inf).argmax())]
-            found.append(Match(confidence, near, margin, name=self._classes[number], text=sentence))
+        if not sentences:
+            return []
+        texts = [plain(sentence) for sentence in sentences]
+        shapes = np.array([shape(text) for text in texts], dtype=np.int8)
+        kernels = self._kernel(self._encoder.encode(texts), self._spelling.likeness(texts), shapes)
+        found: list[list[Match]] = []
+        for sentence, kernel, scores in zip(sentences, kernels, kernels @ self._weights, strict=True):
+            order = [int(number) for number in np.argsort(-scores, kind="stable")[:most]]
+            found.append([self._match(number, sentence, kernel, scores) for number in order])
         return found
 
-    def _kernel(self, texts: Sequence[str], meanings: NDArray[np.float32]) -> NDArray[np.float64]:
+    def _match(self, number: int, sentence: str, kernel: NDArray[np.float32], scores: NDArray[np.float32]) -> Match:
+        import numpy as np
+
+        margin = float(scores[number] - np.delete(scores, number).max(initial=-1.0))
+        confidence = float(1 / (1 + np.exp(-self._slope * (margin - self._centre))))
+        near = self._examples[int(np.where(self._of == number, kernel, -np.inf).argmax())]
+        return Match(confidence, near, margin, name=self._classes[number], text=sentence)
+
+    def _kernel(
+        self, meanings: NDArray[np.float32], spelling: NDArray[np.float32], shapes: NDArray[np.int8]
+    ) -> NDArray[np.float32]:
         """Return the similarity of sentences (rows) and examples (columns)."""
         import numpy as np
 
-        kernel = np.exp(SHARPNESS * (meanings.astype(np.float64) @ self._meanings.T - 1))
-        kernel += SPELLING * self._spelling.likeness(texts)
-        alike = likeness(np.array([shape(text) for text in texts], dtype=np.int8), self._shapes)
-        return kernel * (1 - self._weight * (1 - alike)) + COMMON
+        kernel = np.exp(SHARPNESS * (meanings @ self._meanings.T - 1)) + SPELLING * spelling
+        return kernel * (1 - self._weight * (1 - likeness(shapes, self._shapes))) + COMMON
 
 
 def _margins(scores: NDArray[np.float64]) -> NDArray[np.float64]:

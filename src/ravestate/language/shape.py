@@ -64,8 +64,11 @@ def shape(text: str) -> tuple[bool, bool, bool, int]:
     return *mentioned, 0
 
 
-def likeness(texts: NDArray[np.int8], others: NDArray[np.int8]) -> NDArray[np.float64]:
+def likeness(texts: NDArray[np.int8], others: NDArray[np.int8]) -> NDArray[np.float32]:
     """Return the weighted share of equal features: rows for `texts` (n, 4), columns for `others` (m, 4)."""
     import numpy as np
 
-    return (texts[:, None, :] == others[None]).astype(np.float64) @ np.array(WEIGHTS)
+    likeness = np.zeros((len(texts), len(others)), dtype=np.float32)
+    for feature, weight in enumerate(WEIGHTS):
+        likeness += np.float32(weight) * (texts[:, None, feature] == others[None, :, feature])
+    return likeness

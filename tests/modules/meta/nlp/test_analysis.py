@@ -19,7 +19,7 @@ def test_any_words_in_any_order(reader: Pipeline, text: str) -> None:
     seen = analyse(text, reader, ["Ravestate"])
     assert seen.question is None or seen.question.name
     assert all(triple.predicate for triple in seen.triples)
-    assert all(text[word.start : word.end] == word.text for word in seen.tree.words)
+    assert all(seen.tree.text[word.start : word.end] == word.text for word in seen.tree.words)
 
 
 def test_names_are_whole_words(reader: Pipeline) -> None:

@@ -51,3 +51,6 @@ remarked: rs.Slot[bool] = module.slot("remarked", True)
 
 unanswered: rs.Slot[int] = module.slot("unanswered", 0)
 """The remarks that the agent has made out of boredom since the user last said or wrote something."""
+
+dismissed = module.flag("dismissed")
+"""Whether the user's last words ask for quiet or say goodbye."""

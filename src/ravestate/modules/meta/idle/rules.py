@@ -3,15 +3,20 @@
 from __future__ import annotations
 
 import ravestate as rs
+from ravestate.language.acts import acts
+from ravestate.language.normal import normalise
+from ravestate.language.sentences import sentences
 from ravestate.modules import rawio
 
-from .names import Settings, asked, bored, hushed, impatient, module, remarked, unanswered
-from .words import asks_for_quiet, last_question, takes_leave
+from .names import Settings, asked, bored, dismissed, hushed, impatient, module, remarked, unanswered
+
+LONGEST = 1000
+"""The last characters of the agent's words in which a question counts."""
 
 
 @module.rule(
     when=rs.activity.false.max_age(None) | rs.startup.detached(),
-    reads=(rs.activity, rawio.input, asked, unanswered),
+    reads=(rs.activity, dismissed, asked, unanswered),
     writes=remarked,
     emits=bored,
     until=rs.activity.true | rawio.typing,
@@ -23,7 +28,7 @@ async def notice_silence(ctx: rs.RuleContext) -> rs.Resign | None:
     settings: Settings = ctx.settings
     if ctx[rs.activity]:
         return rs.Resign("there is something to do")
-    if asks_for_quiet(ctx[rawio.input]) or takes_leave(ctx[rawio.input]):
+    if ctx[dismissed]:
         return rs.Resign("the user wants quiet")
     if ctx[unanswered] >= settings.remarks:
         return rs.Resign("the user has not answered the last remarks")
@@ -71,10 +76,16 @@ async def notice_delay(ctx: rs.RuleContext) -> None:
     ctx.emit(impatient)
 
 
-@module.rule(when=rawio.input.changed.where(asks_for_quiet), emits=hushed, background=True)
-async def notice_wish_for_quiet(ctx: rs.RuleContext) -> None:
-    """Emit `hushed` if the user asks for quiet."""
-    ctx.emit(hushed)
+@module.rule(when=rawio.input.changed, writes=dismissed, emits=hushed)
+def notice_dismissal(ctx: rs.RuleContext) -> None:
+    """Note whether the user asks for quiet or says goodbye; emit `hushed` in the first case.
+
+    The encoder may take a few milliseconds, so this runs in a thread. It counts as activity: the silence begins after it.
+    """
+    heard = acts(sentences(normalise(ctx.payload(rawio.input.changed)).text))
+    ctx[dismissed] = "quiet" in heard or "farewell" in heard
+    if "quiet" in heard:
+        ctx.emit(hushed)
 
 
 def _has_words(text: str) -> bool:
@@ -89,7 +100,8 @@ def _has_words(text: str) -> bool:
 )
 async def notice_question(ctx: rs.RuleContext) -> None:
     """Note the agent's question, whose answer gets more time; count the first words after boredom as a remark."""
-    ctx[asked] = last_question(ctx.payload(rawio.output.changed))
+    said = sentences(ctx.payload(rawio.output.changed)[-LONGEST:])
+    ctx[asked] = said[-1] if said and "?" in said[-1] else ""
     if not ctx[remarked]:
         ctx[remarked] = True
         ctx[unanswered] += 1

@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
+from ravestate.language.acts import acts
 from ravestate.language.entity import Entity
-from ravestate.language.matcher import Match, Matcher, bundled_matcher
-from ravestate.language.normal import Normal, normalise
+from ravestate.language.feelings import feelings
+from ravestate.language.matcher import Match
+from ravestate.language.normal import Normal
 from ravestate.language.sentences import sentences as sentences_of
 
 from .answer import YesNo, yesno_of
-from .game import wants_to_play
-from .greeting import says_bye, says_hi
 from .inquiry import question_of
 from .pipeline import Pipeline
 from .question_word import QuestionWord
@@ -24,6 +24,9 @@ from .triple import Triple
 from .word_set import word_set
 
 _SECOND_PERSON = word_set("you your yours yourself u ur")
+
+INTENTS = {"play": "intent_play", "greeting": "intent_hi", "farewell": "intent_bye"}
+"""The acts that have a signal of nlp's, with its name."""
 
 MATCHERS = ("acts", "feelings")
 """The files of examples whose classes an analysis names."""
@@ -43,9 +46,6 @@ class Analysis:
     yesno: YesNo
     question: QuestionWord | None
     about_agent: bool
-    intent_play: bool
-    intent_hi: bool
-    intent_bye: bool
     sentences: tuple[str, ...] = ()
     """The sentences of the normal form."""
     statements: tuple[Statement, ...] = ()
@@ -54,6 +54,11 @@ class Analysis:
     """The user's acts, by the classes of ``acts.yaml``: greeting, thanks... each with its best sentence."""
     feelings: Mapping[str, Match] = field(default_factory=dict[str, Match])
     """The feelings, by the classes of ``feelings.yaml``, each with its best sentence."""
+
+    @property
+    def intents(self) -> tuple[str, ...]:
+        """The names of the signals that the acts raise: ``intent_hi``..."""
+        return tuple(signal for act, signal in INTENTS.items() if act in self.acts)
 
     def act(self, name: str) -> Match | None:
         """Return the best sentence with the act `name`; None if there is none."""
@@ -72,8 +77,8 @@ def analyse(text: str, pipeline: Pipeline, agent_names: Iterable[str] = ()) -> A
         PlatformError: spaCy or the pipeline is missing.
     """
     names = tuple(agent_names)
-    tree, entities = pipeline.read(text)
-    normal = normalise(tree.text, names)
+    normal = pipeline.normalise(text, names)
+    tree, entities = pipeline.read(normal)
     sentences = sentences_of(normal.text)
     statements = statements_of(tree, entities)
     return Analysis(
@@ -85,23 +90,11 @@ def analyse(text: str, pipeline: Pipeline, agent_names: Iterable[str] = ()) -> A
         yesno=yesno_of(tree.text),
         question=question_of(tree),
         about_agent=_is_about_agent(tree, names),
-        intent_play=wants_to_play(tree.text),
-        intent_hi=says_hi(tree.text),
-        intent_bye=says_bye(tree.text),
         sentences=sentences,
         statements=statements,
-        acts=_best(bundled_matcher("acts"), sentences),
-        feelings=_best(bundled_matcher("feelings"), sentences),
+        acts=acts(sentences),
+        feelings=feelings(sentences, names),
     )
-
-
-def _best(matcher: Matcher, sentences: Sequence[str]) -> dict[str, Match]:
-    """Return the classes of the sentences, each with the best of its sentences."""
-    found: dict[str, Match] = {}
-    for match in matcher.match_all(sentences):
-        if match is not None and (match.name not in found or match.score > found[match.name].score):
-            found[match.name] = match
-    return found
 
 
 def _is_about_agent(tree: Tree, names: Iterable[str]) -> bool:

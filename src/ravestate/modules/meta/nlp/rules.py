@@ -36,6 +36,9 @@ from .names import (
 )
 from .pipeline import pipeline
 
+SIGNALS = {"intent_play": intent_play, "intent_hi": intent_hi, "intent_bye": intent_bye}
+"""The signals of the user's acts."""
+
 
 @module.rule(when=rs.startup, background=True)
 def load(ctx: rs.RuleContext) -> None:
@@ -61,7 +64,7 @@ def learn(ctx: rs.RuleContext) -> None:
     when=rawio.input.changed,
     reads=(interloc.agent, lock),
     writes=(text, normal, tokens, lemmas, pos, tags, entities, triples, question, analysis, yesno),
-    emits=(is_question, about_agent, intent_play, intent_hi, intent_bye),
+    emits=(is_question, about_agent, *SIGNALS.values()),
 )
 async def understand(ctx: rs.RuleContext) -> None:
     """Analyse the user's words: write all slots, then raise the signals."""
@@ -87,9 +90,5 @@ async def understand(ctx: rs.RuleContext) -> None:
         ctx.emit(is_question, seen.question)
     if seen.about_agent:
         ctx.emit(about_agent)
-    if seen.intent_play:
-        ctx.emit(intent_play)
-    if seen.intent_hi:
-        ctx.emit(intent_hi)
-    if seen.intent_bye:
-        ctx.emit(intent_bye)
+    for name in seen.intents:
+        ctx.emit(SIGNALS[name])

@@ -3,39 +3,39 @@
 from __future__ import annotations
 
 import random
-import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping, Sequence
+
+from ravestate.language.acts import acts
+from ravestate.language.normal import plain
+from ravestate.language.shape import shape
 
 from .feeling import Feeling
-from .utterance import sentences
 
-OCCASIONS: tuple[tuple[Feeling, re.Pattern[str]], ...] = (
-    ("affectionate", re.compile(r"^(?:(?:ok|okay|well) )?(?:good)?bye\b|\bgood ?(?:night|bye)\b|\bsee you\b|\btake care\b|\bfarewell\b")),
-    ("happy", re.compile(r"^(?:hi|hello|hey|hiya|howdy|greetings|good (?:morning|afternoon|evening|day))\b|\bthank(?:s| you)\b")),
-    ("shy", re.compile(r"\b(?:you|your|yours|yourself)\b")),
-)  # fmt: skip
-"""The occasions, rare ones first. A question comes last."""
+OCCASIONS: tuple[Feeling, ...] = ("affectionate", "happy", "shy", "surprised")
 
 
-def by_chance(
-    text: str, likely: Mapping[Feeling, float], rng: random.Random, names: Iterable[str] = ()
-) -> Feeling | None:
-    """Return a spontaneous feeling in response to `text`, or None.
+def by_chance(sentences: Sequence[str], likely: Mapping[Feeling, float], rng: random.Random) -> Feeling | None:
+    """Return a spontaneous feeling in response to the sentences of an utterance, or None.
 
     Args:
-        text: The user's words.
-        likely: The probability of each feeling on its occasion.
+        sentences: The user's words, in the normal form.
+        likely: The probability of each feeling on its occasion: a goodbye, a greeting or thanks, words about the agent, a
+            question. The rarest occasion counts.
         rng: The source of chance.
-        names: The agent's names.
 
     Example:
-        >>> by_chance("What are you up to today", {"shy": 1.0}, random.Random(0))
+        >>> by_chance(["What are you up to today?"], {"shy": 1.0}, random.Random(0))
         'shy'
     """
-    said = list(sentences(text, names))
-    for feeling, occasion in OCCASIONS:
-        if any(occasion.search(sentence.text) for sentence in said):
+    heard = acts(sentences)
+    shapes = [shape(plain(sentence)) for sentence in sentences]
+    occasions: dict[Feeling, bool] = {
+        "affectionate": "farewell" in heard,
+        "happy": "greeting" in heard or "thanks" in heard,
+        "shy": any(agent for agent, _, _, _ in shapes),
+        "surprised": any(order for _, _, _, order in shapes) or any("?" in sentence for sentence in sentences),
+    }
+    for feeling, occurs in occasions.items():
+        if occurs:
             return feeling if rng.random() < likely.get(feeling, 0.0) else None
-    if any(sentence.asks for sentence in said):
-        return "surprised" if rng.random() < likely.get("surprised", 0.0) else None
     return None

@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+import contextlib
+
 import ravestate as rs
+from ravestate.language.bundled import ModelMissing, warn_once
+from ravestate.language.heap import give_back
+from ravestate.language.matcher import bundled_matcher
 from ravestate.modules import interloc, rawio
 
 from .chance import OCCASIONS, by_chance
 from .emoji import emoji_for
 from .feeling import FEELINGS, Feeling
 from .names import Settings, affectionate, felt, happy, module, sad, shy, surprised
-from .recogniser import recognise
+from .recogniser import heard, recognise
 
 SIGNALS: dict[Feeling, rs.Signal[None]] = {
     "shy": shy,
@@ -20,17 +25,30 @@ SIGNALS: dict[Feeling, rs.Signal[None]] = {
 }
 
 
+@module.rule(when=rs.startup, background=True)
+def learn(ctx: rs.RuleContext) -> None:
+    """Load the matchers in the background, before the first words."""
+    try:
+        for name in ("acts", "feelings"):
+            bundled_matcher(name).load()
+        give_back()
+    except ModelMissing as error:
+        warn_once(ctx.log, error)
+
+
 @module.rule(when=rawio.input.changed, reads=interloc.agent, emits=SIGNALS.values())
 def be_moved(ctx: rs.RuleContext) -> None:
-    """Raise the feeling that fits the user's words, or a spontaneous one. This may read a lexicon, so it runs in a
-    thread."""
+    """Raise the feeling that fits the user's words, or a spontaneous one. The encoder takes a few milliseconds, so this
+    runs in a thread. Without the sentence model only the examples of feelings count."""
     settings: Settings = ctx.settings
-    heard = ctx.payload(rawio.input.changed)
+    text = ctx.payload(rawio.input.changed)
     names = settings.names or (ctx[interloc.agent],)
-    feeling = recognise(heard, names)
+    feeling: Feeling | None = None
+    with contextlib.suppress(ModelMissing):  # `learn` reports it
+        feeling = recognise(text, names)
     if feeling is None:
-        likely: dict[Feeling, float] = {name: getattr(settings, name) for name in (*dict(OCCASIONS), "surprised")}
-        feeling = by_chance(heard, likely, ctx.random, names)
+        likely: dict[Feeling, float] = {name: getattr(settings, name) for name in OCCASIONS}
+        feeling = by_chance(heard(text, names), likely, ctx.random)
     if feeling is not None:
         ctx.emit(SIGNALS[feeling])
 

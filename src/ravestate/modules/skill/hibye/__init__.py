@@ -3,6 +3,6 @@
 from __future__ import annotations
 
 from . import rules as rules
-from .names import module, parted
+from .names import goodbye, hello, module, parted
 
-__all__ = ["module", "parted"]
+__all__ = ["goodbye", "hello", "module", "parted"]

@@ -7,6 +7,12 @@ from ravestate.modules import interloc, rawio, verbaliser
 
 module = rs.Module("hibye", requires=[rawio, interloc, verbaliser])
 
+hello = module.signal("hello")
+"""The user greets the agent, and says little else."""
+
+goodbye = module.signal("goodbye")
+"""The user says goodbye, and little else."""
+
 parted: rs.Slot[float | None] = module.slot("parted", None)
 """The agent's last goodbye, in seconds since the context began."""
 

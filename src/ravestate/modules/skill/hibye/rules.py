@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import ravestate as rs
+from ravestate.language.acts import only
+from ravestate.language.normal import normalise
+from ravestate.language.sentences import sentences
 from ravestate.modules import interloc, rawio, verbaliser
 from ravestate.modules.meta.verbaliser.intents import Intent
 
-from .names import greeted, module, parted
-from .words import is_farewell, is_greeting
+from .names import goodbye, greeted, hello, module, parted
 
 JUST_NOW = 60.0
 """Seconds for which a greeting or a goodbye counts: the user hears no second one within this time."""
+GENERAL = 0.15
+"""The weight of the answers: almost any rule for the same words is more specific."""
 
 
 @module.rule(
@@ -34,7 +38,17 @@ async def bid_farewell_to_who_leaves(ctx: rs.RuleContext) -> rs.Resign | None:
     return None
 
 
-@module.rule(when=rawio.input.changed.where(is_greeting), reads=greeted, writes=(verbaliser.intent, greeted))
+@module.rule(when=rawio.input.changed, emits=(hello, goodbye))
+def listen(ctx: rs.RuleContext) -> None:
+    """Notice a greeting or a goodbye. The encoder may take a few milliseconds, so this runs in a thread."""
+    said = sentences(normalise(ctx.payload(rawio.input.changed)).text)
+    if only("greeting", said):
+        ctx.emit(hello)
+    elif only("farewell", said):
+        ctx.emit(goodbye)
+
+
+@module.rule(when=hello, reads=greeted, writes=(verbaliser.intent, greeted), weight=GENERAL)
 async def answer_hello(ctx: rs.RuleContext) -> None:
     """Answer a greeting; after the agent's own, without a second hello."""
     said = ctx[greeted]
@@ -43,7 +57,7 @@ async def answer_hello(ctx: rs.RuleContext) -> None:
     ctx[verbaliser.intent] = Intent("returned" if returned else "hello", package=__package__)
 
 
-@module.rule(when=rawio.input.changed.where(is_farewell), writes=(verbaliser.intent, parted))
+@module.rule(when=goodbye, writes=(verbaliser.intent, parted), weight=GENERAL)
 async def answer_goodbye(ctx: rs.RuleContext) -> None:
     """Answer a goodbye."""
     ctx[parted] = ctx.now

@@ -1,0 +1,135 @@
+"""The normal form: typed English as written English, with offsets."""
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from quality.measure import labelled
+from ravestate.language.contractions import WRITTEN
+from ravestate.language.lexicon import load_lexicon
+from ravestate.language.normal import Normal, normalise, plain
+
+
+@pytest.fixture(autouse=True, scope="module")
+def lexicon() -> None:
+    assert load_lexicon() is not None
+
+
+@pytest.mark.parametrize(
+    ("typed", "written"),
+    [
+        ("u cant do that", "You can't do that."),
+        ("im marlene and i live in munich", "I'm Marlene and I live in Munich."),
+        ("hello how are you", "Hello, how are you?"),
+        ("its cold today", "It's cold today."),
+        ("lets play a game", "Let's play a game."),
+        ("she lets me play", "She lets me play."),
+        ("wats ur name", "What's your name?"),
+        ("ur so nice", "You're so nice."),
+        ("i gotta go 2 bed", "I have to go to bed."),
+        ("i have 2 dogs", "I have 2 dogs."),
+        ("come at 2 you know", "Come at 2 you know."),
+        ("HELLO HOW ARE YOU", "Hello, how are you?"),
+        ("my brohter is a techer,he lives in munich", "My brother is a teacher, he lives in Munich."),
+        ("sooo good", "So good."),
+        ("yesss", "Yes."),
+        ("gr8 thx", "Great thanks."),
+        ("I live in Hannover where do you live", "I live in Hannover. Where do you live?"),
+        ("i am tired what about you", "I am tired. What about you?"),
+        ("when i was young i lived in berlin", "When I was young I lived in Berlin."),
+        ("tell me where he lives", "Tell me where he lives."),
+        ("hello,how are you.i am fine", "Hello, how are you. I am fine."),
+        ("anna's dog", "Anna's dog."),
+        ("see https://example.org/u?r=2", "See https://example.org/u?r=2."),
+        ("my favourite colour is grey", "My favourite colour is grey."),
+        ("we moved in december", "We moved in December."),
+        ("", ""),
+    ],
+)
+def test_typed_english_becomes_written_english(typed: str, written: str) -> None:
+    assert normalise(typed).text == written
+
+
+def test_names_are_not_corrected_and_get_their_capitals() -> None:
+    assert normalise("hello freinda how are you", ["Freinda"]).text == "Hello Freinda. How are you?"
+    assert normalise("my name is kira and i come from hildesheim").text == "My name is kira and I come from hildesheim."
+
+
+SENTENCES = sorted(
+    text
+    for text, _ in labelled("triples_rows")
+    if text[0].isupper() and text[-1] in ".?!" and " i " not in text and text not in ("Its", "Hello how are you?")
+)
+
+
+def test_a_well_written_sentence_stays_as_it_is() -> None:
+    assert len(SENTENCES) > 100
+    assert [(text, normalise(text).text) for text in SENTENCES if normalise(text).text != text] == []
+
+
+words = st.sampled_from(
+    [
+        *WRITTEN,
+        *[
+            "I",
+            "you",
+            "munich",
+            "where",
+            "do",
+            "are",
+            "what",
+            "hello",
+            "yes",
+            "brohter",
+            "sooo",
+            "2",
+            "4",
+            ",",
+            ".",
+            "?",
+            "!",
+            "\n",
+            "’",
+            "()",
+            "it's",
+        ],
+    ]
+)
+texts = st.lists(words, max_size=14).map(" ".join) | st.text(max_size=40)
+
+
+def check_offsets(normal: Normal) -> None:
+    assert len(normal.origin) == len(normal.text) + 1
+    assert list(normal.origin) == sorted(normal.origin)
+    assert all(0 <= place <= len(normal.original) for place in normal.origin)
+    assert normal.origin[-1] == len(normal.original)
+    assert len(normal.typed) == len(normal.text)
+
+
+@given(texts)
+def test_offsets_never_decrease_and_lie_within_the_original(text: str) -> None:
+    check_offsets(normalise(text))
+
+
+@given(texts)
+def test_a_normal_form_is_its_own_normal_form(text: str) -> None:
+    once = normalise(text).text
+    assert normalise(once).text == once
+
+
+def test_a_word_knows_its_place_in_the_original() -> None:
+    normal = normalise("u dont like my brohter")
+    for word, typed in (("You", "u"), ("don't", "dont"), ("like", "like"), ("brother", "brohter")):
+        start = normal.text.index(word)
+        first, last = normal.span(start, start + len(word))
+        assert normal.original[first:last] == typed
+    assert normal.adds(len(normal.text) - 1, len(normal.text))
+
+
+def test_the_typed_capitals_stay_where_a_word_differs_in_nothing_else() -> None:
+    assert normalise("i live in munich, u KNOW").typed == "i live in munich, you KNOW."
+
+
+def test_the_plain_form_writes_out_short_forms() -> None:
+    assert plain("What's up, u CAN'T?") == "what is up you can not"
+    assert plain("Im here") == plain("I am here.")
