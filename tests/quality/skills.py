@@ -15,7 +15,7 @@ from ravestate.language.matcher import bundled_matcher
 from ravestate.language.normal import normalise
 from ravestate.language.sentences import sentences
 from ravestate.modules.skill.agentqa.life_file import read_life
-from ravestate.modules.skill.agentqa.remarks import remark_in
+from ravestate.modules.skill.agentqa.remarks import act_in, remark_in
 from ravestate.modules.skill.agentqa.router import Match, router_of
 from ravestate.modules.skill.genqa.question import as_question
 from ravestate.modules.skill.genqa.referring import Before, completed
@@ -78,7 +78,7 @@ def agentqa_asks(sentence: str) -> str:
 
 def agentqa_remarks(sentence: str) -> str:
     """Return the topic of a remark that the agent must not take for small talk."""
-    found = remark_in(sentence, read_life(), ["Robin"])
+    found = remark_in(sentence, read_life(), ["Robin"]) or act_in(_seen(sentence), read_life())
     return "-" if found is None else found.topic
 
 

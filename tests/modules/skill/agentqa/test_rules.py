@@ -133,7 +133,6 @@ def test_it_wins_over_whoever_else_found_an_answer_however_they_are_declared() -
     [
         ("I want to kill myself", "distress"),
         ("who are you? I want to die", "distress"),
-        ("My dog died.", "grief"),
         ("you are a stupid piece of junk", "insult"),
     ],
 )
@@ -159,7 +158,7 @@ def test_listeners_get_the_topic_of_a_remark(tmp_path: Path) -> None:
         ctx[called] = ctx.payload(agentqa.remarked).text
 
     with start(tmp_path, nurse) as sim:
-        sim.say("Well, I want to die!")
+        sim.say("Hi! I want to die!")
         assert sim.read(called) == "i want to die"
 
 
@@ -337,16 +336,6 @@ def test_without_the_sentence_model_others_answer_and_it_says_what_to_install(
     with start(tmp_path, chatter) as sim:
         assert say(sim, "how old are you") == "chatter"
         assert "model.onnx" in str(sim.failures)
-
-
-def test_an_aside_is_answered_unless_something_was_asked(
-    tmp_path: Path,
-) -> None:
-    with start(tmp_path, chatter, bored=5.0, prompt_every=100.0) as sim:
-        sim.put(idle.asked, "")
-        assert say(sim, "thanks a lot!") in ("You're welcome.", "My pleasure.", "Any time.")
-        sim.put(idle.asked, "Do you like chess?")
-        assert say(sim, "okay") == "chatter"
 
 
 def test_silence_makes_it_offer_to_be_asked_now_and_then(tmp_path: Path) -> None:

@@ -28,8 +28,8 @@ class Topic:
     """Answers to a question about something particular (*can you dance*) that is not a value of a fact."""
     remarks: tuple[str, ...] = ()
     """Regular expressions of whole words, for remarks that no other module should answer."""
-    asides: tuple[str, ...] = ()
-    """Regular expressions of whole utterances (*thanks a lot*); they count only if the agent has not asked anything."""
+    acts: tuple[str, ...] = ()
+    """Acts and feelings of the user, by the classes of `nlp.analysis`: ``insult``, ``thanks``, ``grief``."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ravestate.errors import nearest
+from ravestate.language.examples import bundled
 from ravestate.modules._yaml import fault, kind_of, read_text
 from ravestate.yaml_text import compose_yaml
 
@@ -29,7 +30,7 @@ NAMED = ("it", "that")
 """Parameters of phrases for a question that names a value."""
 
 _PARTS = ("facts", "topics", "others")
-_PARTS_OF_TOPIC = ("questions", "remarks", "asides", "phrases", "otherwise", "named", "unnamed")
+_PARTS_OF_TOPIC = ("questions", "remarks", "acts", "phrases", "otherwise", "named", "unnamed")
 
 
 def read_life(own: Path | None = None) -> Life:
@@ -119,8 +120,8 @@ def _topic(key: str, node: yaml.Node, before: Topic | None, known: _Known) -> To
         topic = replace(topic, questions=(*topic.questions, *_texts(known.file, parts["questions"], "questions")))
     if "remarks" in parts:
         topic = replace(topic, remarks=(*topic.remarks, *_expressions(known.file, parts["remarks"], "remarks")))
-    if "asides" in parts:
-        topic = replace(topic, asides=(*topic.asides, *_expressions(known.file, parts["asides"], "asides")))
+    if "acts" in parts:
+        topic = replace(topic, acts=(*topic.acts, *_acts(known.file, parts["acts"])))
     if "phrases" in parts:
         topic = replace(topic, phrases=known.check(parts["phrases"]), otherwise=(), named=(), unnamed=())
     if "otherwise" in parts:
@@ -133,7 +134,7 @@ def _topic(key: str, node: yaml.Node, before: Topic | None, known: _Known) -> To
     if "unnamed" in parts:
         topic = replace(topic, unnamed=known.check(parts["unnamed"]))
     for part, there in (
-        ("questions", topic.questions or topic.remarks or topic.asides),
+        ("questions", topic.questions or topic.remarks or topic.acts),
         ("phrases", topic.phrases),
     ):
         if not there:
@@ -153,6 +154,15 @@ def _expressions(file: str, node: yaml.Node, part: str) -> tuple[str, ...]:
                 item,
                 f"{expression!r} is not a regular expression ({error}): write for example i am (so )?sad",
             ) from None
+    return found
+
+
+def _acts(file: str, node: yaml.Node) -> tuple[str, ...]:
+    known = [*bundled("acts").classes, *bundled("feelings").classes]
+    found = _texts(file, node, "acts")
+    for act in found:
+        if act not in known:
+            raise fault(file, node, f"{act!r} is no act or feeling{nearest(act, known)}: {', '.join(known)}")
     return found
 
 

@@ -1,4 +1,4 @@
-"""Remarks that the agent must answer: distress, grief and insults first; thanks and the like."""
+"""Remarks that the agent must answer: distress first, by fixed expressions; then acts and feelings of the user."""
 
 from __future__ import annotations
 
@@ -7,11 +7,14 @@ from collections.abc import Collection
 from dataclasses import dataclass
 from functools import lru_cache
 
-from .asking import statements
+from ravestate.language import normalise, plain, sentences
+from ravestate.modules.meta.nlp.analysis import Analysis
+
+from .addressing import addressed
 from .life import Life
 
-ASIDE = 80
-"""The maximum number of characters in an aside."""
+LONGEST = 2000
+"""Characters of an utterance that are read."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,32 +26,37 @@ class Remark:
     """The sentence in the plain form."""
 
 
-def remark_in(utterance: str, life: Life, names: Collection[str] = (), asked: bool = False) -> Remark | None:
-    """Return the remark in an utterance. If several topics match, the first in the life counts.
+def remark_in(utterance: str, life: Life, names: Collection[str] = ()) -> Remark | None:
+    """Return the remark that an expression of a topic finds. If several topics match, the first in the life counts.
 
     Args:
         utterance: The user's words.
         life: The life; its topics with remarks count.
         names: Further names of the agent.
-        asked: Whether the agent has asked something: then *okay* is an answer, not an aside.
 
     Example:
         >>> from ravestate.modules.skill.agentqa.life_file import read_life
-        >>> remark_in("Hi! I'm so sad, my dog has died.", read_life()).topic
-        'grief'
+        >>> remark_in("Hi! I want to die.", read_life()).topic
+        'distress'
     """
-    said = statements(utterance, (life.name, *names))
+    called = (life.name, *names)
+    said = [plain(addressed(one, called)) for one in sentences(normalise(utterance[:LONGEST], called).text)]
     for name, topic in life.topics.items():
         if topic.remarks:
             expression = _whole_words(topic.remarks)
             for text in said:
                 if expression.search(text):
                     return Remark(name, text)
-    if not asked and len(utterance) < ASIDE:
-        text = " ".join(re.findall(r"[\w']+", utterance.lower().replace("’", "'")))
-        for name, topic in life.topics.items():
-            if topic.asides and _whole_words(topic.asides).fullmatch(text):
-                return Remark(name, text)
+    return None
+
+
+def act_in(analysis: Analysis, life: Life) -> Remark | None:
+    """Return the remark that is an act or a feeling of a topic; the first topic in the life counts."""
+    for name, topic in life.topics.items():
+        for known in topic.acts:
+            found = analysis.acts.get(known) or analysis.feelings.get(known)
+            if found is not None:
+                return Remark(name, plain(found.text))
     return None
 
 

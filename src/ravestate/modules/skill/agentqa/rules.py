@@ -14,12 +14,11 @@ from ravestate.language.heap import give_back
 from ravestate.modules import idle, interloc, nlp, ontology, rawio, verbaliser
 from ravestate.modules.meta.verbaliser.intents import Intent
 
-from .asking import returns
 from .itself import recall, settle
 from .life import Fact, Life
 from .life_file import read_life
 from .names import Settings, asked, clock, life, module, mood, prompted, remarked
-from .remarks import remark_in
+from .remarks import act_in, remark_in
 from .router import Match, Miss, router_of
 from .telling import telling, without_question
 
@@ -65,21 +64,20 @@ async def remember(ctx: rs.RuleContext) -> rs.Resign | None:
     return None
 
 
-@module.rule(when=nlp.text.changed & nlp.question.changed, reads=(life, idle.asked), emits=asked)
+@module.rule(when=nlp.analysis.changed, reads=(life, idle.asked), emits=asked)
 async def understand(ctx: rs.RuleContext) -> rs.Resign | None:
     """Notice a question about the agent, and its topic."""
-    told = ctx[life]
-    if told is None:
-        return rs.Resign("the agent has no life yet")
-    heard, question = ctx.payload(nlp.text.changed), ctx.payload(nlp.question.changed) is not None
+    told, seen = ctx[life], ctx.payload(nlp.analysis.changed)
+    if told is None or seen is None:
+        return rs.Resign("the agent has no life yet, or nothing was said")
     route = router_of(told).route
     found: Match | Miss = Miss("")
-    if ctx[idle.asked] and returns(heard):
+    if ctx[idle.asked] and seen.act("return_question"):
         found = await asyncio.to_thread(route, ctx[idle.asked], question=True)
     if isinstance(found, Match):
         found = replace(found, returned=True)
     else:
-        found = await asyncio.to_thread(route, heard, question=question)
+        found = await asyncio.to_thread(route, seen.normal.text, question=seen.question is not None)
     if isinstance(found, Miss):
         return rs.Resign(found.reason)
     ctx.log.debug("%s", found)
@@ -87,12 +85,24 @@ async def understand(ctx: rs.RuleContext) -> rs.Resign | None:
     return None
 
 
-@module.rule(when=rawio.input.changed, reads=(life, idle.asked), emits=remarked)
+@module.rule(when=rawio.input.changed, reads=life, emits=remarked)
 async def heed(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Notice a remark that is not small talk."""
+    """Notice a remark by its words alone: a user in distress hears an answer whatever else is installed."""
     told = ctx[life]
-    said = ctx.payload(rawio.input.changed)
-    found = None if told is None else remark_in(said, told, asked=bool(ctx[idle.asked]))
+    found = None if told is None else remark_in(ctx.payload(rawio.input.changed), told)
+    if found is None:
+        return rs.Resign("it is not such a remark")
+    ctx.emit(remarked, found)
+    return None
+
+
+@module.rule(when=nlp.analysis.changed, reads=life, emits=remarked)
+async def heed_act(ctx: rs.RuleContext) -> rs.Resign | None:
+    """Notice a remark by its meaning, such as an insult."""
+    told, seen = ctx[life], ctx.payload(nlp.analysis.changed)
+    if told is None or seen is None or remark_in(seen.text, told) is not None:
+        return rs.Resign("there is no life, or `heed` has noticed the remark")
+    found = act_in(seen, told)
     if found is None:
         return rs.Resign("it is not such a remark")
     ctx.emit(remarked, found)
