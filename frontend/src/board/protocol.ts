@@ -252,11 +252,9 @@ export interface Pressed {
 /** A rule that may raise a missing signal, and the outcome of its run in this causal group. */
 export interface Raiser {
   rule: string;
-  /** The outcome of the rule's run, `running`, or `not run`. */
   outcome: string;
   /** The time of the outcome (seconds); None if there is none. */
   time: number | null;
-  /** The outcome as text. */
   words: string;
 }
 

@@ -77,6 +77,8 @@ export interface Welcome {
   writing?: boolean;
   /** A few things that the visitor could say first. */
   suggestions?: string[];
+  /** A line of text that the page shows until the visitor has said something; None for no line. */
+  note?: string;
 }
 
 /** The agent's new name. */

@@ -13,9 +13,8 @@ class Raiser:
     """A rule that may raise a missing signal, and the outcome of its run in this causal group.
 
     Attributes:
-        outcome: The outcome of the rule's run, ``running``, or ``not run``.
+        outcome, words: The outcome of the rule's run, ``running``, or ``not run``; the same as text.
         time: The time of the outcome (seconds); None if there is none.
-        words: The outcome as text.
     """
 
     rule: str

@@ -39,8 +39,7 @@ def load_agent(options: argparse.Namespace, first: Iterable[str] = (), *, announ
     Args:
         options: The parsed arguments.
         first: The names of modules that the agent has in any case.
-        announce: Whether to print, before loading, which Python code the agent files run. Commands that only inspect
-            an agent do so.
+        announce: Whether to print first which Python code the agent files run. Commands that only inspect it do so.
 
     Raises:
         UsageError: A module, file or setting is wrong. The message lists all mistakes of agent files and of ``--set``.

@@ -22,8 +22,7 @@ if TYPE_CHECKING:
 DEFAULT_MAX_AGE = 5.0
 """The default `max_age` of a constraint, in seconds (L4)."""
 
-Predicate = Callable[[Any], object]
-"""A function of a payload or of a slot's value. Its result counts as true or false."""
+Predicate = Callable[[Any], object]  # a function of a payload or of a slot's value
 
 LATER = inspect.CO_GENERATOR | inspect.CO_COROUTINE | inspect.CO_ASYNC_GENERATOR
 """The flags of a code object whose call only makes a generator or a coroutine."""

@@ -2,8 +2,7 @@
 
 With the shortest edges, layers may be few and crowded: all neighbours of a hub share one layer. If the picture is then
 tall and narrow, the layers get a bound. Vertices beyond the bound move to a later layer, as in the scheduling of
-Coffman and Graham (1972). A vertex goes first if its predecessors were placed only just now, so that a chain continues
-before another chain begins.
+Coffman and Graham (1972). A vertex goes first if its predecessors were placed just now, so that a chain continues.
 """
 
 from __future__ import annotations

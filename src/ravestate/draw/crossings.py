@@ -124,10 +124,7 @@ def _sweep(
 
 
 def _by_barycentre(layer: list[int], neighbours: Sequence[Sequence[int]], place: list[int], flip: bool) -> None:
-    """Sort a layer by the mean place of each vertex's neighbours. With `flip`, vertices of equal mean swap.
-
-    Vertices without neighbours keep their places.
-    """
+    """Sort the vertices with neighbours by the mean place of these; other vertices stay. With `flip`, ties swap."""
     moving = [(sum(place[w] for w in neighbours[v]) / len(neighbours[v]), v) for v in layer if neighbours[v]]
     if flip:
         moving.reverse()

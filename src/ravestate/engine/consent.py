@@ -1,9 +1,8 @@
 """Consent (L15): whether a ready activation may run now, and if not, which activations it waits for.
 
-A group refuses while one of the activation's slots is taken in it, or while there is a rival. A rival is another clause
-that writes one of these slots and has greater effective utility. It has a stake in the group, and is still viable
-there. A rival has a stake if it holds a spike of the group. In stand-by, it has a stake if a live
-rule there may trigger it.
+A group refuses while one of the activation's slots is taken in it, or while there is a rival: another viable clause that
+writes one of these slots, has greater effective utility, and has a stake in the group. A clause has a stake if it holds
+a spike of the group, or if a live rule of the group may trigger it.
 """
 
 from __future__ import annotations

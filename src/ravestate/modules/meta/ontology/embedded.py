@@ -46,8 +46,8 @@ class EmbeddedStore:
     """A database file of ladybug, which only this process has open.
 
     Committed writes are in the write-ahead log, on disk. After a write to that log fails, ladybug would hang in the
-    next write and end the process when it closes. So the store checks the free space before each write. If a write fails
-    anyway, its incomplete record is cut off. Then nothing is written or closed until the files can be written again.
+    next write and end the process when it closes. So the store checks the free space before each write. If a write
+    fails anyway, its incomplete record is cut off. Then nothing is written or closed until the disk has room again.
     """
 
     def __init__(self, path: Path) -> None:

@@ -15,7 +15,7 @@ from .types import Types
 T = TypeVar("T")
 
 AGENT = "Agent"
-"""The type of people and robots. Forgetting a node keeps related people and robots of whom memory has more than a name."""
+"""The type of people and robots. Forgetting a node keeps related people and robots that have more than a name."""
 
 
 class Graph:
@@ -37,7 +37,7 @@ class Graph:
     # ------------------------------------------------------------------------------------ nodes
 
     def save(self, node: Node, of: str | None = None) -> Node:
-        """Write a node's properties to memory, which may have the node already; return the node as it is now in memory."""
+        """Write a node's properties to memory, which may already have the node; return the node as it is now stored."""
         if of is not None and not self._types.is_a(node.type, of):
             raise RuleError(f"{node.id} is a {node.type}, not a {of}")
         return self._write(_known(node), self._types.stored(node.type, node.properties))

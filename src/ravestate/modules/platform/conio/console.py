@@ -94,10 +94,9 @@ class Console:
         self._streamed = ""
         self._line_is_open = False
         self.ending: Ending | None = None
-        """The reason for the end of the iteration: end of input (Ctrl-D), interrupt (Ctrl-C), or closed (the output is
-        gone); None before."""
+        """Why the iteration ended: end of input (Ctrl-D), interrupt (Ctrl-C), closed (output is gone); None before."""
         self.failure: PlatformError | None = None
-        """The reason why nothing more can be written, e.g. a full disk; None if the output was merely closed."""
+        """The error after which nothing can be written, e.g. a full disk; None if the output was merely closed."""
 
     @property
     def interactive(self) -> bool:

@@ -87,8 +87,7 @@ def heard_text(text: str) -> str:
 
 
 def name_of(text: str) -> str:
-    """Return a text as a name: one line, without invisible characters or
-    characters that change the writing direction. The result may be empty.
+    """Return a text as one line, without invisible characters or characters that change the writing direction.
 
     Example:
         >>> name_of(" Ada\\u202e\\nLovelace ")
@@ -201,6 +200,7 @@ class Welcome:
         last: The number of the newest message; 0 before the first message.
         writing: Whether the server accepts `Writing` frames. Early server releases did not.
         suggestions: A few things that the visitor could say first.
+        note: A line of text that the page shows until the visitor has said something; None for no line.
     """
 
     v: Version
@@ -212,6 +212,7 @@ class Welcome:
     last: Number = 0
     writing: Truth = False
     suggestions: tuple[Text, ...] = ()
+    note: Text | None = None
     type: Literal["welcome"] = "welcome"
 
 
