@@ -1,8 +1,8 @@
 """Consent (L15): whether a ready activation may run now, and if not, which activations it waits for.
 
-A group refuses while one of the activation's slots is taken in it, or while there is a rival: another viable clause that
-writes one of these slots, has greater effective utility, and has a stake in the group. A clause has a stake if it holds
-a spike of the group, or if a live rule of the group may trigger it.
+A group refuses while one of the activation's slots is taken in it, or while there is a rival: another viable clause
+that writes one of these slots, has greater effective utility, and has a stake in the group. A clause has a stake if
+it holds a spike of the group, or if a live rule of the group may trigger it.
 """
 
 from __future__ import annotations
@@ -25,8 +25,7 @@ class Refusal:
     Attributes:
         names: The names of the rules that the activation waits for.
         blockers: The live activations on whose progress the refusal depends.
-        pressed: (group, clause, activation) of each rival that may never become ready, so that only its patience ends
-            the wait. The activation is None for a clause in stand-by.
+        pressed: (group, clause, activation or None) of each rival that may never be ready: its patience ends the wait.
         hopes: Whether the refusal depends on live rules of other groups.
         interests: The groups whose changes may lift the refusal.
         recheck: The earliest time at which recovering utilities change the order (seconds); `NEVER` if none does.
