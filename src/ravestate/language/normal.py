@@ -106,6 +106,10 @@ _PARTS_OF_NAMES = word_set("new north south east west san santa los las saint el
 """Words that begin the names of places."""
 
 
+LONGEST = 2000
+"""The characters of a text that get their normal form; the rest stays as typed."""
+
+
 def normalise(text: str, names: Collection[str] = ()) -> Normal:
     """Return the normal form of `text`. Takes less than a millisecond for a sentence.
 
@@ -119,6 +123,11 @@ def normalise(text: str, names: Collection[str] = ()) -> Normal:
         >>> normalise("u cant do that can u").text
         "You can't do that can you."
     """
+    if len(text) > LONGEST:
+        start = text[:LONGEST].rfind(" ") + 1 or LONGEST
+        begun = normalise(text[:start], names)
+        rest = range(start, len(text) + 1)
+        return Normal(begun.text + text[start:], text, (*begun.origin[:-1], *rest))
     known = {part.lower(): part for name in names for part in name.split()}
     normal = Normal(text, text, tuple(range(len(text) + 1)))
     for punctuated in (False, True):  # the marks depend on the words
