@@ -1,4 +1,4 @@
-"""What an utterance says of feelings: joy, grief, a compliment for the agent... The classes are those of ``feelings.yaml``."""
+"""Feelings in an utterance: joy, grief, a compliment for the agent... The classes are those of ``feelings.yaml``."""
 
 from __future__ import annotations
 
