@@ -103,7 +103,7 @@ class Encoder:
 
     @property
     def identity(self) -> list[object]:
-        """What tells the model from another one: its place, size and date."""
+        """The place, size and date of the model: no other model has the same."""
         folder = self._loaded().folder
         about = (folder / "model.onnx").stat()
         return [str(folder), about.st_size, about.st_mtime_ns]
