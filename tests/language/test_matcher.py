@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from ravestate.language import encoder as encoder_module
+from ravestate.language import cache as cache_module
 from ravestate.language.encoder import Encoder
 from ravestate.language.matcher import Matcher, bundled_matcher
 from ravestate.language.model import SentenceModel
@@ -104,7 +104,7 @@ def test_an_utterance_needs_one_run_for_all_matchers(matcher: Matcher, runs: lis
 def test_vectors_of_examples_come_from_a_file_the_next_time(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, runs: list[list[str]]
 ) -> None:
-    monkeypatch.setattr(encoder_module, "user_folder", lambda kind: tmp_path)
+    monkeypatch.setattr(cache_module, "user_folder", lambda kind: tmp_path)
     texts = ["a purple cow", "a yellow horse"]
     first = Encoder().encode_lasting(texts)
     assert len(runs) == 1
@@ -113,8 +113,8 @@ def test_vectors_of_examples_come_from_a_file_the_next_time(
 
 
 def test_files_that_nobody_reads_any_more_are_removed(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    monkeypatch.setattr(encoder_module, "user_folder", lambda kind: tmp_path)
-    monkeypatch.setattr(encoder_module, "FILES", 2)
+    monkeypatch.setattr(cache_module, "user_folder", lambda kind: tmp_path)
+    monkeypatch.setattr(cache_module, "FILES", 2)
     encoder = Encoder()
     for age, text in enumerate(("oldest", "older", "old")):
         encoder.encode_lasting([text])

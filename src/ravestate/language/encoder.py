@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
-import os
-import tempfile
 import threading
 from collections import OrderedDict
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ravestate.folders import user_folder
-
+from .cache import cached
 from .model import SentenceModel, model_in
 
 if TYPE_CHECKING:
@@ -23,8 +19,6 @@ if TYPE_CHECKING:
 BUNDLED = "bge_small_en"
 REMEMBERED = 1024
 """The latest sentences whose vectors an encoder keeps: all skills ask for those of one utterance."""
-FILES = 50
-"""The latest files with vectors of examples that the cache keeps."""
 
 
 class Encoder:
@@ -97,29 +91,22 @@ class Encoder:
         model = self._loaded()
         import numpy as np
 
-        digest = hashlib.sha256(json.dumps([_identity(model.folder), list(texts)]).encode("utf-8", "replace"))
-        file = user_folder("cache") / "vectors" / f"{digest.hexdigest()[:32]}.npy"
-        try:
-            rows = np.load(file, allow_pickle=False)
-            if rows.shape == (len(texts), model.width):
-                os.utime(file)
-                self._lasting.update(zip(texts, rows, strict=True))
-                return rows.astype(np.float32)
-        except (OSError, ValueError, EOFError):
-            pass
-        new = [text for text in dict.fromkeys(texts) if text not in self._lasting]
-        self._lasting.update(zip(new, self._encode(new).astype(np.float16), strict=True))
-        rows = np.array([self._lasting[text] for text in texts], dtype=np.float16).reshape(len(texts), model.width)
-        try:
-            file.parent.mkdir(parents=True, exist_ok=True)
-            handle, name = tempfile.mkstemp(dir=file.parent)
-            with os.fdopen(handle, "wb") as out:
-                np.save(out, rows)
-            os.replace(name, file)
-            _remove_stale(file.parent)
-        except OSError:
-            pass  # a folder that cannot be written only costs time
-        return rows.astype(np.float32)  # the same as next time
+        def rows() -> dict[str, NDArray[Any]]:
+            new = [text for text in dict.fromkeys(texts) if text not in self._lasting]
+            self._lasting.update(zip(new, self._encode(new).astype(np.float16), strict=True))
+            found = [self._lasting[text] for text in texts]
+            return {"rows": np.array(found, dtype=np.float16).reshape(len(texts), model.width)}
+
+        found = cached(["vectors", self.identity, list(texts)], rows)["rows"]
+        self._lasting.update(zip(texts, found, strict=True))
+        return found.astype(np.float32)
+
+    @property
+    def identity(self) -> list[object]:
+        """The place, size and date of the model: no other model has the same."""
+        folder = self._loaded().folder
+        about = (folder / "model.onnx").stat()
+        return [str(folder), about.st_size, about.st_mtime_ns]
 
     def _loaded(self) -> SentenceModel:
         if self._model is None:
@@ -139,12 +126,6 @@ class Encoder:
         return rows / np.maximum(norms, 1e-12)
 
 
-def _remove_stale(folder: Path) -> None:
-    """Remove the files of vectors that nobody has read for longest, beyond the latest `FILES`."""
-    for file in sorted(folder.glob("*.npy"), key=lambda file: file.stat().st_mtime, reverse=True)[FILES:]:
-        file.unlink(missing_ok=True)
-
-
 def _pooled(hidden: NDArray[Any], mask: NDArray[Any], mean: bool) -> NDArray[Any]:
     """Return one vector for each text, from its tokens' vectors of shape (n, tokens, d)."""
     if hidden.ndim == 2:  # the model has pooled them
@@ -162,9 +143,3 @@ def _pools_by_mean(folder: Path) -> bool:
         return bool(config["pooling_mode_mean_tokens"])
     except (OSError, ValueError, LookupError, TypeError):
         return False
-
-
-def _identity(folder: Path) -> list[object]:
-    """Return what tells one model from another: its place, size and date."""
-    about = (folder / "model.onnx").stat()
-    return [str(folder), about.st_size, about.st_mtime_ns]

@@ -13,16 +13,17 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from importlib import import_module
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from .bundled import ModelMissing
+from .cache import cached
 from .encoder import Encoder
 from .entity import Entity
 from .examples import bundled
 from .loading import LOADING
 from .normal import plain
 from .shape import likeness, shape
-from .spelling import Spelling
+from .spelling import BUCKETS, Spelling
 
 if TYPE_CHECKING:
     import numpy as np
@@ -205,9 +206,7 @@ def bundled_matcher(name: str) -> Matcher:
 class _Learnt:
     """The classifier, after learning."""
 
-    def __init__(
-        self, pairs: Sequence[tuple[str, str]], encoder: Encoder, shapes: float, centre: float | None
-    ) -> None:
+    def __init__(self, pairs: Sequence[tuple[str, str]], encoder: Encoder, shapes: float, centre: float | None) -> None:
         import numpy as np
 
         self._encoder, self._weight = encoder, shapes
@@ -217,24 +216,35 @@ class _Learnt:
         self._meanings = encoder.encode_lasting(self._examples)
         self._spelling = Spelling(self._examples)
         self._shapes = np.array([shape(text) for text in self._examples], dtype=np.int8)
-        kernel = self._kernel(self._meanings, self._spelling.among, self._shapes)
-        kernel = kernel.astype(np.float64)
-        kernel[np.diag_indices_from(kernel)] += RIDGE
-        del self._spelling.among  # a large matrix that only learning needs
-        inverse = np.linalg.inv(kernel)
-        targets = np.eye(len(self._classes))[self._of]
-        weights = inverse @ targets
-        self._weights = weights.astype(np.float32)
-        # The scores of each example from a classifier that has learnt all the others, in closed form.
-        left_out = targets - weights / np.diag(inverse)[:, None]
-        others = left_out.argmax(axis=1)
-        wrong = np.flatnonzero((others != self._of) & (_margins(left_out) > DOUBT))
-        self.confusions: list[tuple[str, str, str]] = [
-            (self._examples[n], self._classes[self._of[n]], self._classes[others[n]]) for n in map(int, wrong)
-        ]
-        self._slope, self._centre = _calibrated(_margins(left_out), others == self._of)
+        key = ["matcher", encoder.identity, pairs, shapes, SHARPNESS, SPELLING, SHAPE, COMMON, RIDGE, BUCKETS]
+        learnt = cached(key, self._learn)
+        self._weights, confused = learnt["weights"], learnt["confused"].tolist()
+        self._slope, self._centre = learnt["curve"].tolist()
         if centre is not None:
             self._centre = centre
+        self.confusions: list[tuple[str, str, str]] = [
+            (self._examples[number], self._classes[self._of[number]], self._classes[other])
+            for number, other in confused
+        ]
+
+    def _learn(self) -> dict[str, NDArray[Any]]:
+        """Return the weights, the curve from margin to confidence, and the examples that others let expect elsewhere."""
+        import numpy as np
+
+        kernel = self._kernel(self._meanings, self._spelling.among(), self._shapes)
+        kernel[np.diag_indices_from(kernel)] += np.float32(RIDGE)
+        inverse = np.linalg.inv(kernel)
+        targets = np.eye(len(self._classes), dtype=np.float32)[self._of]
+        weights = inverse @ targets
+        # The scores of each example from a classifier that has learnt all the others, in closed form.
+        left_out = targets - weights / np.diag(inverse)[:, None]
+        margins, others = _margins(left_out), left_out.argmax(axis=1)
+        wrong = np.flatnonzero((others != self._of) & (margins > DOUBT))
+        return {
+            "weights": weights,
+            "curve": np.array(_calibrated(margins.astype(np.float64), others == self._of)),
+            "confused": np.stack([wrong, others[wrong]], axis=1),
+        }
 
     def ranked(self, sentences: Sequence[str], most: int | None) -> list[list[Match]]:
         """Return `most` classes of each sentence, best first."""
@@ -265,13 +275,23 @@ class _Learnt:
         """Return the similarity of sentences (rows) and examples (columns)."""
         import numpy as np
 
-        kernel = np.exp(np.float32(SHARPNESS) * (meanings @ self._meanings.T - 1))
-        kernel += np.float32(SPELLING) * spelling
-        kernel *= 1 - self._weight * (1 - likeness(shapes, self._shapes))
-        return kernel + np.float32(COMMON)
+        # In place: for thousands of examples, each copy takes tens of megabytes.
+        kernel = meanings @ self._meanings.T
+        kernel -= 1
+        kernel *= SHARPNESS
+        np.exp(kernel, out=kernel)
+        spelling *= SPELLING
+        kernel += spelling
+        alike = likeness(shapes, self._shapes)
+        alike -= 1
+        alike *= self._weight
+        alike += 1
+        kernel *= alike
+        kernel += COMMON
+        return kernel
 
 
-def _margins(scores: NDArray[np.float64]) -> NDArray[np.float64]:
+def _margins(scores: NDArray[Any]) -> NDArray[Any]:
     """Return the distance of the best score in each row from the next best."""
     import numpy as np
 
