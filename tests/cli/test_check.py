@@ -41,6 +41,31 @@ def test_findings_are_printed_and_are_no_faults(folder: Path, capsys: Capture) -
     assert lines[-1].endswith("no faults, 3 findings")
 
 
+def test_examples_that_two_intents_share(folder: Path, capsys: Capture) -> None:
+    write(
+        folder / "shop.py",
+        """
+        import ravestate as rs
+        from ravestate.modules import nlp, rawio
+        module = rs.Module("shop", requires=[rawio, nlp])
+        hours = nlp.intent(module, "hours", examples=["when do you open", "are you open on Sundays", "how late are you open"])
+        price = nlp.intent(module, "price", examples=["what does it cost", "how much is it", "R u open on Sundays?"])
+        late = nlp.intent(module, "late", examples=["until when are you open", "how long are you open"])
+
+        @module.rule(when=hours | price | late, writes=rawio.output)
+        async def answer(ctx): ...
+        """,
+    )
+    code, out, _ = call(capsys, "check", "./shop.py")
+    examples = [line for line in out.splitlines() if line.startswith("example:")]
+    assert code == 0
+    assert examples[0] == (
+        "example: the example 'R u open on Sundays?' of intent shop:hours fits intent shop:price as well: give it to one of "
+        "them, or write examples that differ more"
+    )
+    assert any("'until when are you open' of intent shop:late fits intent shop:hours" in line for line in examples)
+
+
 MISSPELT = """
     import ravestate as rs
     from ravestate.modules import rawio

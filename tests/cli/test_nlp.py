@@ -3,6 +3,7 @@
 import io
 import json
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -19,6 +20,9 @@ def test_a_table_for_people(capsys: Capture) -> None:
     assert lines[3].split() == ["you", "you", "PRON", "PRP", "nsubj", "live"]
     facts = dict(line.split(None, 1) for line in lines[lines.index("") + 1 :])
     assert facts == {
+        "normal": "Where do you live? I live in Berlin.",
+        "acts": "-",
+        "feelings": "-",
         "entities": "Berlin (GPE)",
         "triples": "(you, live, PLACE) (I, live, Berlin)",
         "yes/no": "-",
@@ -34,6 +38,29 @@ def test_a_table_for_people(capsys: Capture) -> None:
 def test_answers_in_words(text: str, shown: str, capsys: Capture) -> None:
     _, out, _ = call(capsys, "nlp", text)
     assert f"yes/no    {shown}\n" in out
+
+
+def test_the_normal_form_acts_and_feelings(capsys: Capture) -> None:
+    _, out, _ = call(capsys, "nlp", "thx! my mother is ill")
+    assert "normal    Thanks! My mother is ill.\n" in out
+    assert "acts      thanks 0." in out or "acts      thanks 1." in out
+    assert "illness" in out
+
+
+def test_the_scores_of_the_intents_of_a_module(capsys: Capture, tmp_path: Path) -> None:
+    file = tmp_path / "cafe.py"
+    file.write_text(
+        "import ravestate as rs\nfrom ravestate.modules import nlp\nmodule = rs.Module('cafe', requires=[nlp])\n"
+        "nlp.intent(module, 'hours', examples=['when do you open', 'how late are you open'])\n"
+        "nlp.intent(module, 'table', examples=['I would like to book a table', 'a table for two please'])\n"
+    )
+    code, out, _ = call(capsys, "nlp", "-m", str(file), "until when are you open")
+    assert code == 0
+    assert "signals   is_question, about_agent, cafe:hours\n" in out
+    assert "\nintents   cafe:hours 0." in out and ", cafe:table 0." in out
+    _, out, _ = call(capsys, "nlp", "--json", "-m", str(file), "until when are you open")
+    scores = json.loads(out)["intents"]
+    assert list(scores) == ["cafe:hours", "cafe:table"] and scores["cafe:hours"] > 0.5 > scores["cafe:table"]
 
 
 def test_words_need_no_quotes(capsys: Capture) -> None:

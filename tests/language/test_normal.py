@@ -42,6 +42,15 @@ def lexicon() -> None:
         ("anna's dog", "Anna's dog."),
         ("see https://example.org/u?r=2", "See https://example.org/u?r=2."),
         ("my favourite colour is grey", "My favourite colour is grey."),
+        ("i use to live in hamburg", "I used to live in Hamburg."),
+        ("my names tom", "My name is Tom."),
+        ("where u from", "Where are you from?"),
+        ("i live in new york", "I live in New York."),
+        ("ive never been 2 rome", "I've never been to Rome."),
+        ("i ve been here 2 times", "I've been here 2 times."),
+        ("plz tell me a storry", "Please tell me a story."),
+        ("ya i do", "Yes, I do."),
+        ("im good and you", "I'm good and you?"),
         ("we moved in december", "We moved in December."),
         ("", ""),
     ],
@@ -52,7 +61,7 @@ def test_typed_english_becomes_written_english(typed: str, written: str) -> None
 
 def test_names_are_not_corrected_and_get_their_capitals() -> None:
     assert normalise("hello freinda how are you", ["Freinda"]).text == "Hello Freinda. How are you?"
-    assert normalise("my name is kira and i come from hildesheim").text == "My name is kira and I come from hildesheim."
+    assert normalise("my name is kira and i come from hildesheim").text == "My name is Kira and I come from Hildesheim."
 
 
 SENTENCES = sorted(

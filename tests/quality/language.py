@@ -38,7 +38,7 @@ def intents(text: str) -> str:
     """By nlp."""
     bundled_matcher("acts").load()
     seen = analyse(text, pipeline(""), Settings().agent_names)
-    return "+".join(intent.removeprefix("intent_") for intent in seen.intents) or "-"
+    return "+".join(intent.removeprefix("intent_") for intent in seen.acted) or "-"
 
 
 def quiet(text: str) -> str:

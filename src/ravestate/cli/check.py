@@ -7,8 +7,13 @@ import inspect
 import shutil
 import sys
 import textwrap
+from typing import TYPE_CHECKING
 
 from ravestate.cli import agent
+
+if TYPE_CHECKING:
+    from ravestate.policy.findings import Finding
+    from ravestate.policy.policy import Policy
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -42,6 +47,7 @@ def run(options: argparse.Namespace) -> int:
         if f.kind not in ("unheard", "unraised", "cooldown")
         or not {name.split(":")[0] for name in (f.subject, *f.rules)} <= set(BUILT_IN)
     ]
+    findings += _doubtful_examples(policy)
     for finding in findings:
         _print(str(finding))
     if options.utilities:
@@ -54,6 +60,20 @@ def run(options: argparse.Namespace) -> int:
     note = f" ({breaking} break{'s' if breaking == 1 else ''} a rule when it runs)" if breaking else ""
     print(f"{counts}: no faults, {_count(len(findings), 'finding')}{note}")
     return 1 if breaking else 0
+
+
+def _doubtful_examples(policy: Policy) -> list[Finding]:
+    """Return a finding for each example that two intents of an agent share, or that resembles another intent's."""
+    if "nlp" not in (module.name for module in policy.modules):
+        return []
+    from ravestate.modules.meta.nlp.intent import doubtful_examples, intents_of
+    from ravestate.policy.findings import Finding
+
+    mend = "give it to one of them, or write examples that differ more"
+    return [
+        Finding("example", own, f"the example {text!r} of intent {own} fits intent {other} as well: {mend}")
+        for text, own, other in doubtful_examples(intents_of(policy))
+    ]
 
 
 def _print(text: str, *, error: bool = False) -> None:

@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 import argparse
-import contextlib
 import dataclasses
 import json
 import sys
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from ravestate.errors import UsageError
+from ravestate.language.bundled import ModelMissing
 
 if TYPE_CHECKING:
+    from ravestate.language.matcher import Match, Matcher
     from ravestate.modules.meta.nlp.analysis import Analysis
+
+SHOWN = 5
+"""The intents that the table shows."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -32,28 +36,63 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="NAME",
         help="a name of the agent (may be repeated), as the setting nlp.agent_names",
     )
+    parser.add_argument("-f", "--file", metavar="FILE", help="an agent file: show the scores of its intents")
+    parser.add_argument(
+        "-m",
+        "--module",
+        dest="modules",
+        action="append",
+        default=[],
+        metavar="MODULE",
+        help="a module with intents, to show their scores (may be repeated)",
+    )
 
 
 def run(options: argparse.Namespace) -> int:
-    from ravestate.language.bundled import ModelMissing
     from ravestate.language.matcher import bundled_matcher
     from ravestate.modules._text import printable
     from ravestate.modules.meta.nlp import Settings
     from ravestate.modules.meta.nlp.analysis import MATCHERS, analyse
     from ravestate.modules.meta.nlp.pipeline import pipeline
 
-    with contextlib.suppress(ModelMissing):  # the examples themselves are known without the model
-        for name in MATCHERS:
-            bundled_matcher(name).load()
+    designed = _designed(options)
+    for matcher in (*map(bundled_matcher, MATCHERS), *([designed] if designed else [])):
+        try:
+            matcher.load()
+        except ModelMissing as error:
+            print(f"ravestate nlp: only exact matches: {error}", file=sys.stderr)
+            break
     names: Sequence[str] = options.agent_names or Settings().agent_names
     texts: Iterable[str] = [" ".join(options.text)] if options.text else _lines()
     for number, text in enumerate(map(printable, texts)):  # without control codes for the terminal
-        seen = analyse(text, pipeline(options.pipeline), names)
+        seen = analyse(text, pipeline(options.pipeline), names, designed=designed)
+        scores = _scores(designed, seen)
         if options.json:
-            print(json.dumps(_plain(text, seen), ensure_ascii=False), flush=True)
+            print(json.dumps(_plain(text, seen, scores), ensure_ascii=False), flush=True)
         else:
-            print(("\n" if number else "") + _table(seen), flush=True)
+            print(("\n" if number else "") + _table(seen, scores), flush=True)
     return 0
+
+
+def _designed(options: argparse.Namespace) -> Matcher | None:
+    """Return the matcher of the intents of the agent that the arguments name, if any."""
+    if not options.file and not options.modules:
+        return None
+    from ravestate.cli.agent import load_agent
+    from ravestate.modules.meta.nlp.intent import intent_matcher, intents_of
+    from ravestate.policy.compile import compile_policy
+
+    options.sets, options.seed = [], None
+    return intent_matcher([intents_of(compile_policy(*load_agent(options, announce=True).modules))])
+
+
+def _scores(designed: Matcher | None, seen: Analysis) -> dict[str, float]:
+    """Return the best scores of the designer's intents, highest first."""
+    ranked = (
+        [match for one in designed.ranked_all(seen.sentences) for match in one if ":" in match.name] if designed else []
+    )
+    best = {match.name: match.score for match in sorted(ranked, key=lambda match: match.score)}
+    return dict(sorted(best.items(), key=lambda pair: -pair[1])[:SHOWN])
 
 
 def _lines() -> Iterator[str]:
@@ -67,18 +106,22 @@ def _lines() -> Iterator[str]:
         raise UsageError(f"standard input is not UTF-8 text: {error}") from None
 
 
-def _table(seen: Analysis) -> str:
+def _table(seen: Analysis, scores: Mapping[str, float]) -> str:
     """Return the analysis for people: the words in columns, then the rest."""
     rows = [("TOKEN", "LEMMA", "POS", "TAG", "DEP", "HEAD")]
     rows += [(w.text, w.lemma, w.pos, w.tag, w.dep, seen.tree.head(w).text) for w in seen.tree.words]
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     table = ["  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in rows]
     facts = [
+        ("normal", seen.normal.text),
         ("entities", ", ".join(f"{entity.text} ({entity.label})" for entity in seen.entities)),
         ("triples", " ".join(str(triple) for triple in seen.triples)),
         ("yes/no", _answer(seen)),
         ("question", seen.question.name if seen.question else ""),
+        ("acts", _matches(seen.acts)),
+        ("feelings", _matches(seen.feelings)),
         ("signals", ", ".join(_signals(seen))),
+        *([("intents", ", ".join(f"{name} {score:.2f}" for name, score in scores.items()))] if scores else []),
     ]
     return "\n".join([*table, "", *(f"{name:<9} {value or '-'}" for name, value in facts)])
 
@@ -92,12 +135,16 @@ def _answer(seen: Analysis) -> str:
     return ""
 
 
+def _matches(found: Mapping[str, Match]) -> str:
+    return ", ".join(f"{name} {match.score:.2f}" for name, match in found.items())
+
+
 def _signals(seen: Analysis) -> list[str]:
     flags = {"is_question": seen.question is not None, "about_agent": seen.about_agent}
-    return [*(name for name, raised in flags.items() if raised), *seen.intents]
+    return [*(name for name, raised in flags.items() if raised), *seen.acted, *seen.intents]
 
 
-def _plain(text: str, seen: Analysis) -> dict[str, Any]:
+def _plain(text: str, seen: Analysis, scores: Mapping[str, float]) -> dict[str, Any]:
     """Return the analysis for programs."""
 
     def part(value: Any) -> Any:
@@ -113,5 +160,9 @@ def _plain(text: str, seen: Analysis) -> dict[str, Any]:
         "triples": [[part(t.subject), t.predicate, part(t.object)] for t in seen.triples],
         "yesno": dataclasses.asdict(seen.yesno),
         "question": seen.question.name if seen.question else None,
+        "normal": seen.normal.text,
+        "acts": {name: match.score for name, match in seen.acts.items()},
+        "feelings": {name: match.score for name, match in seen.feelings.items()},
+        "intents": dict(scores),
         "signals": _signals(seen),
     }

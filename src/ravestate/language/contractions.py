@@ -6,10 +6,37 @@ from collections.abc import Mapping
 from itertools import product
 
 
+def word_set(text: str) -> frozenset[str]:
+    """Return the words of a text as a set."""
+    return frozenset(text.split())
+
+
 def _table(rows: Mapping[str, str]) -> dict[str, str]:
     """Return a table with one entry for each short form; commas separate those of a row."""
     return {short.strip(): written for shorts, written in rows.items() for short in shorts.split(",")}
 
+
+CONTRACTIONS: dict[str, str] = {
+    **{
+        f"{subject}'{short}": f"{subject} {verb}"
+        for subject, (short, verb) in product(
+            ("i", "you", "he", "she", "it", "we", "they", "that", "there", "what", "who", "how", "where", "when", "why", "here"),
+            (("m", "am"), ("re", "are"), ("ve", "have"), ("ll", "will"), ("d", "would"), ("s", "is")),
+        )
+    },
+    **{
+        f"{verb}n't": f"{verb} not"
+        for verb in (
+            "do", "does", "did", "is", "are", "was", "were", "have", "has", "had", "could", "would", "should", "must",
+            "need", "might",
+        )
+    },
+    "can't": "can not",
+    "cannot": "can not",
+    "won't": "will not",
+    "let's": "let us",
+}  # fmt: skip
+"""The contractions of written English, in lower case, with their words."""
 
 WRITTEN: dict[str, str] = _table(
     {
@@ -28,8 +55,8 @@ WRITTEN: dict[str, str] = _table(
         "theyd": "they'd",
         "shes": "she's",
         "hes": "he's",
-        "whats, wats, whts, wassup, whassup": "what's",
-        "sup, wazzup": "what's up",
+        "whats, wats, whts": "what's",
+        "sup, wazzup, wassup, whassup": "what's up",
         "whos": "who's",
         "hows": "how's",
         "wheres": "where's",
@@ -78,14 +105,17 @@ WRITTEN: dict[str, str] = _table(
         "no body": "nobody",
         # Short forms.
         "i": "I",
-        "u, ya, yu, yuo, yoou": "you",
+        "u, yu, yuo, yoou": "you",
+        "see ya, c ya": "see you",
+        "ya": "you",
         "ur, yuor, yoru": "your",
         "urs": "yours",
         "urself": "yourself",
         "r": "are",
         "n, nd": "and",
+        "hw": "how",
         "b4": "before",
-        "c u, c ya, cu, cya": "see you",
+        "c u, cu, cya": "see you",
         "l8r": "later",
         "m8": "mate",
         "gr8": "great",
@@ -148,8 +178,28 @@ WRITTEN: dict[str, str] = _table(
         "smth, sth, sumthing": "something",
         "sry, srry": "sorry",
         "k": "okay",
-        "yr": "your",
+        "yr": "year",
         "yrs": "years",
+        "hav": "have",
+        "wen": "when",
+        "tru": "true",
+        "gud, gd": "good",
+        "rly, rlly": "really",
+        "cn": "can",
+        "cud, cld": "could",
+        "wud, wld": "would",
+        "shud, shld": "should",
+        "evry": "every",
+        "bf": "boyfriend",
+        "gf": "girlfriend",
+        "gnight, nighty": "good night",
+        "nevermind": "never mind",
+        "i use to, i used too": "I used to",
+        "we use to": "we used to",
+        "where you from, where r you from": "where are you from",
+        "i aint got, i ain't got": "I haven't got",
+        "my names": "my name is",
+        "name s": "name's",
         "bday": "birthday",
         "fav, fave": "favourite",
         "luv": "love",
@@ -179,68 +229,24 @@ WRITTEN: dict[str, str] = _table(
         "livin": "living",
     }
 )
-"""Short forms and common slips of one or two words, in lower case, as written English has them. There is no second list."""
+"""Short forms and common slips of one to three words, in lower case, as written English has them. There is no second list."""
 
-_AFTER_BE = ["a", "an", "the", "so", "not", "very", "too", "my", "our", "really", "just", "been", "going", "me"]
-for _short, _long in {"its": "it's", "ur": "you're", "your": "you're", "theyre": "they're", "their": "they're"}.items():
-    _following = [word for word in _AFTER_BE if _long == "it's" or word not in ("been", "my", "our")]
-    WRITTEN.update({f"{_short} {word}": f"{_long} {word}" for word in _following})
-WRITTEN["ur welcome"] = WRITTEN["your welcome"] = "you're welcome"
-WRITTEN.update({f"id {verb}": f"I'd {verb}" for verb in ["like", "love", "rather", "prefer", "say"]})
-WRITTEN.update(
-    {
-        f"ill {verb}": f"I'll {verb}"
-        for verb in ["be", "go", "have", "see", "do", "try", "take", "tell", "call", "come", "get", "never"]
-    }
+_AFTER_BE = word_set("a an the so not too")
+_BEFORE_TO = word_set(
+    "been going go went want wanted need needed moving moved move talk talking listen used trying nice what where how able"
 )
-WRITTEN.update(
-    {
-        f"2 {word}": f"to {word}"
-        for word in [
-            "go",
-            "be",
-            "do",
-            "meet",
-            "see",
-            "have",
-            "eat",
-            "get",
-            "play",
-            "talk",
-            "know",
-            "you",
-            "me",
-            "the",
-            "my",
-            "bed",
-            "school",
-            "work",
-            "town",
-        ]
-    }
-)
-WRITTEN.update(
-    {"2 u": "to you", "4 u": "for you"} | {f"4 {word}": f"for {word}" for word in ["you", "me", "my", "the", "a"]}
-)
+_AFTER_TO = word_set("go be do meet see have eat get play talk know you me the my bed school work town")
+_AFTER_WILL = word_set("be go have see do try take tell call come get never")
 
-CONTRACTIONS: dict[str, str] = {
-    **{
-        f"{subject}'{short}": f"{subject} {verb}"
-        for subject, (short, verb) in product(
-            ("i", "you", "he", "she", "it", "we", "they", "that", "there", "what", "who", "how", "where", "when", "why", "here"),
-            (("m", "am"), ("re", "are"), ("ve", "have"), ("ll", "will"), ("d", "would"), ("s", "is")),
-        )
-    },
-    **{
-        f"{verb}n't": f"{verb} not"
-        for verb in (
-            "do", "does", "did", "is", "are", "was", "were", "have", "has", "had", "could", "would", "should", "must",
-            "need", "might",
-        )
-    },
-    "can't": "can not",
-    "cannot": "can not",
-    "won't": "will not",
-    "let's": "let us",
-}  # fmt: skip
-"""The contractions of written English, in lower case, with their words."""
+WRITTEN.update({f"{short} {word}": f"you're {word}" for short in ("ur", "your") for word in (*_AFTER_BE, "welcome")})
+WRITTEN.update({f"their {word}": f"they're {word}" for word in ("a", "an", "the", "not")})
+WRITTEN.update(
+    {f"its {word}": f"it's {word}" for word in (*_AFTER_BE, *word_set("very my our really just been going me"))}
+)
+WRITTEN.update({f"id {verb}": f"I'd {verb}" for verb in word_set("like love rather prefer say")})
+WRITTEN.update({f"ill {verb}": f"I'll {verb}" for verb in _AFTER_WILL})
+WRITTEN.update({f"{word} 2": f"{word} to" for word in _BEFORE_TO} | {f"2 {word}": f"to {word}" for word in _AFTER_TO})
+WRITTEN.update(
+    {f"4 {word}": f"for {word}" for word in word_set("you me my the a")} | {"2 u": "to you", "4 u": "for you"}
+)
+WRITTEN.update({contraction.replace("'", " "): contraction for contraction in CONTRACTIONS if "'" in contraction})

@@ -2,19 +2,15 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
-import os
-import tempfile
 import threading
 from collections import OrderedDict
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ravestate.folders import user_folder
-
-from .model import model_in
+from .cache import cached
+from .model import SentenceModel, model_in
 
 if TYPE_CHECKING:
     import numpy as np
@@ -23,8 +19,6 @@ if TYPE_CHECKING:
 BUNDLED = "bge_small_en"
 REMEMBERED = 1024
 """The latest sentences whose vectors an encoder keeps: all skills ask for those of one utterance."""
-FILES = 50
-"""The latest files with vectors of examples that the cache keeps."""
 
 
 class Encoder:
@@ -47,9 +41,11 @@ class Encoder:
                 ``1_Pooling/config.json`` if there is one. None: the bundled bge-small-en-v1.5 (English, 384 dimensions).
         """
         self._folder = folder
+        self._model: SentenceModel | None = None
         self._mean: bool | None = None
         self._lock = threading.Lock()
         self._latest: OrderedDict[str, NDArray[np.float32]] = OrderedDict()
+        self._lasting: dict[str, NDArray[np.float16]] = {}
 
     def load(self) -> None:
         """Load the model now; otherwise the first `encode` does.
@@ -57,7 +53,7 @@ class Encoder:
         Raises:
             PlatformError: A package or the model is missing or broken. The message says what to do.
         """
-        model_in(self._folder, BUNDLED)
+        self._loaded()
 
     def encode(self, texts: Sequence[str]) -> NDArray[np.float32]:
         """Return a row for each text: shape (n, d), float32, each of length 1.
@@ -67,7 +63,7 @@ class Encoder:
         Raises:
             PlatformError: See `load`.
         """
-        model = model_in(self._folder, BUNDLED)  # first: it says what to install
+        model = self._loaded()  # first: it says what to install
         import numpy as np
 
         with self._lock:
@@ -86,37 +82,39 @@ class Encoder:
     def encode_lasting(self, texts: Sequence[str]) -> NDArray[np.float32]:
         """Return the vectors of texts that stay the same from start to start, such as examples, from a file.
 
-        The first call encodes them and writes the file to the user's cache; a file that is missing or broken does no harm.
+        The first call encodes those that no other call had, and writes the file to the user's cache. A file that is
+        missing or broken does no harm.
 
         Raises:
             PlatformError: See `load`.
         """
-        model = model_in(self._folder, BUNDLED)
+        model = self._loaded()
         import numpy as np
 
-        digest = hashlib.sha256(json.dumps([_identity(model.folder), list(texts)]).encode("utf-8", "replace"))
-        file = user_folder("cache") / "vectors" / f"{digest.hexdigest()[:32]}.npy"
-        try:
-            found = np.load(file, allow_pickle=False)
-            if found.shape == (len(texts), model.width):
-                os.utime(file)
-                return found.astype(np.float32)
-        except (OSError, ValueError, EOFError):
-            pass
-        vectors = self._encode(texts)
-        try:
-            file.parent.mkdir(parents=True, exist_ok=True)
-            handle, name = tempfile.mkstemp(dir=file.parent)
-            with os.fdopen(handle, "wb") as out:
-                np.save(out, vectors.astype(np.float16))
-            os.replace(name, file)
-            _remove_stale(file.parent)
-        except OSError:
-            pass  # a folder that cannot be written only costs time
-        return vectors.astype(np.float16).astype(np.float32)  # the same as next time
+        def rows() -> dict[str, NDArray[Any]]:
+            new = [text for text in dict.fromkeys(texts) if text not in self._lasting]
+            self._lasting.update(zip(new, self._encode(new).astype(np.float16), strict=True))
+            found = [self._lasting[text] for text in texts]
+            return {"rows": np.array(found, dtype=np.float16).reshape(len(texts), model.width)}
+
+        found = cached(["vectors", self.identity, list(texts)], rows)["rows"]
+        self._lasting.update(zip(texts, found, strict=True))
+        return found.astype(np.float32)
+
+    @property
+    def identity(self) -> list[object]:
+        """The place, size and date of the model: no other model has the same."""
+        folder = self._loaded().folder
+        about = (folder / "model.onnx").stat()
+        return [str(folder), about.st_size, about.st_mtime_ns]
+
+    def _loaded(self) -> SentenceModel:
+        if self._model is None:
+            self._model = model_in(self._folder, BUNDLED)
+        return self._model
 
     def _encode(self, texts: Sequence[str]) -> NDArray[np.float32]:
-        model = model_in(self._folder, BUNDLED)
+        model = self._loaded()
         import numpy as np
 
         if self._mean is None:
@@ -126,12 +124,6 @@ class Encoder:
             rows[indices] = _pooled(hidden, mask, self._mean)
         norms = np.linalg.norm(rows, axis=1, keepdims=True)
         return rows / np.maximum(norms, 1e-12)
-
-
-def _remove_stale(folder: Path) -> None:
-    """Remove the files of vectors that nobody has read for longest, beyond the latest `FILES`."""
-    for file in sorted(folder.glob("*.npy"), key=lambda file: file.stat().st_mtime, reverse=True)[FILES:]:
-        file.unlink(missing_ok=True)
 
 
 def _pooled(hidden: NDArray[Any], mask: NDArray[Any], mean: bool) -> NDArray[Any]:
@@ -151,9 +143,3 @@ def _pools_by_mean(folder: Path) -> bool:
         return bool(config["pooling_mode_mean_tokens"])
     except (OSError, ValueError, LookupError, TypeError):
         return False
-
-
-def _identity(folder: Path) -> list[object]:
-    """Return what tells one model from another: its place, size and date."""
-    about = (folder / "model.onnx").stat()
-    return [str(folder), about.st_size, about.st_mtime_ns]

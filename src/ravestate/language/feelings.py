@@ -42,8 +42,8 @@ def feelings(sentences: Sequence[str], names: Collection[str] = ()) -> dict[str,
     for sentence in sentences:
         sentence = addressed(sentence, names)
         whole = matcher.match_all([sentence])
-        clauses = [] if _CONDITION.search(sentence) else _clauses(sentence, alone=whole == [None])
-        for match in (*whole, *matcher.match_all(clauses)):
+        parts = [] if _CONDITION.search(sentence) else _clauses(sentence, alone=whole == [None])
+        for match in (*whole, *matcher.match_all(parts)):
             if match is None or (match.name not in _ASKED and _asks(sentence)):
                 continue
             if match.name not in found or found[match.name].score < match.score:
@@ -51,11 +51,17 @@ def feelings(sentences: Sequence[str], names: Collection[str] = ()) -> dict[str,
     return found
 
 
+def clauses(sentences: Sequence[str], names: Collection[str] = ()) -> list[str]:
+    """Return all that `feelings` compares with the examples: the sentences and their clauses."""
+    spoken = [addressed(sentence[:LONGEST], names) for sentence in sentences]
+    return [*spoken, *(clause for sentence in spoken for clause in _clauses(sentence, alone=False))]
+
+
 def _clauses(sentence: str, alone: bool) -> list[str]:
     """Return the clauses of a compound sentence; only the longer ones if the sentence shows no feeling as a whole."""
-    clauses = [clause for clause in _CLAUSE_END.split(sentence) if plain(clause)]
+    parts = [part for part in _CLAUSE_END.split(sentence) if plain(part)]
     least = SHORTEST if alone else 1
-    return [clause for clause in clauses if len(clause.split()) >= least] if len(clauses) > 1 else []
+    return [part for part in parts if len(part.split()) >= least] if len(parts) > 1 else []
 
 
 def _asks(sentence: str) -> bool:

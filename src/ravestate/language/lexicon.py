@@ -17,6 +17,12 @@ from typing import Any
 
 FREQUENT = 5000
 """The occurrences of a word in the subtitles (1.6 billion words) from which it may replace an unknown word."""
+COMMON = 15_000
+"""The occurrences in lower case from which a word that may be a name is an ordinary word."""
+RARE = 50
+"""The occurrences up to which a word that no dictionary has is a name rather than a word."""
+DOUBLED = 20
+"""The factor by which swapped and doubled letters are more frequent slips than others."""
 SHORTEST = 4
 """The letters of an unknown word from which it may be a slip."""
 
@@ -90,7 +96,7 @@ class Lexicon:
 
         self._speller: Any = SpellChecker(language="en", distance=1)
         self._counts: dict[str, int] = self._speller.word_frequency.dictionary
-        self._ordinary, self._names = _dictionary()
+        self._ordinary, self._names, self._ambiguous = _dictionary()
         self.correction = lru_cache(maxsize=4096)(self._correction)
 
     def count(self, word: str) -> int:
@@ -101,9 +107,18 @@ class Lexicon:
         """Return whether `word`, in lower case, is a word or a name."""
         return word in self._counts or word in self._ordinary or word in self._names or word in _BRITISH_WORDS
 
+    def rare(self, word: str) -> bool:
+        """Return whether `word`, in lower case, is no word of the dictionary, and hardly occurs."""
+        return word not in self._ordinary and self.count(word) <= RARE
+
     def name(self, word: str) -> str:
         """Return `word` with the capital of a name if it is one; otherwise as it is."""
         return self._names.get(word, word)
+
+    def possible_name(self, word: str) -> str:
+        """Return `word` with a capital if it is a name that is also an ordinary word, but not a common one: *Tom*."""
+        name = self._ambiguous.get(word)
+        return name if name and self.count(word) < COMMON else word
 
     def unstretched(self, word: str) -> str:
         """Return `word` without letters that were repeated for emphasis: *sooo*, *yesss*."""
@@ -125,7 +140,8 @@ class Lexicon:
         if len(word) < SHORTEST or not word.isalpha() or not word.isascii() or self.known(word):
             return word
         near = [other for other in self._speller.known(self._speller.edit_distance_1(word)) if self._slip(word, other)]
-        best = max(near, key=self.count, default=word)
+        letters = set(word)
+        best = max(near, key=lambda near: self.count(near) * (DOUBLED if set(near) == letters else 1), default=word)
         return best if self.count(best) >= FREQUENT else word
 
     @staticmethod
@@ -142,8 +158,8 @@ class Lexicon:
         return True
 
 
-def _dictionary() -> tuple[frozenset[str], dict[str, str]]:
-    """Return the ordinary words and the names of Hunspell's dictionary; the names by their lower case."""
+def _dictionary() -> tuple[frozenset[str], dict[str, str], dict[str, str]]:
+    """Return the ordinary words of Hunspell's dictionary, its names, and those that are both; names by their lower case."""
     spec = find_spec("spylls")
     if spec is None or spec.origin is None:
         raise ImportError("No module named 'spylls'")
@@ -156,9 +172,9 @@ def _dictionary() -> tuple[frozenset[str], dict[str, str]]:
         if len(entry) > 2 and entry.isalpha() and entry[0].isupper() and entry[1:].islower()
     }
     # "Weeks" and "Jobs" are names too, but more often the plurals of ordinary words.
+    both = {low: name for low, name in names.items() if low in ordinary}
     others = _NO_NAMES | ordinary
     names = {low: name for low, name in names.items() if low not in others and low.removesuffix("s") not in ordinary}
-    names |= {
-        name.lower(): name for name in (*calendar.day_name, *calendar.month_name) if len(name) > 3 and name != "March"
-    }
-    return ordinary, names
+    days = [*calendar.day_name, *(f"{name}s" for name in calendar.day_name)]
+    names |= {name.lower(): name for name in (*days, *calendar.month_name) if len(name) > 3 and name != "March"}
+    return ordinary, names, both

@@ -13,16 +13,17 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from importlib import import_module
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from .bundled import ModelMissing
+from .cache import cached
 from .encoder import Encoder
 from .entity import Entity
 from .examples import bundled
 from .loading import LOADING
 from .normal import plain
 from .shape import likeness, shape
-from .spelling import Spelling
+from .spelling import BUCKETS, Spelling
 
 if TYPE_CHECKING:
     import numpy as np
@@ -38,6 +39,8 @@ COMMON = 0.1
 """The similarity of any two sentences; it allows classes of different sizes."""
 RIDGE = 0.1
 """The ridge penalty: it limits the weight of a single example."""
+DOUBT = 0.2
+"""The margin from which an example that the others would put into another class is worth a remark."""
 NONE = ""
 REMEMBERED = 256
 """The latest sentences whose classes a matcher keeps: all skills ask for those of one utterance."""
@@ -81,6 +84,7 @@ class Matcher:
         *,
         least: float = 0.5,
         shapes: float = SHAPE,
+        centre: float | None = None,
         encoder: Encoder | None = None,
     ) -> None:
         """Take the examples; nothing is loaded yet.
@@ -90,12 +94,14 @@ class Matcher:
             none: Sentences that belong to no class.
             least: The confidence below which a sentence belongs to no class.
             shapes: The weight of the shape of a sentence (the persons that it mentions, whether it asks), 0 to 1.
+            centre: The margin with the confidence 0.5. By default, the examples tell: each is matched by the others. A class of
+                three examples loses too much without one of them, so give 0 for such classes.
             encoder: By default the shared one.
         """
         pairs = [(plain(text), name) for name, texts in examples.items() for text in texts]
         pairs += [(plain(text), NONE) for text in none]
         self.least = least
-        self._shapes = shapes
+        self._shapes, self._centre = shapes, centre
         self._pairs = tuple(dict(pairs).items())
         self.exact = dict(self._pairs)
         self._encoder = encoder or shared_encoder()
@@ -124,7 +130,22 @@ class Matcher:
                         import_module("numpy")
                 except ImportError as error:
                     raise ModelMissing("sentence models need numpy: pip install 'ravestate[sentences]'") from error
-                self._learnt = _Learnt(self._pairs, self._encoder, self._shapes)
+                self._learnt = _Learnt(self._pairs, self._encoder, self._shapes, self._centre)
+
+    def confusions(self) -> list[tuple[str, str, str]]:
+        """Return the examples that the others let expect in another class: example, class, expected class.
+
+        Raises:
+            PlatformError: See `load`.
+        """
+        self.load()
+        assert self._learnt is not None
+        return self._learnt.confusions
+
+    def prepare(self, sentences: Sequence[str]) -> None:
+        """Encode sentences in one run, for this matcher and others that match them next."""
+        if self._learnt is not None:
+            self._encoder.encode([plain(sentence) for sentence in sentences])
 
     def match(self, sentence: str) -> Match | None:
         """Return the class that a sentence belongs to; None if it belongs to none."""
@@ -185,7 +206,7 @@ def bundled_matcher(name: str) -> Matcher:
 class _Learnt:
     """The classifier, after learning."""
 
-    def __init__(self, pairs: Sequence[tuple[str, str]], encoder: Encoder, shapes: float) -> None:
+    def __init__(self, pairs: Sequence[tuple[str, str]], encoder: Encoder, shapes: float, centre: float | None) -> None:
         import numpy as np
 
         self._encoder, self._weight = encoder, shapes
@@ -195,17 +216,35 @@ class _Learnt:
         self._meanings = encoder.encode_lasting(self._examples)
         self._spelling = Spelling(self._examples)
         self._shapes = np.array([shape(text) for text in self._examples], dtype=np.int8)
-        kernel = self._kernel(self._meanings, self._spelling.among, self._shapes)
-        kernel = kernel.astype(np.float64)
-        kernel[np.diag_indices_from(kernel)] += RIDGE
-        del self._spelling.among  # a large matrix that only learning needs
+        key = ["matcher", encoder.identity, pairs, shapes, SHARPNESS, SPELLING, SHAPE, COMMON, RIDGE, BUCKETS]
+        learnt = cached(key, self._learn)
+        self._weights, confused = learnt["weights"], learnt["confused"].tolist()
+        self._slope, self._centre = learnt["curve"].tolist()
+        if centre is not None:
+            self._centre = centre
+        self.confusions: list[tuple[str, str, str]] = [
+            (self._examples[number], self._classes[self._of[number]], self._classes[other])
+            for number, other in confused
+        ]
+
+    def _learn(self) -> dict[str, NDArray[Any]]:
+        """Return the weights, the curve from margin to confidence, and the examples that others let expect elsewhere."""
+        import numpy as np
+
+        kernel = self._kernel(self._meanings, self._spelling.among(), self._shapes)
+        kernel[np.diag_indices_from(kernel)] += np.float32(RIDGE)
         inverse = np.linalg.inv(kernel)
-        targets = np.eye(len(self._classes))[self._of]
+        targets = np.eye(len(self._classes), dtype=np.float32)[self._of]
         weights = inverse @ targets
-        self._weights = weights.astype(np.float32)
         # The scores of each example from a classifier that has learnt all the others, in closed form.
         left_out = targets - weights / np.diag(inverse)[:, None]
-        self._slope, self._centre = _calibrated(_margins(left_out), left_out.argmax(axis=1) == self._of)
+        margins, others = _margins(left_out), left_out.argmax(axis=1)
+        wrong = np.flatnonzero((others != self._of) & (margins > DOUBT))
+        return {
+            "weights": weights,
+            "curve": np.array(_calibrated(margins.astype(np.float64), others == self._of)),
+            "confused": np.stack([wrong, others[wrong]], axis=1),
+        }
 
     def ranked(self, sentences: Sequence[str], most: int | None) -> list[list[Match]]:
         """Return `most` classes of each sentence, best first."""
@@ -236,11 +275,23 @@ class _Learnt:
         """Return the similarity of sentences (rows) and examples (columns)."""
         import numpy as np
 
-        kernel = np.exp(SHARPNESS * (meanings @ self._meanings.T - 1)) + SPELLING * spelling
-        return kernel * (1 - self._weight * (1 - likeness(shapes, self._shapes))) + COMMON
+        # In place: for thousands of examples, each copy takes tens of megabytes.
+        kernel = meanings @ self._meanings.T
+        kernel -= 1
+        kernel *= SHARPNESS
+        np.exp(kernel, out=kernel)
+        spelling *= SPELLING
+        kernel += spelling
+        alike = likeness(shapes, self._shapes)
+        alike -= 1
+        alike *= self._weight
+        alike += 1
+        kernel *= alike
+        kernel += COMMON
+        return kernel
 
 
-def _margins(scores: NDArray[np.float64]) -> NDArray[np.float64]:
+def _margins(scores: NDArray[Any]) -> NDArray[Any]:
     """Return the distance of the best score in each row from the next best."""
     import numpy as np
 

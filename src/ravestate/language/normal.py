@@ -14,8 +14,8 @@ import re
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
-from .contractions import CONTRACTIONS, WRITTEN
-from .lexicon import Lexicon, loaded_lexicon
+from .contractions import CONTRACTIONS, WRITTEN, word_set
+from .lexicon import SHORTEST, Lexicon, loaded_lexicon
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,133 +80,30 @@ _CODE = re.compile(r"[@/\\_=&#<>{}|~^*+%]|www\.")
 _CROWDED = re.compile(r"[,;:!?]")
 _NO_WORD = re.compile(r"\d|^[^a-z]", re.IGNORECASE)
 
-_DOMAINS = frozenset(["com", "org", "net", "info", "gov", "uk", "us", "de", "at", "eu", "html", "txt"])
+_DOMAINS = word_set("com org net info gov uk us de at eu html txt")
 
-_WH = frozenset(
-    [
-        "what",
-        "who",
-        "where",
-        "when",
-        "why",
-        "how",
-        "which",
-        "whose",
-        "whom",
-        "what's",
-        "who's",
-        "where's",
-        "when's",
-        "why's",
-        "how's",
-    ]
+_WH = word_set("what who where when why how which whose whom what's who's where's when's why's how's")
+_BE = word_set("is are was were am isn't aren't wasn't weren't")
+_AUX = _BE | word_set(
+    "do does did don't doesn't didn't can could will would shall should may might have has had can't couldn't won't wouldn't shouldn't haven't hasn't hadn't"
 )
-_BE = frozenset(["is", "are", "was", "were", "am", "isn't", "aren't", "wasn't", "weren't"])
-_AUX = _BE | frozenset(
-    [
-        "do",
-        "does",
-        "did",
-        "don't",
-        "doesn't",
-        "didn't",
-        "can",
-        "could",
-        "will",
-        "would",
-        "shall",
-        "should",
-        "may",
-        "might",
-        "have",
-        "has",
-        "had",
-        "can't",
-        "couldn't",
-        "won't",
-        "wouldn't",
-        "shouldn't",
-        "haven't",
-        "hasn't",
-        "hadn't",
-    ]
-)
-_AMBIGUOUS = frozenset(["do", "don't", "have", "may", "might"])
+_AMBIGUOUS = word_set("do don't have may might")
 """Auxiliaries that also begin requests and statements: *do it*, *have a nice day*."""
-_SUBJECT = frozenset(["i", "you", "he", "she", "it", "we", "they"])
+_SUBJECT = word_set("i you he she it we they")
 _STARTER = (
-    _SUBJECT
-    | _WH
-    | _AUX
-    | frozenset(
-        [
-            "there",
-            "that",
-            "this",
-            "my",
-            "your",
-            "let's",
-            "i'm",
-            "you're",
-            "it's",
-            "that's",
-            "he's",
-            "she's",
-            "we're",
-            "they're",
-        ]
-    )
+    _SUBJECT | _WH | _AUX | word_set("there that this my your let's i'm you're it's that's he's she's we're they're")
 )
-_INTERJECTION = frozenset(
-    [
-        "hi",
-        "hello",
-        "hey",
-        "yes",
-        "yeah",
-        "yep",
-        "no",
-        "nope",
-        "ok",
-        "okay",
-        "thanks",
-        "sorry",
-        "wow",
-        "oh",
-        "well",
-        "bye",
-    ]
-)
-_GOVERNS = frozenset(
-    [
-        "know",
-        "tell",
-        "me",
-        "ask",
-        "wonder",
-        "see",
-        "say",
-        "guess",
-        "remember",
-        "forget",
-        "forgot",
-        "about",
-        "of",
-        "and",
-        "or",
-        "but",
-        "so",
-        "nor",
-        "neither",
-        "as",
-        "than",
-        "that",
-        "if",
-    ]
+_INTERJECTION = word_set("hi hello hey yes yeah yep no nope ok okay thanks sorry wow oh well bye")
+_GOVERNS = word_set(
+    "know tell me ask wonder see say guess remember forget forgot about of and or but so nor neither as than that if"
 )
 """Words that a clause may follow without a full stop."""
-_NAMING = frozenset(["called", "named", "name", "is", "am", "i'm", "from", "in"])
+_PLACED = word_set("called named from in")
+_NAMING = _PLACED | word_set("am i'm to")
+_INTRODUCING = ("name is", "name's", "this is")
 """Words that a name may follow: an unknown word after one of them is hardly a slip."""
+_PARTS_OF_NAMES = word_set("new north south east west san santa los las saint el la puerto costa rio cape hong")
+"""Words that begin the names of places."""
 
 
 def normalise(text: str, names: Collection[str] = ()) -> Normal:
@@ -222,24 +119,26 @@ def normalise(text: str, names: Collection[str] = ()) -> Normal:
         >>> normalise("u cant do that can u").text
         "You can't do that can you."
     """
-    known = {name.lower(): name for name in names}
-    normal = _once(text, known)
-    for _ in range(_PASSES):  # a word that one pass has written out may let the next one see a sentence's end
-        again = _once(normal.text, known)
-        if again.text == normal.text:
-            break
-        normal = Normal(again.text, text, tuple(normal.origin[place] for place in again.origin))
+    known = {part.lower(): part for name in names for part in name.split()}
+    normal = Normal(text, text, tuple(range(len(text) + 1)))
+    for punctuated in (False, True):  # the marks depend on the words
+        for _ in range(_PASSES):  # what one pass has written out may show the next one more
+            again = _once(normal.text, known, punctuated)
+            if again.text == normal.text:
+                break
+            normal = Normal(again.text, text, tuple(normal.origin[place] for place in again.origin))
     return normal
 
 
-def _once(text: str, known: dict[str, str]) -> Normal:
+def _once(text: str, known: dict[str, str], punctuated: bool) -> Normal:
     lexicon = loaded_lexicon()
     pieces = _pieces(text, lexicon)
     if _shouted(pieces):
         for piece in pieces:
             piece.text = piece.low
     pieces = _mended(pieces, known, lexicon)
-    _punctuate(pieces)
+    if punctuated:
+        _punctuate(pieces)
     return _joined(pieces, text)
 
 
@@ -289,46 +188,63 @@ def _shouted(pieces: Sequence[_Piece]) -> bool:
 
 
 def _mended(pieces: Sequence[_Piece], known: dict[str, str], lexicon: Lexicon | None) -> list[_Piece]:
-    """Return the pieces with every word as written English has it; two words may become one piece."""
+    """Return the pieces with every word as written English has it; up to three words may become one piece."""
     mended: list[_Piece] = []
     index = 0
     while index < len(pieces):
         piece = pieces[index]
-        after = pieces[index + 1] if index + 1 < len(pieces) else None
-        index += 1
-        before = mended[-1].low if mended else ""
-        pair = f"{piece.low} {after.low}" if after and after.gap.isspace() else ""
-        if piece.code:
+        before = " ".join(other.low for other in mended[-2:])
+        following = pieces[index + 1 : index + 5]
+        size = 1 if piece.code else _longest(piece, following, before)
+        if size > 1:
+            phrase = " ".join(other.low for other in pieces[index : index + size])
+            piece.text, piece.end = _cased(WRITTEN[phrase], piece), pieces[index + size - 1].end
+        elif piece.code:
             pass
-        elif pair in WRITTEN and not (piece.text.isdigit() and before in _AT):
-            assert after is not None
-            piece.text, piece.end = _cased(WRITTEN[pair], piece), after.end
-            index += 1
         elif piece.low in known:
             piece.text = piece.text if piece.text != piece.low else known[piece.low]
-        elif _stands_for(piece, pieces[index : index + 4], before, lexicon):
-            piece.text = _cased(WRITTEN.get(piece.low, "it's"), piece)
+        elif _stands_for(piece, following, before, lexicon):
+            piece.text = _cased(_SPECIAL.get(piece.low) or WRITTEN[piece.low], piece)
         elif lexicon is not None and piece.text == piece.low:
-            piece.text = _by_lexicon(piece.text, before, lexicon)
+            piece.text = _by_lexicon(piece.text, before, following[0] if following else None, lexicon)
         mended.append(piece)
+        index += size
     return mended
 
 
-_AT = frozenset(["at", "by", "until", "till", "before", "after", "from", "since", "around", "about", "is", "and"])
+def _longest(piece: _Piece, following: Sequence[_Piece], before: str) -> int:
+    """Return how many words, beginning with `piece`, the table has as one entry; 1 if it has none of several."""
+    for size in (3, 2) if piece.low in _FIRST else ():
+        rest = following[: size - 1]
+        if len(rest) < size - 1 or not all(other.gap.isspace() for other in rest):
+            continue
+        phrase = " ".join([piece.low, *(other.low for other in rest)])
+        figure = phrase.startswith("2 ") and before.rpartition(" ")[2] in _AT
+        counted = phrase.endswith(" 2") and len(following) > 1 and following[1].low in _COUNTED
+        if phrase in WRITTEN and not figure and not counted:
+            return size
+    return 1
+
+
+_AT = word_set("at by until till before after from since around about is and")
 """Words after which a figure is a time or a number."""
-_OFTEN_RIGHT = frozenset(["lets", "its", "cant", "wont", "k"])
+_FIRST = frozenset(entry.partition(" ")[0] for entry in WRITTEN if " " in entry)
+_COUNTED = word_set("times days weeks months years hours minutes people")
+_SPECIAL = {"its": "it's", "ya": "yes"}
+"""Words whose meaning at the beginning of a clause is another than in the middle."""
 
 
 def _stands_for(piece: _Piece, following: Sequence[_Piece], before: str, lexicon: Lexicon | None) -> bool:
     """Return whether the table has the word, and it means that here."""
     word = piece.text
+    before = before.rpartition(" ")[2]
     opens = piece.first or before in _INTERJECTION or before in ("and", "but", "so", "then", "now")
     if piece.low == "its":
         finite = any(part.low in _AUX for part in following)
         return opens and not finite and bool(following) and not piece.text.isupper()
     if piece.low not in WRITTEN:
         return False
-    if piece.low in ("lets", "k"):
+    if piece.low in ("lets", "k", "ya"):
         return opens and word != "K"
     if word == piece.low or word == "I":
         return True
@@ -337,20 +253,26 @@ def _stands_for(piece: _Piece, following: Sequence[_Piece], before: str, lexicon
     return piece.first and (len(word) > 2 or lexicon is None or lexicon.name(piece.low) == piece.low)
 
 
-def _by_lexicon(word: str, before: str, lexicon: Lexicon) -> str:
+def _by_lexicon(word: str, before: str, after: _Piece | None, lexicon: Lexicon) -> str:
     """Return a word in lower case with its slips mended, and a name with its capital."""
     stem, mark, end = word.partition("'")
+    last = before.rpartition(" ")[2]
+    placed = last in _PLACED or before.endswith(_INTRODUCING)
     named = lexicon.name(stem)
+    if named == stem and (placed or last in _NAMING):
+        named = lexicon.possible_name(stem)
     if named != stem or mark or not stem.isalpha():
-        if mark and stem == "i":
-            named = "I"
-        return named + mark + end
+        return ("I" if stem == "i" and mark else named) + mark + end
+    if last in _PLACED and stem in _PARTS_OF_NAMES and after and lexicon.name(after.low) != after.low:
+        return stem.capitalize()  # New York
     short = lexicon.unstretched(stem)
     if short != stem:
         return WRITTEN.get(short, lexicon.name(short))
-    if before in _NAMING and len(stem) < 7:
-        return stem
-    return lexicon.correction(stem)
+    mended = lexicon.correction(stem)
+    if (placed or last in _NAMING) and (mended == stem or len(stem) < 7):
+        unknown = placed and len(stem) >= SHORTEST and stem.isascii() and lexicon.rare(stem)
+        return stem.capitalize() if unknown else stem
+    return mended
 
 
 def _cased(written: str, piece: _Piece) -> str:
@@ -390,7 +312,7 @@ def _asks(words: list[str]) -> bool:
     while len(words) > 1 and words[0] in _INTERJECTION | {"and", "but", "so"}:
         words = words[1:]
     first, second = words[0], words[1] if len(words) > 1 else ""
-    if words in (["and", "you"], ["you"]):
+    if words[-2:] == ["and", "you"] and (len(words) == 2 or first in ("i'm", "i", "fine", "good")):
         return True
     if first in ("what", "how") and second == "about":
         return True
@@ -424,7 +346,13 @@ def _asks_anew(pieces: Sequence[_Piece], start: int, index: int) -> bool:
             first == "how" and third in _AUX and words[3:4] and words[3] in _SUBJECT
         )
         return bool(inverted) or (first in ("what", "how") and second == "about" and third == "you")
-    return first in ("do", "are", "can", "did", "would", "will", "have", "could") and second == "you" and third != ""
+    stated = any(word in _STARTER and word not in _AUX for word in before)
+    return (
+        stated
+        and first in ("do", "are", "can", "did", "would", "will", "have", "could")
+        and second == "you"
+        and third != ""
+    )
 
 
 def _joined(pieces: Sequence[_Piece], original: str) -> Normal:

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
-from zlib import crc32
 
 if TYPE_CHECKING:
     import numpy as np
@@ -13,6 +11,8 @@ if TYPE_CHECKING:
 
 BUCKETS = 2048
 """The groups of letters share this many numbers; a few of them collide, which does little harm."""
+_HASH, _SHIFT = 2654435761, 21
+"""Knuth's multiplicative hash: the upper 11 of 32 bits."""
 
 
 class Spelling:
@@ -21,35 +21,49 @@ class Spelling:
     def __init__(self, examples: Sequence[str]) -> None:
         import numpy as np
 
-        counts = np.zeros((len(examples), BUCKETS), dtype=np.float32)
-        for row, text in zip(counts, examples, strict=True):
-            for group, count in _groups(text).items():
-                row[group] = count
+        counts = _counts(examples)
         spread = (counts > 0).sum(axis=0)
         # A group that no example has tells nothing about a text.
         self._rarity = np.where(spread > 0, 1 + np.log(len(examples) / (1 + spread)), 0).astype(np.float32)
-        counts *= self._rarity
-        counts /= np.maximum(np.linalg.norm(counts, axis=1, keepdims=True), 1e-9)
-        self.among = counts @ counts.T
-        """The cosine of each example with each other one."""
-        self._examples = np.ascontiguousarray(counts.T).astype(np.float16)
+        self._examples = np.ascontiguousarray(self._vectors(counts).T).astype(np.float16)
+
+    def among(self) -> NDArray[np.float32]:
+        """Return the cosine of each example with each other one."""
+        import numpy as np
+
+        examples = self._examples.astype(np.float32)
+        return examples.T @ examples
 
     def likeness(self, texts: Sequence[str]) -> NDArray[np.float32]:
         """Return the cosine of each text (rows) with each example (columns); 0 if no group of a text is known."""
         import numpy as np
 
         likeness = np.zeros((len(texts), self._examples.shape[1]), dtype=np.float32)
-        for row, text in enumerate(texts):
-            groups = _groups(text)
-            places = np.fromiter(groups, dtype=np.intp, count=len(groups))
-            weights = np.fromiter(groups.values(), dtype=np.float32, count=len(groups)) * self._rarity[places]
-            length = float(np.linalg.norm(weights))
-            if length > 0:
-                likeness[row] = (weights / length) @ self._examples[places].astype(np.float32)
+        for row, vector in zip(likeness, self._vectors(_counts(texts)), strict=True):
+            places = np.flatnonzero(vector)
+            row[:] = vector[places] @ self._examples[places].astype(np.float32)
         return likeness
 
+    def _vectors(self, counts: NDArray[np.float32]) -> NDArray[np.float32]:
+        import numpy as np
 
-def _groups(text: str) -> Counter[int]:
-    """Return the numbers of the groups of three and four letters, with their counts."""
-    code = f" {text} ".encode("utf-8", "replace")
-    return Counter(crc32(code[i : i + size]) % BUCKETS for size in (3, 4) for i in range(len(code) - size + 1))
+        weighted = counts * self._rarity
+        return weighted / np.maximum(np.linalg.norm(weighted, axis=1, keepdims=True), np.float32(1e-9))
+
+
+def _counts(texts: Sequence[str]) -> NDArray[np.float32]:
+    """Return how often each text (rows) has the groups of three and four letters (columns)."""
+    import numpy as np
+
+    codes = [f" {text} ".replace("\n", " ").encode("utf-8", "replace") for text in texts]
+    letters = np.frombuffer(b"\n".join(codes) + b"\n\n\n\n", dtype=np.uint8).astype(np.uint32)
+    rows = np.repeat(np.arange(len(texts)), [len(code) + 1 for code in codes])
+    counts = np.zeros((len(texts), BUCKETS), dtype=np.float32)
+    group, whole = np.zeros_like(letters), np.ones(len(letters), dtype=np.bool_)
+    for size in (1, 2, 3, 4):
+        shifted = letters[size - 1 :]
+        group, whole = group[: len(shifted)] * np.uint32(257) + shifted, whole[: len(shifted)] & (shifted != 10)
+        if size > 2:
+            places = np.flatnonzero(whole[: len(rows)])
+            np.add.at(counts, (rows[places], (group[places] * np.uint32(_HASH)) >> np.uint32(_SHIFT)), 1)
+    return counts

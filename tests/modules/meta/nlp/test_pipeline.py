@@ -31,6 +31,20 @@ def test_entities_know_where_they_stand(reader: Pipeline) -> None:
     assert all(text[e.start : e.end] == e.text for e in entities)
 
 
+def test_entities_of_typed_english_have_places_in_the_input(reader: Pipeline) -> None:
+    text = "im tom miller n ive lived in berlin since 1999"
+    seen = analyse(text, reader)
+    assert {(text[e.start : e.end], e.label) for e in seen.entities} >= {("berlin", "GPE"), ("1999", "DATE")}
+    assert [word.text for word in seen.tree.words][:3] == ["I", "'m", "tom"]
+
+
+def test_a_pipeline_of_another_language_reads_the_text_as_typed(tmp_path: Path) -> None:
+    import spacy
+
+    spacy.blank("de").to_disk(tmp_path / "blank")
+    assert Pipeline(str(tmp_path / "blank")).normalise("im haus").text == "im haus"
+
+
 def test_like_is_a_verb_and_keeps_its_lemma(reader: Pipeline) -> None:
     tree, _ = reader.read("Tom and Anna like games.")
     (like,) = [word for word in tree.words if word.text == "like"]

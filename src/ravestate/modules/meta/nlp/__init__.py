@@ -8,6 +8,7 @@ from ravestate.language.matcher import Match
 from . import rules
 from .analysis import Analysis
 from .answer import YesNo
+from .intent import intent
 from .names import (
     Settings,
     about_agent,
@@ -16,6 +17,7 @@ from .names import (
     intent_bye,
     intent_hi,
     intent_play,
+    intents,
     is_question,
     lemmas,
     module,
@@ -46,9 +48,11 @@ __all__ = [
     "about_agent",
     "analysis",
     "entities",
+    "intent",
     "intent_bye",
     "intent_hi",
     "intent_play",
+    "intents",
     "is_question",
     "lemmas",
     "module",

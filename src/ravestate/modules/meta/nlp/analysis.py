@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import contextlib
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
+from ravestate.errors import PlatformError
 from ravestate.language.acts import acts
 from ravestate.language.entity import Entity
-from ravestate.language.feelings import feelings
-from ravestate.language.matcher import Match
+from ravestate.language.feelings import clauses, feelings
+from ravestate.language.matcher import Match, Matcher, bundled_matcher
 from ravestate.language.normal import Normal
 from ravestate.language.sentences import sentences as sentences_of
 
@@ -55,8 +57,11 @@ class Analysis:
     feelings: Mapping[str, Match] = field(default_factory=dict[str, Match])
     """The feelings, by the classes of ``feelings.yaml``, each with its best sentence."""
 
+    intents: Mapping[str, Match] = field(default_factory=dict[str, Match])
+    """The designer's intents (`nlp.intent`) by the names of their signals, each with its best sentence."""
+
     @property
-    def intents(self) -> tuple[str, ...]:
+    def acted(self) -> tuple[str, ...]:
         """The names of the signals that the acts raise: ``intent_hi``..."""
         return tuple(signal for act, signal in INTENTS.items() if act in self.acts)
 
@@ -65,22 +70,34 @@ class Analysis:
         return self.acts.get(name)
 
 
-def analyse(text: str, pipeline: Pipeline, agent_names: Iterable[str] = ()) -> Analysis:
+def analyse(
+    text: str,
+    pipeline: Pipeline,
+    agent_names: Iterable[str] = (),
+    users: Iterable[str] = (),
+    designed: Matcher | None = None,
+) -> Analysis:
     """Analyse `text`. Blocks for a few milliseconds.
 
     Args:
         text: Any text; the analysis covers the beginning of a long one.
         pipeline: The pipeline; the first call loads it in about a second.
         agent_names: A text with one of them is about the agent. Case is ignored.
+        users: The names of the users present; the normal form knows them, as it knows those of the agent.
+        designed: The matcher of the designer's intents. The first utterance waits until it has learnt them.
 
     Raises:
         PlatformError: spaCy or the pipeline is missing.
     """
+    if designed is not None:
+        with contextlib.suppress(PlatformError):  # without the sentence model, it knows the examples word for word
+            designed.load()
     names = tuple(agent_names)
-    normal = pipeline.normalise(text, names)
+    normal = pipeline.normalise(text, (*names, *users))
     tree, entities = pipeline.read(normal)
     sentences = sentences_of(normal.text)
     statements = statements_of(tree, entities)
+    bundled_matcher("acts").prepare([*sentences, *clauses(sentences, names)])  # one run of the encoder for all matchers
     return Analysis(
         text=text,
         normal=normal,
@@ -94,7 +111,14 @@ def analyse(text: str, pipeline: Pipeline, agent_names: Iterable[str] = ()) -> A
         statements=statements,
         acts=acts(sentences),
         feelings=feelings(sentences, names),
+        intents=_intents(designed, sentences) if designed else {},
     )
+
+
+def _intents(matcher: Matcher, sentences: Iterable[str]) -> dict[str, Match]:
+    """Return the designer's intents of the sentences, each with the best of its sentences."""
+    found = [match for match in matcher.match_all(tuple(sentences)) if match is not None and ":" in match.name]
+    return {match.name: match for match in sorted(found, key=lambda match: match.score)}
 
 
 def _is_about_agent(tree: Tree, names: Iterable[str]) -> bool:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import ravestate as rs
 from ravestate.language.entity import Entity
 from ravestate.modules import interloc, rawio
@@ -60,6 +62,9 @@ analysis: rs.Slot[Analysis | None] = module.slot("analysis", None, always=True)
 
 yesno: rs.Slot[YesNo] = module.slot("yesno", YesNo(), always=True)
 """The meaning as an answer: yes or no. This slot is written last."""
+
+intents: rs.Collection[Mapping[str, tuple[str, ...]]] = module.collection("intents")
+"""The examples of the intents that `nlp.intent` declares: for each module, the sentences by the name of the signal."""
 
 is_question = module.signal("is_question", payload=QuestionWord)
 """The user asks something; the payload is the kind of question."""

@@ -107,8 +107,8 @@ class Pipeline:
         """Parse texts in a batch; if that fails, one by one."""
         try:
             with self._nlp.memory_zone():  # otherwise spaCy keeps each new word for ever
-                # Preprocessing keeps all positions. An added full stop helps the pipelines less than it misleads them.
-                texts = [preprocess(_without_added_stop(order.normal)) for order in orders]
+                # Preprocessing keeps all positions. The small pipelines parse short sentences better without the last stop.
+                texts = [preprocess(_without_stop(order.normal.text)) for order in orders]
                 docs: Any = self._nlp.pipe(texts) if len(texts) > 1 else [self._nlp(texts[0])]
                 found = [_found(order.normal, doc) for order, doc in zip(orders, docs, strict=True)]
         except Exception as error:
@@ -165,6 +165,10 @@ def _found(normal: Normal, doc: Any) -> tuple[Tree, tuple[Entity, ...]]:
         if not token.is_space and not (token.is_punct and normal.adds(token.idx, token.idx + len(token))):
             numbers[token.i] = len(numbers)
     words = [_as_written(typed, numbers, token) for token in doc if token.i in numbers]
+    end = len(typed)
+    if _without_stop(typed) != typed and not normal.adds(end - 1, end):
+        head = next((word.index for word in reversed(words) if word.head == word.index), len(words))
+        words.append(Word(len(words), ".", ".", "PUNCT", ".", "punct" if words else "ROOT", head, end - 1))
     entities: list[Entity] = []
     for found in doc.ents:
         start, end = normal.span(found.start_char, found.end_char)
@@ -172,10 +176,9 @@ def _found(normal: Normal, doc: Any) -> tuple[Tree, tuple[Entity, ...]]:
     return Tree(typed, repaired(words)), tuple(entities)
 
 
-def _without_added_stop(normal: Normal) -> str:
-    """Return the text without a full stop at the end that the original lacks."""
-    end = len(normal.text)
-    return normal.text[:-1] if normal.text.endswith(".") and normal.adds(end - 1, end) else normal.text
+def _without_stop(text: str) -> str:
+    """Return a text without the full stop at its end; with it, if an abbreviation or an ellipsis ends there."""
+    return text[:-1] if text[-2:-1].isalnum() and text.endswith(".") and "." not in text.split()[-1][:-1] else text
 
 
 def _as_written(text: str, numbers: dict[int, int], token: Any) -> Word:

@@ -12,7 +12,7 @@ correctly."""
 _UNREADABLE = dict.fromkeys((*range(0x20), *range(0x7F, 0xA0), *range(0xD800, 0xE000)), " ")
 _LIKES = re.compile(
     r"\b(?:i|you|we|they|who|to|really|also|always|never|(?:do|does|did|would|will|can) not|would|do|does|both|most people|"
-    r"(?:do|does|don't|doesn't|dont|doesnt|didn't|didnt|wouldn't|wouldnt|can't|i'd|you'd|he'd|she'd|we'd|they'd)|"
+    r"(?:do|does|don't|doesn't|didn't|wouldn't|can't|i'd|you'd|he'd|she'd|we'd|they'd)|"
     r"(?:do|does|did|don't|doesn't|didn't|and) (?:(?:my|your|his|her|the|their|our) )?"
     r"(?!(?:look|feel|sound|seem|taste|smell|act|is|was|are|people|someone|something|things|just)\b)\w+) "
     r"(?P<verb>like)\b(?! (?:that|this)\s*[.!?]*$)"

@@ -13,6 +13,7 @@ from ravestate.language.matcher import bundled_matcher
 from ravestate.modules import interloc, rawio
 
 from .analysis import MATCHERS, analyse
+from .intent import intent_matcher
 from .names import (
     Settings,
     about_agent,
@@ -21,6 +22,7 @@ from .names import (
     intent_bye,
     intent_hi,
     intent_play,
+    intents,
     is_question,
     lemmas,
     lock,
@@ -60,9 +62,18 @@ def learn(ctx: rs.RuleContext) -> None:
         warn_once(ctx.log, error)
 
 
+@module.rule(when=intents.changed.detached(), reads=intents, background=True)
+def learn_intents(ctx: rs.RuleContext) -> None:
+    """Learn the examples of the designer's intents in the background."""
+    matcher = intent_matcher(ctx[intents].values())
+    if matcher is not None:
+        with contextlib.suppress(ModelMissing):  # `learn` warns
+            matcher.load()
+
+
 @module.rule(
     when=rawio.input.changed,
-    reads=(interloc.agent, lock),
+    reads=(interloc.agent, interloc.users, intents, lock),
     writes=(text, normal, tokens, lemmas, pos, tags, entities, triples, question, analysis, yesno),
     emits=(is_question, about_agent, *SIGNALS.values()),
 )
@@ -72,8 +83,10 @@ async def understand(ctx: rs.RuleContext) -> None:
     heard = ctx.payload(rawio.input.changed)
     named = "agent_names" in settings.model_fields_set
     names = settings.agent_names if named else (ctx[interloc.agent],)
+    present = tuple(name for name in ctx[interloc.users].values() if isinstance(name, str))
+    designed = intent_matcher(ctx[intents].values())
     async with ctx[lock]:
-        seen = await asyncio.to_thread(analyse, heard, pipeline(settings.pipeline), names)
+        seen = await asyncio.to_thread(analyse, heard, pipeline(settings.pipeline), names, present, designed)
     words = seen.tree.words
     ctx[text] = heard
     ctx[normal] = seen.normal.text
@@ -90,5 +103,5 @@ async def understand(ctx: rs.RuleContext) -> None:
         ctx.emit(is_question, seen.question)
     if seen.about_agent:
         ctx.emit(about_agent)
-    for name in seen.intents:
+    for name in seen.acted:
         ctx.emit(SIGNALS[name])

@@ -1,0 +1,58 @@
+"""Arrays that are the same from start to start, in files of the user's cache folder."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import tempfile
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+from zipfile import BadZipFile
+
+from ravestate.folders import user_folder
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+FILES = 100
+"""The latest files that the cache keeps."""
+
+
+def cached(key: object, compute: Callable[[], Mapping[str, NDArray[Any]]]) -> Mapping[str, NDArray[Any]]:
+    """Return the arrays of `compute`, from a file if an earlier call with the same key wrote them.
+
+    A file that is missing or broken does no harm, and neither does a folder that cannot be written.
+
+    Args:
+        key: Everything that the arrays depend on; a value that JSON can write.
+        compute: The function that makes the arrays, by name.
+    """
+    import numpy as np
+
+    digest = hashlib.sha256(json.dumps(key).encode("utf-8", "replace")).hexdigest()[:32]
+    file = user_folder("cache") / "vectors" / f"{digest}.npz"
+    try:
+        with np.load(file, allow_pickle=False) as found:
+            arrays = {name: found[name] for name in found.files}
+        os.utime(file)
+        return arrays
+    except (OSError, ValueError, EOFError, KeyError, BadZipFile):
+        arrays = dict(compute())
+    try:
+        file.parent.mkdir(parents=True, exist_ok=True)
+        handle, name = tempfile.mkstemp(dir=file.parent)
+        with os.fdopen(handle, "wb") as out:
+            np.savez(out, allow_pickle=False, **arrays)
+        os.replace(name, file)
+        _remove_stale(file.parent)
+    except OSError:
+        pass  # it only costs time
+    return arrays
+
+
+def _remove_stale(folder: Path) -> None:
+    """Remove the files that nobody has read for longest, beyond the latest `FILES`."""
+    for file in sorted(folder.glob("*.np[yz]"), key=lambda file: file.stat().st_mtime, reverse=True)[FILES:]:
+        file.unlink(missing_ok=True)

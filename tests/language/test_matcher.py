@@ -1,0 +1,127 @@
+"""The matcher: classes, none, confidence, and one run of the encoder for all matchers."""
+
+import os
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from ravestate.language import cache as cache_module
+from ravestate.language.encoder import Encoder
+from ravestate.language.matcher import Matcher, bundled_matcher
+from ravestate.language.model import SentenceModel
+from ravestate.modules.meta.nlp.analysis import MATCHERS, analyse
+from ravestate.modules.meta.nlp.pipeline import pipeline
+
+EXAMPLES = {
+    "hours": ["when do you open", "how late are you open", "are you open on Sundays"],
+    "table": ["I would like to book a table", "a table for two please", "can I reserve a table"],
+}
+NONE = ["the train leaves at nine", "my brother is tall", "what is the capital of Peru", "I like green tea"]
+
+
+@pytest.fixture(scope="module")
+def matcher() -> Matcher:
+    matcher = Matcher(EXAMPLES, NONE)
+    matcher.load()
+    return matcher
+
+
+@pytest.mark.parametrize(
+    ("sentence", "name"),
+    [
+        ("until when are you open today?", "hours"),
+        ("At what time do you open?", "hours"),
+        ("Could I book a table for tonight?", "table"),
+        ("My sister sings in a choir.", None),
+        ("How tall is your brother?", None),
+        ("", None),
+    ],
+)
+def test_a_sentence_belongs_to_the_class_that_it_resembles(matcher: Matcher, sentence: str, name: str | None) -> None:
+    match = matcher.match(sentence)
+    assert (match and match.name) == name
+
+
+def test_the_examples_are_surer_than_what_only_resembles_them(matcher: Matcher) -> None:
+    example, similar = matcher.match_all(["When do you open?", "Say, until when are you open?"])
+    assert example is not None and similar is not None
+    assert example.score > similar.score > 0.5
+    assert example.margin > similar.margin > 0
+    assert example.example == "when do you open"
+
+
+def test_all_classes_and_none_are_ranked(matcher: Matcher) -> None:
+    (first, second, third) = matcher.ranked("when do you open")
+    assert {first.name, second.name, third.name} == {"hours", "table", ""}
+    assert first.margin > 0 > second.margin >= third.margin
+
+
+def test_before_it_has_learnt_it_knows_the_examples_word_for_word() -> None:
+    matcher = Matcher(EXAMPLES, NONE)
+    assert not matcher.loaded
+    match = matcher.match("When do u open?")
+    assert match is not None and (match.name, match.score) == ("hours", 1.0)
+    assert matcher.match("until when are you open") is None
+    assert matcher.match("I like green tea") is None
+
+
+def test_an_example_that_resembles_another_class_is_confused() -> None:
+    matcher = Matcher({**EXAMPLES, "late": ["until when are you open", "how long are you open"]}, NONE)
+    assert ("until when are you open", "late", "hours") in matcher.confusions()
+
+
+@pytest.fixture
+def runs(monkeypatch: pytest.MonkeyPatch) -> list[list[str]]:
+    """The texts of each run of a model."""
+    seen: list[list[str]] = []
+    run = SentenceModel.run
+
+    def counted(self: SentenceModel, texts: Sequence[Any]) -> Any:
+        seen.append([str(text) for text in texts])
+        return run(self, texts)
+
+    monkeypatch.setattr(SentenceModel, "run", counted)
+    return seen
+
+
+def test_many_sentences_need_one_run(matcher: Matcher, runs: list[list[str]]) -> None:
+    assert len(matcher.match_all(["shall we dance a polka", "who painted the purple cow"])) == 2
+    assert len(runs) == 1
+
+
+def test_an_utterance_needs_one_run_for_all_matchers(matcher: Matcher, runs: list[list[str]]) -> None:
+    for name in MATCHERS:
+        bundled_matcher(name).load()
+    pipeline("").load()
+    runs.clear()
+    seen = analyse("Hey, my polka is purple. Can I book a table?", pipeline(""), designed=matcher)
+    assert len(seen.sentences) == 2
+    assert len(runs) == 1
+
+
+def test_vectors_of_examples_come_from_a_file_the_next_time(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, runs: list[list[str]]
+) -> None:
+    monkeypatch.setattr(cache_module, "user_folder", lambda kind: tmp_path)
+    texts = ["a purple cow", "a yellow horse"]
+    first = Encoder().encode_lasting(texts)
+    assert len(runs) == 1
+    assert (Encoder().encode_lasting(texts) == first).all()
+    assert len(runs) == 1
+
+
+def test_files_that_nobody_reads_any_more_are_removed(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setattr(cache_module, "user_folder", lambda kind: tmp_path)
+    monkeypatch.setattr(cache_module, "FILES", 2)
+    encoder = Encoder()
+    for age, text in enumerate(("oldest", "older", "old")):
+        encoder.encode_lasting([text])
+        for file in (tmp_path / "vectors").iterdir():
+            about = file.stat()
+            os.utime(file, (about.st_atime - 10 * (3 - age), about.st_mtime - 10 * (3 - age)))
+    assert len(list((tmp_path / "vectors").iterdir())) == 2
+    encoder.encode_lasting(["older"])
+    encoder.encode_lasting(["new"])
+    assert len(list((tmp_path / "vectors").iterdir())) == 2
