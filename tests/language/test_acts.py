@@ -3,7 +3,7 @@
 import pytest
 
 from ravestate.language import acts as room
-from ravestate.language.acts import acts, only
+from ravestate.language.acts import acts, heard, only
 from ravestate.language.matcher import Matcher
 
 EXAMPLES = {
@@ -70,8 +70,8 @@ def test_an_act_stands_alone_beside_courtesies_and_a_few_words(act: str, sentenc
 
 @pytest.mark.parametrize("text", ["x" * 1_000_000, "thank you " * 200_000, "bye " * 100_000, "," * 100_000, "شكرا"])
 def test_any_text_is_taken(text: str) -> None:
-    acts([text])
-    only("farewell", [text])
+    acts(heard(text))
+    only("farewell", heard(text))
 
 
 def test_a_sentence_is_matched_once_for_all_skills(monkeypatch: pytest.MonkeyPatch) -> None:

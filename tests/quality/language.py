@@ -11,10 +11,8 @@ from functools import cache
 
 from quality import measure, modules
 from quality.measure import Result, labelled, measure_labels, measure_triples
-from ravestate.language.acts import acts
+from ravestate.language.acts import acts, heard
 from ravestate.language.matcher import bundled_matcher
-from ravestate.language.normal import normalise
-from ravestate.language.sentences import sentences
 from ravestate.modules import emotion
 from ravestate.modules.meta.nlp import Settings
 from ravestate.modules.meta.nlp.analysis import analyse
@@ -28,7 +26,7 @@ SETS = ("triples_rows", "typed_rows", *LABELLED)
 def acts_of(text: str) -> frozenset[str]:
     """The user's acts, by the room `language`."""
     bundled_matcher("acts").load()
-    return frozenset(acts(sentences(normalise(text).text)))
+    return frozenset(acts(heard(text)))
 
 
 def acts_label(text: str) -> str:

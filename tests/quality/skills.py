@@ -10,10 +10,8 @@ from collections.abc import Callable
 
 from quality import measure
 from quality.modules import _seen
-from ravestate.language.acts import only
+from ravestate.language.acts import heard, only
 from ravestate.language.matcher import bundled_matcher
-from ravestate.language.normal import normalise
-from ravestate.language.sentences import sentences
 from ravestate.modules.skill.agentqa.life_file import read_life
 from ravestate.modules.skill.agentqa.remarks import act_in, remark_in
 from ravestate.modules.skill.agentqa.router import Match, router_of
@@ -100,7 +98,7 @@ def wildtalk_facts(sentence: str) -> str:
 def hibye_words(sentence: str) -> str:
     """Return whether a sentence only greets, or only says goodbye."""
     bundled_matcher("acts").load()
-    said = sentences(normalise(sentence).text)
+    said = heard(sentence)
     return next((act for act in ("greeting", "farewell") if only(act, said)), "-")
 
 

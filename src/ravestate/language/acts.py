@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 
 from .matcher import Match, Matcher, bundled_matcher
-from .normal import plain
+from .normal import normalise, plain
+from .sentences import sentences as sentences_of
+from .shape import shape
 
 LONGEST = 1000
-"""The characters of a sentence that count."""
+"""The characters of an utterance that count."""
 
 COURTESY = frozenset({"thanks", "acknowledgement", "apology", "wish"})
 """Acts that accompany others: "thanks, bye", "okay, hello"."""
@@ -27,35 +29,16 @@ _GOES_ON = frozenset(
     ["is", "was", "are", "were", "be", "means", "of", "for", "to", "that", "which", "by", "in", "on", "at", "s"]
 )
 """Words that make a formula the beginning of a sentence: "thanks to the rain", "hello is a song"."""
-_ASKS = frozenset(
-    [
-        "what",
-        "who",
-        "whom",
-        "whose",
-        "which",
-        "where",
-        "when",
-        "why",
-        "how",
-        "do",
-        "does",
-        "did",
-        "are",
-        "am",
-        "have",
-        "has",
-        "had",
-        "can",
-        "could",
-        "will",
-        "would",
-        "shall",
-        "should",
-        "may",
-        "might",
-    ]
-)
+
+
+def heard(text: str, names: Collection[str] = ()) -> tuple[str, ...]:
+    """Return the sentences of an utterance in the normal form; the first 1000 characters count.
+
+    Args:
+        text: The user's words.
+        names: Names that keep or get their capitals.
+    """
+    return sentences_of(normalise(text[:LONGEST], names).text)
 
 
 def acts(sentences: Sequence[str]) -> dict[str, Match]:
@@ -68,8 +51,8 @@ def acts(sentences: Sequence[str]) -> dict[str, Match]:
         ['farewell', 'thanks']
     """
     found: dict[str, Match] = {}
-    for sentence in sentences:
-        for match in _Sentence(sentence).acts:
+    for sentence in _read(sentences):
+        for match in sentence.acts:
             if match.name not in found or match.score > found[match.name].score:
                 found[match.name] = match
     return found
@@ -82,27 +65,36 @@ def only(act: str, sentences: Sequence[str]) -> bool:
         >>> only("greeting", ["Hello, my dear robot!"]), only("greeting", ["Hello, who are you?"])
         (True, False)
     """
-    parts = list(map(_Sentence, sentences))
+    parts = _read(sentences)
     names = {match.name for part in parts for match in part.acts}
     if act not in names or names - COURTESY - {act}:
         return False
     others = [word for part in parts for word in part.others]
-    return len(others) <= ADDRESS_WORDS and not (others and ("?" in sentences[-1] or others[0] in _ASKS | _SUBJECTS))
+    if not others:
+        return True
+    more = "?" in sentences[-1] or others[0] in _SUBJECTS or shape(" ".join(others))[3] > 0
+    return len(others) <= ADDRESS_WORDS and not more and not any(part.differs for part in parts)
+
+
+def _read(sentences: Sequence[str]) -> list[_Sentence]:
+    matcher = bundled_matcher("acts")
+    sentences = [sentence[:LONGEST] for sentence in sentences]
+    matches = matcher.match_all(sentences)
+    return [_Sentence(matcher, *pair) for pair in zip(sentences, matches, strict=True)]
 
 
 class _Sentence:
     """The acts of a sentence, and the words that belong to none."""
 
-    def __init__(self, sentence: str) -> None:
-        matcher = bundled_matcher("acts")
-        sentence = sentence[:LONGEST]
+    def __init__(self, matcher: Matcher, sentence: str, whole: Match | None) -> None:
         formulas: dict[str, Match] = {}
         self.others: list[str] = []
         for part in _PAUSE.split(sentence):
             self.others += _after_formulas(matcher, plain(part).split(), formulas)
-        whole = matcher.match(sentence)
         if whole is not None and not formulas:
             self.others = []
+        self.differs = matcher.loaded and whole is None and bool(self.others)
+        """Whether the words as a whole mean something else, as far as the examples tell."""
         found = ([whole] if whole is not None else []) + [
             m for m in formulas.values() if whole is None or m.name != whole.name
         ]
@@ -120,6 +112,8 @@ def _after_formulas(matcher: Matcher, words: list[str], found: dict[str, Match])
         text, words = " ".join(words[:size]), words[size:]
         name = matcher.exact[text]
         found.setdefault(name, Match(1.0, text, 1.0, name=name, text=text))
+        if name in COURTESY and words[:1] == ["for"]:  # the rest says what the thanks are for
+            return []
         while words and words[0] in _LINKS:
             words = words[1:]
     return words
@@ -130,8 +124,7 @@ def _formula(examples: Mapping[str, str], words: list[str]) -> int:
     if words[0] in _SUBJECTS:
         return 0
     for size in range(min(FORMULA_WORDS, len(words)), 0, -1):
-        if examples.get(" ".join(words[:size])) in FORMULAS and not (
-            words[size : size + 1] and words[size] in _GOES_ON
-        ):
+        name, after = examples.get(" ".join(words[:size])), "".join(words[size : size + 1])
+        if name in FORMULAS and (after not in _GOES_ON or (after == "for" and name in COURTESY)):
             return size
     return 0

@@ -9,9 +9,6 @@ from .matcher import Match, bundled_matcher
 from .normal import plain
 from .shape import shape
 
-LONGEST = 1000
-"""The characters of a sentence that count."""
-
 SHORTEST = 3
 """The minimum number of words of a clause that shows a feeling of its own: "brilliant, it is broken" is no praise."""
 
@@ -43,7 +40,7 @@ def feelings(sentences: Sequence[str], names: Collection[str] = ()) -> dict[str,
     matcher = bundled_matcher("feelings")
     found: dict[str, Match] = {}
     for sentence in sentences:
-        sentence = addressed(sentence[:LONGEST], names)
+        sentence = addressed(sentence, names)
         whole = matcher.match_all([sentence])
         parts = [] if _CONDITION.search(sentence) else _clauses(sentence, alone=whole == [None])
         for match in (*whole, *matcher.match_all(parts)):

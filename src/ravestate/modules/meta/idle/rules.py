@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import ravestate as rs
-from ravestate.language.acts import acts
-from ravestate.language.normal import normalise
+from ravestate.language.acts import acts, heard
 from ravestate.language.sentences import sentences
 from ravestate.modules import rawio
 
@@ -82,9 +81,9 @@ def notice_dismissal(ctx: rs.RuleContext) -> None:
 
     The encoder may take a few milliseconds, so this runs in a thread. It counts as activity: the silence begins after it.
     """
-    heard = acts(sentences(normalise(ctx.payload(rawio.input.changed)).text))
-    ctx[dismissed] = "quiet" in heard or "farewell" in heard
-    if "quiet" in heard:
+    meant = acts(heard(ctx.payload(rawio.input.changed)))
+    ctx[dismissed] = "quiet" in meant or "farewell" in meant
+    if "quiet" in meant:
         ctx.emit(hushed)
 
 

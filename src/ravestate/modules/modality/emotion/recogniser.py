@@ -5,15 +5,11 @@ from __future__ import annotations
 import re
 from collections.abc import Collection, Mapping, Sequence
 
+from ravestate.language.acts import LONGEST, heard
 from ravestate.language.feelings import addressed, feelings
 from ravestate.language.matcher import bundled_matcher
-from ravestate.language.normal import normalise
-from ravestate.language.sentences import sentences
 
 from .feeling import Feeling
-
-LONGEST = 1000
-"""The characters of an utterance that count."""
 
 SHARED: Mapping[str, Feeling] = {
     "insult": "sad",
@@ -52,14 +48,14 @@ def recognise(text: str, names: Collection[str] = ()) -> Feeling | None:
         >>> recognise("You are so clever!"), recognise("You are not very clever."), recognise("I passed my exam!")
         ('shy', None, 'happy')
     """
-    return feeling_in(heard(text, names)) or next(
+    return feeling_in(to_agent(text, names)) or next(
         (f for f, picture in PICTURES if picture.search(text[:LONGEST])), None
     )
 
 
-def heard(text: str, names: Collection[str] = ()) -> list[str]:
+def to_agent(text: str, names: Collection[str] = ()) -> list[str]:
     """Return the sentences of `text` in the normal form, in which the agent is "you"."""
-    return [addressed(sentence, names) for sentence in sentences(normalise(text[:LONGEST], names).text)]
+    return [addressed(sentence, names) for sentence in heard(text, names)]
 
 
 def feeling_in(said: Sequence[str]) -> Feeling | None:

@@ -14,7 +14,7 @@ from .chance import OCCASIONS, by_chance
 from .emoji import emoji_for
 from .feeling import FEELINGS, Feeling
 from .names import Settings, affectionate, felt, happy, module, sad, shy, surprised
-from .recogniser import heard, recognise
+from .recogniser import recognise, to_agent
 
 SIGNALS: dict[Feeling, rs.Signal[None]] = {
     "shy": shy,
@@ -48,7 +48,7 @@ def be_moved(ctx: rs.RuleContext) -> None:
         feeling = recognise(text, names)
     if feeling is None:
         likely: dict[Feeling, float] = {name: getattr(settings, name) for name in OCCASIONS}
-        feeling = by_chance(heard(text, names), likely, ctx.random)
+        feeling = by_chance(to_agent(text, names), likely, ctx.random)
     if feeling is not None:
         ctx.emit(SIGNALS[feeling])
 

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import ravestate as rs
-from ravestate.language.acts import only
-from ravestate.language.normal import normalise
-from ravestate.language.sentences import sentences
+from ravestate.language.acts import heard, only
 from ravestate.modules import interloc, rawio, verbaliser
 from ravestate.modules.meta.verbaliser.intents import Intent
 
@@ -41,7 +39,7 @@ async def bid_farewell_to_who_leaves(ctx: rs.RuleContext) -> rs.Resign | None:
 @module.rule(when=rawio.input.changed, emits=(hello, goodbye))
 def listen(ctx: rs.RuleContext) -> None:
     """Notice a greeting or a goodbye. The encoder may take a few milliseconds, so this runs in a thread."""
-    said = sentences(normalise(ctx.payload(rawio.input.changed)).text)
+    said = heard(ctx.payload(rawio.input.changed))
     if only("greeting", said):
         ctx.emit(hello)
     elif only("farewell", said):
