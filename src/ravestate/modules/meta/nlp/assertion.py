@@ -8,8 +8,8 @@ from functools import cached_property
 from ravestate.language.entity import Entity
 
 from .clause import NOTHING, Clause, Part
-from .noun_phrase import noun_phrase, person_of, phrase_of
-from .phrase import Phrase
+from .noun_phrase import noun_phrase
+from .phrase import Phrase, person_of, phrase_of
 from .statement import Statement
 from .tree import Tree, Word
 from .triple import Triple
@@ -127,11 +127,9 @@ class Assertion:
             return True
         if self._wished or (len(chain) > 1 and chain[1].tag == "VB" and lemma_of(chain[0]) in _WANTED):
             return True
-        if (
-            chain[0].tag == "VBG"
-            and self._tense == "present"
-            and any(word in _SOON for word in self._when.lower().split())
-        ):
+        verbs = [chain[0], *self._tree.children(chain[0], "auxpass")]
+        soon = set(self._when.lower().split()) & _SOON
+        if soon and self._tense == "present" and any(verb.tag == "VBG" for verb in verbs):
             return True
         if self._above is None or not self._dependent:
             return False

@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 from .asking import AUXILIARIES, QUESTION_WORDS, kind_at
-from .noun_phrase import adjective_phrase, conjuncts, gerund_phrase, noun_phrase, phrase_of
-from .phrase import Phrase
+from .noun_phrase import adjective_phrase, conjuncts, gerund_phrase, noun_phrase
+from .phrase import Phrase, phrase_of
 from .question_word import QuestionWord
 from .tree import Tree, Word
 from .triple import Triple
