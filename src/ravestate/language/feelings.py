@@ -53,7 +53,7 @@ def feelings(sentences: Sequence[str], names: Collection[str] = ()) -> dict[str,
 
 def clauses(sentences: Sequence[str], names: Collection[str] = ()) -> list[str]:
     """Return all that `feelings` compares with the examples: the sentences and their clauses."""
-    spoken = [addressed(sentence[:LONGEST], names) for sentence in sentences]
+    spoken = [addressed(sentence, names) for sentence in sentences]
     return [*spoken, *(clause for sentence in spoken for clause in _clauses(sentence, alone=False))]
 
 
