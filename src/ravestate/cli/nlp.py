@@ -107,7 +107,7 @@ def _lines() -> Iterator[str]:
 
 
 def _table(seen: Analysis, scores: Mapping[str, float]) -> str:
-    """Return the analysis for people: the words in columns, then the rest."""
+    """Return the analysis as a text for people: the words in columns, then everything else."""
     rows = [("TOKEN", "LEMMA", "POS", "TAG", "DEP", "HEAD")]
     rows += [(w.text, w.lemma, w.pos, w.tag, w.dep, seen.tree.head(w).text) for w in seen.tree.words]
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
@@ -145,7 +145,7 @@ def _signals(seen: Analysis) -> list[str]:
 
 
 def _plain(text: str, seen: Analysis, scores: Mapping[str, float]) -> dict[str, Any]:
-    """Return the analysis for programs."""
+    """Return the analysis as data for programs."""
 
     def part(value: Any) -> Any:
         return value if isinstance(value, str) else {"asks_for": value.name}

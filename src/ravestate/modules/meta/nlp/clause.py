@@ -345,14 +345,9 @@ class Clause:
         subjects = self.own_subjects if self._is_copula and self.unknown is None else []
         if self._beside:
             return self._written(self._beside, self.verb)
-        after = tree.after(verbs[0])  # my name is Tom I live in Berlin
-        if (
-            subjects
-            and after is not None
-            and after.dep in ("npadvmod", "compound")
-            and tree.head(after).index > after.index
-        ):
-            return [(phrase_of(tree, after, [after]), False)] if tree.head(after).pos in VERBAL else []
+        after = tree.after(verbs[0]) if subjects else None  # my name is Tom I live in Berlin
+        if after is not None and after.dep in ("npadvmod", "compound") and tree.head(after).pos in VERBAL:
+            return [(phrase_of(tree, after, [after]), False)] if tree.head(after).index > after.index else []
         for head in (*verbs, *subjects):
             if found := self._in_phrases(head, of=head in verbs):
                 return found
@@ -375,11 +370,8 @@ class Clause:
 
     def _is_free(self, word: Word) -> bool:
         """Return whether a word is neither a verb of the chain, nor the unknown, nor the subject."""
-        return (
-            word.pos not in ("PUNCT", "SYM", "INTJ")
-            and word not in (*self.chain, *self.own_subjects)
-            and not self._asks_at(word)
-        )
+        taken = word in self.chain or word in self.own_subjects or self._asks_at(word)
+        return not taken and word.pos not in ("PUNCT", "SYM", "INTJ")
 
     def _asks_at(self, word: Word) -> bool:
         return self.unknown is not None and word in (self.unknown.top, self.unknown.word)
@@ -397,9 +389,7 @@ class Clause:
         phrases = [word for word in self.tree.children_of(heads, "prep", "dative") if of or word.low != "of"]
         for phrase in sorted(phrases, key=lambda word: (word.index < head.index, word.index)):
             prepositions = [phrase, *self.tree.children(phrase, "prep", "conj")]  # out of; in Berlin and in Paris
-            nouns = [
-                noun for word in prepositions for noun in self.tree.children(word, "pobj", "pcomp") if noun.low != "of"
-            ]
+            nouns = [noun for noun in self.tree.children_of(prepositions, "pobj", "pcomp") if noun.low != "of"]
             asked = self.unknown is not None and any(self.unknown.word in self.tree.subtree(noun) for noun in nouns)
             if nouns and not asked:
                 return self._written(nouns)
@@ -432,8 +422,8 @@ class Clause:
         found: list[tuple[Part, bool]] = []
         for head in heads:
             for word in conjuncts(self.tree, head, self._clauses):
-                if self._asks_at(word):
-                    found.append((self.unknown.kind, False)) if self.unknown else None
+                if self.unknown is not None and self._asks_at(word):
+                    found.append((self.unknown.kind, False))
                     continue
                 if verb is not None and self._is_predicative(word, verb):
                     words = adjective_phrase(self.tree, word, verb)
