@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 import threading
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -14,10 +14,10 @@ from ravestate.language import Reranker
 from .confidence import confidence
 from .index import Found, Index
 from .passages import LONGEST
-from .question import Question, as_question
+from .question import Parse, Question, as_question
 from .shipped import bring_up
 from .stems import Stems
-from .variants import variants_of
+from .lexicon import variants_of
 
 RETRIEVED = 16
 """The number of passages to compare word by word: so many with any word of a question, and as many with all words."""
@@ -111,21 +111,25 @@ class Answerer:
                 self._index.close()
                 self._index = None
 
-    def answer(self, heard: str) -> Answer:
+    def answer(self, heard: str | Parse | Question, titles: Sequence[str] = ()) -> Answer:
         """Answer an utterance from the documents.
+
+        Args:
+            heard: The utterance, or what is known of it already.
+            titles: The titles of the documents to search; empty for all.
 
         Raises:
             PlatformError: See `load`.
         """
-        question = as_question(heard)
+        question = heard if isinstance(heard, Question) else as_question(heard)
         if question.declined:
             return Answer(question.text, reason=question.declined)
         index = self._opened()
         if not index.size():
             return Answer(question.text, reason="there are no documents")
-        retrieved = self._retrieve(index, question)
+        retrieved = self._retrieve(index, question, titles)
         if not retrieved:
-            return Answer(question.text, reason="no document mentions it")
+            return Answer(question.text, reason="no document states all of it")
         read = self._read(question, retrieved)
         best = read[0]
         sure = confidence(best.score, best.covered)
@@ -150,45 +154,43 @@ class Answerer:
                 self._stems = Stems()
             return self._index
 
-    def _retrieve(self, index: Index, question: Question) -> list[tuple[float, Found]]:
-        """Return the passages to read with their share of the question, best first."""
+    def _retrieve(self, index: Index, question: Question, titles: Sequence[str]) -> list[tuple[float, Found]]:
+        """Return the passages to read with their share of the question, best first; all meet its qualifiers."""
         assert self._stems is not None  # `_opened` has set it
         asked = [variants_of(word) for word in question.words[:WORDS]]
-        searched = list(dict.fromkeys(word for group in (*asked, question.kinds[:WORDS]) for word in group))
-        stem_of = {word: stems for word, stems in zip(searched, self._stems(*searched), strict=True) if stems}
+        groups = (*asked, question.kinds[:WORDS], *question.needs, question.avoids)
+        known_words = list(dict.fromkeys(word for group in groups for word in group))
+        stem_of = {word: stems for word, stems in zip(known_words, self._stems(*known_words), strict=True) if stems}
         known = index.frequencies(sorted({stem for stems in stem_of.values() for stem in stems}))
 
         def standing(word: str) -> int:
             """Return the maximum number of passages with a word."""
             return min(known.get(stem, 0) for stem in stem_of[word])
 
-        rare = [word for word in stem_of if standing(word) <= (COMMON_KIND if word in question.kinds else COMMON)]
-        others = _other_ranks(question.text)
-        found = index.search(rare or list(stem_of), RETRIEVED, others)
+        searched = [word for word in dict.fromkeys(w for g in groups[: len(asked) + 1] for w in g) if word in stem_of]
+        rare = [word for word in searched if standing(word) <= (COMMON_KIND if word in question.kinds else COMMON)]
+        found = index.search(rare or searched, RETRIEVED, titles=titles)
         # A passage with all words may be hidden behind many that repeat the rarest one.
-        found += [each for each in index.search_all(asked, RETRIEVED, others) if each not in found]
+        found += [each for each in index.search_all(asked, RETRIEVED, titles=titles) if each not in found]
 
-        # The weight of each word, and the forms that it may have in a passage.
+        def has(have: set[str], forms: Iterable[str]) -> bool:
+            return any(have.issuperset(stem_of[form]) for form in forms if form in stem_of)
+
         size = index.size()
-        wanted = [
-            (
-                math.log1p(size / (max(map(standing, forms)) + 0.5)),
-                [frozenset(stem_of[form]) for form in forms],
-            )
-            for group in asked
-            if (forms := [form for form in group if form in stem_of])
+        weights = [
+            (forms, math.log1p(size / (max(map(standing, known_forms)) + 0.5)))
+            for forms in asked
+            if (known_forms := [form for form in forms if form in stem_of])
         ]
-        total = sum(weight for weight, _ in wanted) or 1.0
-        covered = [
-            sum(weight for weight, forms in wanted if any(form <= have for form in forms)) / total
-            for have in map(set, self._stems(*(f"{each.title} {each.text} {each.hints}" for each in found)))
-        ]
+        total = sum(weight for _, weight in weights) or 1.0
+        retrieved: list[tuple[float, Found]] = []
+        for each, stems in zip(found, self._stems(*(f"{f.title} {f.text} {f.hints}" for f in found)), strict=True):
+            have = set(stems)
+            covered = sum(weight for forms, weight in weights if has(have, forms)) / total
+            if covered >= ENOUGH and all(has(have, need) for need in question.needs) and not has(have, question.avoids):
+                retrieved.append((covered, each))
         # The sort is stable, so BM25 decides between equals.
-        order = sorted(
-            (place for place in range(len(found)) if covered[place] >= ENOUGH),
-            key=lambda place: -covered[place],
-        )
-        return [(covered[place], found[place]) for place in order]
+        return sorted(retrieved, key=lambda each: -each[0])
 
     def _read(self, question: Question, retrieved: Sequence[tuple[float, Found]]) -> list[Candidate]:
         read: list[Candidate] = []
@@ -218,18 +220,6 @@ def _readable(found: Found) -> str:
     """Return a passage for the reader, with its title unless the passage names it."""
     text = found.text if found.title.lower() in found.text.lower() else f"{found.title}: {found.text}"
     return text[:LONGEST]
-
-
-_SUPERLATIVE = re.compile(r"\b(?:\w{3,}est|most|least)\b", re.IGNORECASE)
-_RANKS = ("second", "third", "fourth", "fifth", "sixth", "seventh", "eighth", "ninth", "tenth")
-
-
-def _other_ranks(question: str) -> list[str]:
-    """Return ranks that a passage must not name: a question about the largest is not about the second largest."""
-    if not _SUPERLATIVE.search(question):
-        return []
-    asked = set(question.lower().split())
-    return [rank for rank in _RANKS if rank not in asked]
 
 
 def _besides(text: str, asked: set[str]) -> int:

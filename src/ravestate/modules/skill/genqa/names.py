@@ -11,7 +11,7 @@ import ravestate as rs
 from ravestate.modules import nlp, rawio, verbaliser
 
 from .answering import Answer
-from .referring import Before
+from .thread import Turn
 
 Probability = Annotated[float, Field(ge=0, le=1)]
 
@@ -46,5 +46,5 @@ module = rs.Module("genqa", requires=[rawio, nlp, verbaliser], settings=Settings
 found = module.signal("found", payload=Answer)
 """The documents have an answer that is probable enough to say."""
 
-before: rs.Slot[Before | None] = module.slot("before", None, type=Before)
-"""The last question with an answer: *and its capital?* refers to it."""
+thread: rs.Slot[tuple[Turn, ...]] = module.slot("thread", ())
+"""The latest questions with their answers, oldest first: *and its capital?* refers to them."""

@@ -1,0 +1,102 @@
+"""The answer to an utterance in a talk: the readings of it that the documents support best."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+
+from ravestate.modules.meta.nlp import QuestionWord
+from ravestate.modules.meta.nlp.tree import Word
+
+from .answering import Answer, Answerer
+from .names import Settings
+from .question import Parse, Question, as_question, is_vague, parse
+from .thread import Reading, Turn, readings, turn_of
+
+MOST = 8
+"""The maximum number of readings that are tried."""
+
+
+def answer_in(answerer: Answerer, heard: Parse, thread: Sequence[Turn], settings: Settings, now: float) -> tuple[Answer, Turn | None]:
+    """Return the best supported answer to an utterance, and the turn to keep if there is one.
+
+    Args:
+        answerer: The documents.
+        heard: The utterance.
+        thread: The latest questions, oldest first.
+        settings: The confidence that an answer needs.
+        now: Seconds since the context began.
+    """
+    tried = readings(heard, thread)
+    if not tried:
+        return Answer(heard.text, reason="it refers to a question that nobody has asked"), None
+    best: tuple[Answer, Reading, Parse] | None = None
+    reason = ""
+    for reading in tried[:MOST]:
+        seen = heard if reading.text == heard.text else replace(parse(reading.text), kind=heard.kind)
+        question = as_question(seen)
+        if heard.kind is None:
+            question = replace(question, doubtful=True)
+        titles = tuple(dict.fromkeys(turn.title for turn in thread[-2:])) if reading.within else ()
+        answer = _decided(answerer, question, settings, titles)
+        reason = reason or answer.reason
+        if not answer.text:
+            continue
+        answer = replace(answer, confidence=_shifted(answer.confidence, reading.prior))
+        if best is None or answer.confidence > best[0].confidence:
+            best = answer, reading, seen
+        if best[0].confidence >= settings.sure and (not thread or reading is not tried[0] or True):
+            break
+    if best is None:
+        return Answer(heard.text, reason=reason), None
+    answer, reading, seen = best
+    return answer, turn_of(seen, answer.text, answer.title, now, reading.sexes)
+
+
+def _decided(answerer: Answerer, question: Question, settings: Settings, titles: Sequence[str]) -> Answer:
+    """Return the answer; another question may decide one of yes or no, and a vague one has no sure answer."""
+    answer = answerer.answer(question, titles)
+    if answer.confidence < settings.unsure and question.kind is QuestionWord.YES_NO and not question.declined:
+        other = other_wording(question.text)
+        if other:
+            decided = answerer.answer(other, titles)
+            if decided.confidence >= settings.sure:
+                return decided
+    if question.doubtful and answer.confidence < settings.sure:
+        return replace(answer, confidence=0.0)
+    if is_vague(question) and answer.confidence >= settings.sure:
+        return replace(answer, confidence=(settings.sure + settings.unsure) / 2)
+    return answer
+
+
+def other_wording(question: str) -> str:
+    """Return a question whose answer decides a yes-or-no question; empty if there is none.
+
+    Example:
+        >>> other_wording("Is Paris the capital of Germany?")
+        'what is the capital of Germany?'
+    """
+    tree = parse(question).tree
+    words = [word for word in tree.words if word.pos != "PUNCT"]
+    if not words or words[0].lemma != "be":
+        return ""
+
+    def text(some: Sequence[Word]) -> str:
+        return tree.phrase(some)
+
+    place = next((word for word in words if word.low == "in"), None)
+    for word in words[2:]:  # the subject before *the ... of*
+        if word.low == "the" and any(other.low == "of" for other in words[word.index :]):
+            return f"what is {text(words[word.index :])}?"
+    if place is not None and 1 < place.index < len(words) - 1:
+        subject = [word for word in words[1 : place.index] if word.low not in ("situated", "located")]
+        return f"where is {text(subject)}?"
+    return ""
+
+
+def _shifted(confidence: float, prior: float) -> float:
+    """Return a probability, moved by a logarithm of odds."""
+    if not 0.0 < confidence < 1.0:
+        return confidence
+    return 1 / (1 + math.exp(-(math.log(confidence / (1 - confidence)) + prior)))
