@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Sequence
 from dataclasses import replace
+from datetime import date
 
 from ravestate.modules.meta.nlp import QuestionWord
 from ravestate.modules.meta.nlp.tree import Word
 
 from .answering import Answer, Answerer
+from .comparing import compared
 from .names import Settings
 from .question import Parse, Question, as_question, is_vague, parse
+from .reckoning import Unanswerable, reckon
 from .thread import Reading, Turn, readings, turn_of
 
 MOST = 8
@@ -28,6 +32,14 @@ def answer_in(answerer: Answerer, heard: Parse, thread: Sequence[Turn], settings
         settings: The confidence that an answer needs.
         now: Seconds since the context began.
     """
+    if (reckoned := _reckoned(heard, thread, settings)) is not None:
+        return reckoned, Turn(reckoned.question, reckoned.text.rpartition(" is ")[2], "", now)
+
+    def ask(question: str) -> Answer:
+        return answerer.answer(as_question(question))
+
+    if (result := compared(heard, thread, ask)) is not None:
+        return result, turn_of(heard, result, now)
     tried = readings(heard, thread)
     if not tried:
         return Answer(heard.text, reason="it refers to a question that nobody has asked"), None
@@ -46,12 +58,28 @@ def answer_in(answerer: Answerer, heard: Parse, thread: Sequence[Turn], settings
         answer = replace(answer, confidence=_shifted(answer.confidence, reading.prior))
         if best is None or answer.confidence > best[0].confidence:
             best = answer, reading, seen
-        if best[0].confidence >= settings.sure and (not thread or reading is not tried[0] or True):
+        if best[0].confidence >= settings.sure:
             break
     if best is None:
         return Answer(heard.text, reason=reason), None
     answer, reading, seen = best
-    return answer, turn_of(seen, answer.text, answer.title, now, reading.sexes)
+    return answer, turn_of(seen, answer, now, reading.sexes)
+
+
+def _reckoned(heard: Parse, thread: Sequence[Turn], settings: Settings) -> Answer | None:
+    """Return the result of a sum; None if the utterance is none."""
+    told = [turn.answer for turn in thread]
+    text = heard.text
+    try:
+        result = reckon(text, told, date.today(), settings.rates)
+        if not result and thread and not thread[-1].title and not heard.is_finite:
+            numbers = re.findall(r"\d[\d.,]*", text)
+            if len(numbers) == 1:  # "and of 200?": the last sum with another number
+                text = re.sub(r"\d[\d.,]*(?!.*\d)", numbers[0], thread[-1].question)
+                result = reckon(text, told[:-1], date.today(), settings.rates)
+    except Unanswerable as error:
+        result = str(error)
+    return Answer(text, result, confidence=1.0) if result else None
 
 
 def _decided(answerer: Answerer, question: Question, settings: Settings, titles: Sequence[str]) -> Answer:

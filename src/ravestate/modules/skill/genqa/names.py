@@ -34,6 +34,9 @@ class Settings(rs.Settings):
     """The folder of another cross-encoder (``model.onnx``, ``tokenizer.json``); the confidence is calibrated for the
     bundled one."""
 
+    rates: dict[str, float] = {}
+    """The value of one ``dollar``, ``euro``, ``sterling``..., each in the same currency; without it no money is exchanged."""
+
     @model_validator(mode="after")
     def _in_order(self) -> Settings:
         if self.unsure > self.sure:

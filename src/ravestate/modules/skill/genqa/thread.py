@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from ravestate.modules.meta.nlp import QuestionWord
 from ravestate.modules.meta.nlp.tree import Tree, Word
 
+from .answering import Answer
 from .lexicon import words_of
 from .question import PRONOUNS, Parse, is_name, parse
 
@@ -55,10 +56,18 @@ class Turn:
     """The members of a list in the answer."""
     sexes: tuple[tuple[str, str], ...] = ()
     """Names with the pronoun that the user chose for them."""
+    source: str = ""
+    confidence: float = 1.0
+
+    @property
+    def subject(self) -> str:
+        """What the question is about; empty for sums."""
+        return next((thing.text for thing in self.asked if thing.label), "")
 
 
-def turn_of(asked: Parse, answer: str, title: str, at: float, sexes: tuple[tuple[str, str], ...] = ()) -> Turn:
+def turn_of(asked: Parse, found: Answer, at: float, sexes: tuple[tuple[str, str], ...] = ()) -> Turn:
     """Return the turn of a complete question and its answer."""
+    answer, title = found.text, found.title
     told = parse(answer)
     things = [thing for thing in things_of(asked) if thing.label not in ("ORDINAL", "CARDINAL")]
     titled = Thing(title, next((t.label for t in things if t.text.lower() in title.lower()), "TITLE"))
@@ -71,7 +80,7 @@ def turn_of(asked: Parse, answer: str, title: str, at: float, sexes: tuple[tuple
         name = next((thing for thing in new if thing.label), None)
         new = [Thing(t.text, "PERSON") if t is name else t for t in new]
     items = max((group for group in _lists(told.tree)), key=len, default=())
-    return Turn(asked.text.rstrip("?"), answer, title, at, tuple(_by_likelihood(things)), tuple(new), items, sexes)
+    return Turn(asked.text.rstrip("?"), answer, title, at, tuple(_by_likelihood(things)), tuple(new), items, sexes, found.source, found.confidence)
 
 
 def _by_likelihood(things: Sequence[Thing]) -> list[Thing]:
@@ -84,7 +93,7 @@ def things_of(seen: Parse) -> list[Thing]:
     for word in seen.tree.words:
         if word.pos not in ("NOUN", "PROPN", "X") or word.dep in ("compound", "nmod", "amod") or word.tag == "WP":
             continue
-        words = _phrase(seen.tree, word)
+        words = phrase_of(seen.tree, word)
         label = next((e.label for e in seen.entities if e.start < word.end and word.start < e.end), "")
         text = seen.tree.phrase(words)
         found.setdefault(text.lower(), Thing(text, label or ("NAME" if word.pos == "PROPN" else "")))
@@ -96,7 +105,7 @@ def things_of(seen: Parse) -> list[Thing]:
     return list(found.values())
 
 
-def _phrase(tree: Tree, head: Word) -> list[Word]:
+def phrase_of(tree: Tree, head: Word) -> list[Word]:
     """Return a noun with its own words to the left."""
     words = [head]
     for child in tree.children(head):
@@ -113,7 +122,7 @@ def _lists(tree: Tree) -> Iterator[tuple[str, ...]]:
             last = nexts[0]
             members.append(last)
         if len(members) > 1 and word.pos in ("NOUN", "PROPN") and word.dep != "conj":
-            yield tuple(tree.phrase(_phrase(tree, member)) for member in members)
+            yield tuple(tree.phrase(phrase_of(tree, member)) for member in members)
 
 
 # ------------------------------------------------------------------------------------------------ readings
@@ -174,12 +183,12 @@ def _all(seen: Parse, thread: Sequence[Turn]) -> Iterator[Reading]:
     if not words:
         return
     text = tree.phrase(words)
-    pronouns = [w for w in words if _refers(tree, w, words)]
+    pronouns = [w for w in words if refers(w, words)]
     ones = [w for w in words if w.low in ("one", "ones") and (w.pos in ("NUM", "NOUN", "PRON"))]
     if ones:
         for item in _items(tree, ones[0], thread):
             first = tree.subtree(ones[0]) if ones[0] in words else ones
-            phrase = [w for w in _phrase(tree, ones[0]) if w in words]
+            phrase = [w for w in phrase_of(tree, ones[0]) if w in words]
             rest = [w for w in words if w not in phrase]
             if any(w.tag in ("VBZ", "VBP", "VBD", "MD") for w in rest):
                 yield from _replaced(seen, words, {w.index: (item if w is phrase[0] else "") for w in phrase}, pronouns, item)
@@ -190,7 +199,7 @@ def _all(seen: Parse, thread: Sequence[Turn]) -> Iterator[Reading]:
         yield from _fragments(seen, words, pronouns, thread, lead=lead)
         return
     if pronouns:
-        for rank, thing in enumerate(_referents(pronouns[0], thread)):
+        for rank, thing in enumerate(referents(pronouns[0], thread)):
             sexes = ((thing.text, pronouns[0].low),) if pronouns[0].low in SEXES else ()
             yield Reading(_with(seen, words, {p.index: _owned(p, thing.text) for p in pronouns}), -0.4 * rank, sexes=sexes)
         if any(w.low == "it" for w in pronouns) and any(w.pos in ("NOUN", "PROPN", "VERB") for w in words):
@@ -206,7 +215,7 @@ def _all(seen: Parse, thread: Sequence[Turn]) -> Iterator[Reading]:
 SEXES = {"he": "he", "him": "he", "his": "he", "she": "she", "her": "she", "hers": "she"}
 
 
-def _refers(tree: Tree, word: Word, words: Sequence[Word]) -> bool:
+def refers(word: Word, words: Sequence[Word]) -> bool:
     if word.low not in PRONOUNS or word.low in ("these", "those"):
         return False
     if word.low == "there":
@@ -216,7 +225,7 @@ def _refers(tree: Tree, word: Word, words: Sequence[Word]) -> bool:
     return not any(w.pos in ("NOUN", "PROPN") and w.index < word.index and w.dep in ("nsubj", "nsubjpass") for w in words)
 
 
-def _referents(pronoun: Word, thread: Sequence[Turn]) -> list[Thing]:
+def referents(pronoun: Word, thread: Sequence[Turn]) -> list[Thing]:
     """Return what a pronoun may stand for, most likely first."""
     sex = SEXES.get(pronoun.low)
     known = {name: SEXES[said] for turn in thread for name, said in turn.sexes}
@@ -303,7 +312,7 @@ def _fragments(
     text = tree.phrase(words)
     named = any(is_name(seen, word) for word in words)
     if pronouns:
-        for rank, thing in enumerate(_referents(pronouns[0], thread)):
+        for rank, thing in enumerate(referents(pronouns[0], thread)):
             yield Reading(_with(seen, words, {p.index: _owned(p, thing.text) for p in pronouns}), -0.4 * rank)
         return
     if any(w.tag in ("WRB", "WP", "WDT") for w in words):  # and when?
