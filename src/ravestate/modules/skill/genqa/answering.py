@@ -11,6 +11,9 @@ from pathlib import Path
 
 from ravestate.language import Reranker
 
+from ravestate.modules._text import printable
+from ravestate.modules.meta.nlp import QuestionWord
+
 from .confidence import confidence
 from .index import Found, Index
 from .passages import LONGEST
@@ -121,7 +124,7 @@ class Answerer:
         Raises:
             PlatformError: See `load`.
         """
-        question = heard if isinstance(heard, Question) else as_question(heard)
+        question = heard if isinstance(heard, Question) else as_question(heard if isinstance(heard, Parse) else printable(heard))
         if question.declined:
             return Answer(question.text, reason=question.declined)
         index = self._opened()
@@ -158,7 +161,7 @@ class Answerer:
         """Return the passages to read with their share of the question, best first; all meet its qualifiers."""
         assert self._stems is not None  # `_opened` has set it
         asked = [variants_of(word) for word in question.words[:WORDS]]
-        groups = (*asked, question.kinds[:WORDS], *question.needs, question.avoids)
+        groups = (*asked, question.kinds[:WORDS], *question.needs)
         known_words = list(dict.fromkeys(word for group in groups for word in group))
         stem_of = {word: stems for word, stems in zip(known_words, self._stems(*known_words), strict=True) if stems}
         known = index.frequencies(sorted({stem for stems in stem_of.values() for stem in stems}))
@@ -169,9 +172,9 @@ class Answerer:
 
         searched = [word for word in dict.fromkeys(w for g in groups[: len(asked) + 1] for w in g) if word in stem_of]
         rare = [word for word in searched if standing(word) <= (COMMON_KIND if word in question.kinds else COMMON)]
-        found = index.search(rare or searched, RETRIEVED, titles=titles)
+        found = index.search(rare or searched, RETRIEVED, titles=titles, without=question.avoids)
         # A passage with all words may be hidden behind many that repeat the rarest one.
-        found += [each for each in index.search_all(asked, RETRIEVED, titles=titles) if each not in found]
+        found += [each for each in index.search_all(asked, RETRIEVED, titles=titles, without=question.avoids) if each not in found]
 
         def has(have: set[str], forms: Iterable[str]) -> bool:
             return any(have.issuperset(stem_of[form]) for form in forms if form in stem_of)
@@ -187,7 +190,7 @@ class Answerer:
         for each, stems in zip(found, self._stems(*(f"{f.title} {f.text} {f.hints}" for f in found)), strict=True):
             have = set(stems)
             covered = sum(weight for forms, weight in weights if has(have, forms)) / total
-            if covered >= ENOUGH and all(has(have, need) for need in question.needs) and not has(have, question.avoids):
+            if covered >= ENOUGH and _can_answer(question, each) and all(has(have, need) for need in question.needs):
                 retrieved.append((covered, each))
         # The sort is stable, so BM25 decides between equals.
         return sorted(retrieved, key=lambda each: -each[0])
@@ -220,6 +223,22 @@ def _readable(found: Found) -> str:
     """Return a passage for the reader, with its title unless the passage names it."""
     text = found.text if found.title.lower() in found.text.lower() else f"{found.title}: {found.text}"
     return text[:LONGEST]
+
+
+_NUMBER = re.compile(
+    r"\d|\b(?:no|none|one|two|three|four|five|six|seven|eight|nine|ten|eleven|twelve|twenty|dozen|hundred|once|twice|half)\b", re.IGNORECASE
+)
+
+
+def _can_answer(question: Question, found: Found) -> bool:
+    """Return whether a passage has the kind of thing that was asked for: a number, or the name of a place."""
+    asked = question.text.lower()
+    if question.kind is QuestionWord.AMOUNT and ("how many " in asked or "how much " in asked):
+        return _NUMBER.search(found.text) is not None
+    if question.kind is QuestionWord.PLACE and "where" not in asked:
+        names = re.findall(r"(?<=[^.!?] )[A-Z][^\W_]+", found.text) + found.title.split()
+        return any(name.lower() not in asked for name in names)
+    return True
 
 
 def _besides(text: str, asked: set[str]) -> int:

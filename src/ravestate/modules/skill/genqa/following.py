@@ -18,6 +18,8 @@ from .question import Parse, Question, as_question, is_vague, parse
 from .reckoning import Unanswerable, reckon
 from .thread import Reading, Turn, readings, turn_of
 
+COVERED = 0.8
+"""The minimum share of the question's words in a passage that the thread makes more likely."""
 MOST = 8
 """The maximum number of readings that are tried."""
 
@@ -50,12 +52,17 @@ def answer_in(answerer: Answerer, heard: Parse, thread: Sequence[Turn], settings
         question = as_question(seen)
         if heard.kind is None:
             question = replace(question, doubtful=True)
-        titles = tuple(dict.fromkeys(turn.title for turn in thread[-2:])) if reading.within else ()
+        titles: tuple[str, ...] = ()
+        if reading.about:
+            titles = tuple(dict.fromkeys((thread[-1].title, reading.about)))
+            words = (*question.words, *as_question(reading.about).words)
+            question = replace(question, text=f"{reading.about}: {question.text}", words=words)
         answer = _decided(answerer, question, settings, titles)
         reason = reason or answer.reason
         if not answer.text:
             continue
-        answer = replace(answer, confidence=_shifted(answer.confidence, reading.prior))
+        if not reading.about or answer.candidates[0].covered >= COVERED:
+            answer = replace(answer, confidence=_shifted(answer.confidence, reading.prior))
         if best is None or answer.confidence > best[0].confidence:
             best = answer, reading, seen
         if best[0].confidence >= settings.sure:
@@ -84,13 +91,11 @@ def _reckoned(heard: Parse, thread: Sequence[Turn], settings: Settings) -> Answe
 
 def _decided(answerer: Answerer, question: Question, settings: Settings, titles: Sequence[str]) -> Answer:
     """Return the answer; another question may decide one of yes or no, and a vague one has no sure answer."""
+    if question.kind is QuestionWord.YES_NO and not question.declined and (other := other_wording(question.text)):
+        decided = answerer.answer(other, titles)
+        if decided.confidence >= settings.sure:
+            return decided
     answer = answerer.answer(question, titles)
-    if answer.confidence < settings.unsure and question.kind is QuestionWord.YES_NO and not question.declined:
-        other = other_wording(question.text)
-        if other:
-            decided = answerer.answer(other, titles)
-            if decided.confidence >= settings.sure:
-                return decided
     if question.doubtful and answer.confidence < settings.sure:
         return replace(answer, confidence=0.0)
     if is_vague(question) and answer.confidence >= settings.sure:

@@ -158,20 +158,25 @@ class Index:
         with self._lock, self._told():
             return dict(self._base.execute(f"SELECT term, doc FROM words WHERE term IN ({marks})", tuple(stems)))
 
-    def search(self, words: Sequence[str], limit: int, *, titles: Sequence[str] = ()) -> list[Found]:
+    def search(
+        self, words: Sequence[str], limit: int, *, titles: Sequence[str] = (), without: Sequence[str] = ()
+    ) -> list[Found]:
         """Return the passages that share most with `words`, by BM25, best first.
 
         Args:
             words: Any text; operators of the query language are plain words here.
             limit: The maximum number of passages.
             titles: The titles to search; empty for all.
+            without: Words that exclude a passage.
         """
-        return self._matching(_any_of(words), limit, titles)
+        return self._matching(_any_of(words), limit, titles, without)
 
-    def search_all(self, groups: Sequence[Sequence[str]], limit: int, *, titles: Sequence[str] = ()) -> list[Found]:
+    def search_all(
+        self, groups: Sequence[Sequence[str]], limit: int, *, titles: Sequence[str] = (), without: Sequence[str] = ()
+    ) -> list[Found]:
         """Return passages like `search`, but only those with a word of each group."""
         each = [any_of for group in groups if (any_of := _any_of(group))]
-        return self._matching(" AND ".join(f"({any_of})" for any_of in each), limit, titles)
+        return self._matching(" AND ".join(f"({any_of})" for any_of in each), limit, titles, without)
 
     # ------------------------------------------------------------------------------------ writing
 
@@ -219,11 +224,13 @@ class Index:
 
     # ---------------------------------------------------------------------------------- internals
 
-    def _matching(self, query: str, limit: int, titles: Sequence[str]) -> list[Found]:
+    def _matching(self, query: str, limit: int, titles: Sequence[str], without: Sequence[str]) -> list[Found]:
         if not query:
             return []
         if titles:
             query = f"({query}) AND title : ({_any_of(titles)})"
+        if without:
+            query = f"({query}) NOT ({_any_of(without)})"
         with self._lock, self._told():
             rows = self._base.execute(
                 f"SELECT rowid, title, text, hints FROM passages WHERE passages MATCH ? ORDER BY {_RANK} LIMIT ?",

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from ravestate.language.entity import Entity
+from ravestate.modules._text import printable
 from ravestate.modules.meta.nlp import QuestionWord
 from ravestate.modules.meta.nlp.analysis import Analysis
 from ravestate.modules.meta.nlp.inquiry import question_of
@@ -69,7 +70,7 @@ class Parse:
 
 def parse(text: str) -> Parse:
     """Parse a text with the pipeline of nlp."""
-    tree, entities = pipeline("").read(text)
+    tree, entities = pipeline("").read(printable(text))
     return parsed(tree, entities, question_of(tree))
 
 
@@ -133,7 +134,7 @@ def as_question(heard: str | Parse) -> Question:
     if any(word.low in THE_TWO for word in said):
         doubtful = True
     needs, avoids = _qualifiers(heard)
-    return Question(heard.text, words, kinds, tuple(needs), tuple(avoids), heard.kind, doubtful, reason)
+    return Question(heard.text, words, kinds, tuple(needs), tuple(sorted(avoids)), heard.kind, doubtful, reason)
 
 
 def is_name(seen: Parse, word: Word) -> bool:
@@ -200,24 +201,20 @@ def _qualifiers(heard: Parse) -> tuple[list[tuple[str, ...]], list[str]]:
             needs.append(tuple(sorted(words_of("excluding"))))
         elif _is_superlative(tree, word) or word.low in ranks:
             listed = ("five", "ten") if word.low in words_of("ranks") and _picks_largest(tree, word) else ()
-            needs.append((*_forms(word), *listed))
-            needs += [_forms(other) for other in _picked(tree, word) if other in heard.asked]
+            needs.append((*variants_of(word.text), *listed))
+            picked = [other.text for other in _picked(tree, word) if other in heard.asked]
+            needs += [variants_of(other) for other in picked]
             if not asked_ranks:
-                avoids += [rank for rank in ranks - {"first", "next", "only", "last"}]
+                avoids += ranks - {"first", "next", "only", "last"}
+            if words_of("women").isdisjoint(map(str.lower, picked)):
+                avoids += words_of("women")
+            if not any(other.low in words_of("excluding") for other in heard.asked):
+                avoids += words_of("excluding")
         elif decides and needs:
             continue
         elif any(c.isdigit() for c in word.text) or (_means(word) and (word.pos == "PROPN" or word.start in named)):
             needs += [variants_of(part) for part in _parts(word) if part.lower() not in words_of("kinds")]
-        if word.low in words_of("men") and asked_ranks:
-            avoids += words_of("women")
     return list(dict.fromkeys(needs)), avoids
-
-
-def _forms(word: Word) -> tuple[str, ...]:
-    for group in ("women", "people", "men"):
-        if word.low in words_of(group):
-            return tuple(sorted(words_of(group) | (words_of("people") if group == "men" else set())))
-    return variants_of(word.text)
 
 
 def _is_superlative(tree: Tree, word: Word) -> bool:
@@ -241,7 +238,7 @@ def _picked(tree: Tree, rank: Word) -> Iterator[Word]:
     if head.pos == "ADJ" and tree.head(head).pos in ("NOUN", "PROPN"):
         head = tree.head(head)
     for word in tree.subtree(head):
-        if _means(word) and word != rank and word.low not in words_of("kinds") - words_of("people"):
+        if _means(word) and word != rank and word.low not in words_of("kinds") | words_of("people"):
             yield word
 
 

@@ -16,6 +16,8 @@ from .answering import Answer
 from .lexicon import words_of
 from .question import PRONOUNS, Parse, is_name, parse
 
+NUMBERS = ("DATE", "TIME", "CARDINAL", "QUANTITY", "MONEY", "PERCENT", "ORDINAL")
+"""The labels of entities that are no names."""
 LONGEST = 200
 """Characters of a question that may refer to another."""
 KEPT = 6
@@ -36,6 +38,11 @@ class Thing:
     def is_person(self) -> bool:
         """Whether it is a person."""
         return self.label == "PERSON"
+
+    @property
+    def is_name(self) -> bool:
+        """Whether it has a name of its own."""
+        return self.label not in ("", *NUMBERS)
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,29 +69,35 @@ class Turn:
     @property
     def subject(self) -> str:
         """What the question is about; empty for sums."""
-        return next((thing.text for thing in self.asked if thing.label), "")
+        return next((thing.text for thing in self.asked if thing.is_name), "")
 
 
 def turn_of(asked: Parse, found: Answer, at: float, sexes: tuple[tuple[str, str], ...] = ()) -> Turn:
     """Return the turn of a complete question and its answer."""
     answer, title = found.text, found.title
     told = parse(answer)
-    things = [thing for thing in things_of(asked) if thing.label not in ("ORDINAL", "CARDINAL")]
-    titled = Thing(title, next((t.label for t in things if t.text.lower() in title.lower()), "TITLE"))
-    shown = f"{asked.tree.text} {answer}".lower()
-    if title and title.lower() in shown and not any(title.lower() == thing.text.lower() for thing in things):
-        things.append(titled)
+    things = [
+        Thing(title, thing.label or "TITLE") if _same(thing.text, title) else thing
+        for thing in things_of(asked)
+        if thing.label not in ("ORDINAL", "CARDINAL")
+    ]
+    if title and title.lower() in f"{asked.tree.text} {answer}".lower() and not any(_same(t.text, title) for t in things):
+        things.append(Thing(title, next((t.label for t in things if t.text.lower() in title.lower()), "TITLE")))
     words = set(asked.text.lower().split())
-    new = [t for t in things_of(told) if t.text.lower() != title.lower() and not words.issuperset(t.text.lower().split())]
+    new = [t for t in things_of(told) if not _same(t.text, title) and not words.issuperset(t.text.lower().split())]
     if asked.kind is QuestionWord.PERSON and not any(thing.is_person for thing in new):
-        name = next((thing for thing in new if thing.label), None)
+        name = next((thing for thing in new if thing.is_name), None)
         new = [Thing(t.text, "PERSON") if t is name else t for t in new]
     items = max((group for group in _lists(told.tree)), key=len, default=())
     return Turn(asked.text.rstrip("?"), answer, title, at, tuple(_by_likelihood(things)), tuple(new), items, sexes, found.source, found.confidence)
 
 
 def _by_likelihood(things: Sequence[Thing]) -> list[Thing]:
-    return sorted(things, key=lambda thing: not thing.label)  # names first
+    return sorted(dict.fromkeys(things), key=lambda thing: not thing.is_name)  # names first
+
+
+def _same(one: str, other: str) -> bool:
+    return one.lower().removeprefix("the ") == other.lower().removeprefix("the ")
 
 
 def things_of(seen: Parse) -> list[Thing]:
@@ -95,6 +108,8 @@ def things_of(seen: Parse) -> list[Thing]:
             continue
         words = phrase_of(seen.tree, word)
         label = next((e.label for e in seen.entities if e.start < word.end and word.start < e.end), "")
+        if any(other.tag == "WRB" for other in words):  # how many people
+            continue
         text = seen.tree.phrase(words)
         found.setdefault(text.lower(), Thing(text, label or ("NAME" if word.pos == "PROPN" else "")))
         for preposition in seen.tree.children(word, "prep"):
@@ -135,8 +150,8 @@ class Reading:
     text: str
     prior: float = 0.0
     """How likely it is before the documents are asked, as a logarithm of odds."""
-    within: bool = False
-    """Whether only the documents of the thread count."""
+    about: str = ""
+    """Its subject, where the text does not name it; only the documents of the thread count then."""
     sexes: tuple[tuple[str, str], ...] = ()
 
 
@@ -155,7 +170,7 @@ def readings(seen: Parse, thread: Sequence[Turn]) -> list[Reading]:
         return [] if _leans(seen) else [Reading(text)]
     found: dict[str, Reading] = {}
     for reading in (*_all(seen, thread),):
-        found.setdefault(reading.text.lower().strip("? "), reading)
+        found.setdefault(f"{reading.about} {reading.text}".lower().strip("? "), reading)
     return list(found.values())
 
 
@@ -207,8 +222,8 @@ def _all(seen: Parse, thread: Sequence[Turn]) -> Iterator[Reading]:
         return
     named = any(is_name(seen, word) for word in words)
     if not named and len(words) < 12:
-        for rank, thing in enumerate(t for t in (*last.asked, *last.told) if t.label):
-            yield Reading(f"{thing.text}: {text}?", 0.8 - 0.4 * rank, within=True)
+        for rank, thing in enumerate(t for t in (*last.asked, *last.told) if t.is_name):
+            yield Reading(_mark(text, seen), 0.8 - 0.4 * rank, about=thing.text)
     yield Reading(_mark(text, seen), 0.0 if named or lead else -1.0)
 
 
@@ -251,7 +266,7 @@ def _unlikely(pronoun: str, sex: str | None, thing: Thing, known: dict[str, str]
         if _sex_of(thing.text) not in (None, sex):
             return 3
         return 0 if thing.is_person else 1 if thing.label in ("NAME", "TITLE", "ORG", "GPE", "PRODUCT", "WORK_OF_ART", "FAC") else 2
-    if thing.label in ("DATE", "TIME", "CARDINAL", "QUANTITY", "MONEY", "PERCENT", "ORDINAL"):
+    if thing.label in NUMBERS:
         return 3
     if pronoun == "there":
         return 0 if thing.label in ("GPE", "LOC", "FAC") else 1 if thing.label and not thing.is_person else 2
@@ -332,7 +347,7 @@ def _fragments(
         return
     if named:
         yield from _swapped(thread, Thing(text, "NAME"))
-    for rank, thing in enumerate(t for t in (*last.asked, *last.told) if t.label):
+    for rank, thing in enumerate(t for t in (*last.asked, *last.told) if t.is_name):
         yield Reading(f"{text} of {thing.text}?", -0.4 * rank)
     if not named:
         yield from _swapped(thread, Thing(text, ""))
@@ -347,7 +362,7 @@ def _swapped(thread: Sequence[Turn], new: Thing) -> Iterator[Reading]:
     rank = 0
     for old in last.asked:
         at = lower.find(old.text.lower())
-        if at >= 0 and bool(old.label) == bool(new.label):
+        if at >= 0 and old.is_name == new.is_name:
             yield Reading(f"{last.question[:at]}{new.text}{last.question[at + len(old.text) :]}?", -0.4 * rank)
             rank += 1
 
