@@ -138,6 +138,10 @@ class Answerer:
         sure = confidence(best.score, best.covered)
         return Answer(question.text, best.text, index.source(best.row), best.title, sure, tuple(read))
 
+    def titled(self, name: str) -> str:
+        """Return the title of a document about `name`, in any case, with or without *the*; empty if there is none."""
+        return self._opened().title_of(name)
+
     # ---------------------------------------------------------------------------------- internals
 
     def _opened(self) -> Index:
@@ -230,11 +234,19 @@ _NUMBER = re.compile(
 )
 
 
+_TIME = re.compile(
+    r"\b(?:century|spring|summer|autumn|winter|night|day|morning|evening|noon|\w+day|year|month|week|after|before|when|during|every|"
+    r"once|ago|January|February|March|April|May|June|July|August|September|October|November|December)s?\b"
+)
+
+
 def _can_answer(question: Question, found: Found) -> bool:
     """Return whether a passage has the kind of thing that was asked for: a number, or the name of a place."""
     asked = question.text.lower()
     if question.kind is QuestionWord.AMOUNT and ("how many " in asked or "how much " in asked):
         return _NUMBER.search(found.text) is not None
+    if question.kind is QuestionWord.TIME and not re.search(r"\d", found.text):
+        return _TIME.search(found.text) is not None
     if question.kind is QuestionWord.PLACE and "where" not in asked:
         names = re.findall(r"(?<=[^.!?] )[A-Z][^\W_]+", found.text) + found.title.split()
         return any(name.lower() not in asked for name in names)

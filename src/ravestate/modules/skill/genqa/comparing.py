@@ -11,8 +11,12 @@ from ravestate.modules.meta.nlp.tree import Word
 from .answering import Answer
 from .lexicon import variants_of
 from .question import Parse
-from .reckoning import dates_in, difference, measured, vocabulary
+from .reckoning import dates_in, difference, measured, together, vocabulary
 from .thread import Turn, phrase_of, referents, refers
+
+
+_BOTH = ("difference", "together", "total", "altogether")
+"""Words that ask for both numbers of the thread."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,10 +37,10 @@ def compared(heard: Parse, thread: Sequence[Turn], ask: Callable[[str], Answer])
         ask: A function that asks the documents a question.
     """
     table: dict[str, tuple[str, int]] = vocabulary()["comparatives"]
-    word = next((word for word in heard.asked if word.low in table), None)
-    if word is None or heard.kind is None:
+    word = next((word for word in heard.asked if word.low in (*table, *_BOTH)), None)
+    if word is None or heard.kind is None or (word.low in _BOTH and any(w.pos in ("PROPN", "NUM") for w in heard.asked)):
         return None
-    base, direction = table[word.low]
+    base, direction = table.get(word.low, ("many", 1))
     names, turns = _sides(heard, thread)
     if len(names) != 2:
         return None
@@ -55,6 +59,8 @@ def compared(heard: Parse, thread: Sequence[Turn], ask: Callable[[str], Answer])
     verdict = f"{more.name[:1].upper()}{more.name[1:]}."
     if more.value == less.value:
         verdict = "Neither."
+    elif word.low in _BOTH:
+        verdict = together(first.text, other.text) if word.low != "difference" else difference(first.text, other.text)
     elif any(w.low == "much" or w.low == "many" for w in heard.asked) and not noun:
         verdict = difference(first.text, other.text, dates=base in ("old", "early", "late"))
     elif heard.kind is QuestionWord.YES_NO and not any(w.low == "or" for w in heard.asked):
@@ -65,15 +71,38 @@ def compared(heard: Parse, thread: Sequence[Turn], ask: Callable[[str], Answer])
     return Answer(heard.text, text, sources, more.answer.title, confidence)
 
 
+def aged(heard: Parse, thread: Sequence[Turn], ask: Callable[[str], Answer]) -> Answer | None:
+    """Return how old somebody was when they died, or at another event; None if the utterance does not ask for it."""
+    words = [word for word in heard.asked if word.pos != "PUNCT"]
+    low = [word.low for word in words]
+    when = low.index("when", 1) if "when" in low[1:] else len(words)
+    lived = "long" in low and any(word.lemma == "live" for word in words)
+    become = any(word.lemma in ("get", "become", "live") for word in words)
+    if low[:1] not in (["how"], ["so"]) or not (lived or ("old" in low and (when < len(words) or become))):
+        return None
+    name = next((n for word in words[:when] if (n := _name(heard, word, thread))), "")
+    event = [name if word.low in ("he", "she", "they", "it") else word.text for word in words[when:]] or ["did", name, "die"]
+    born, then = ask(f"when was {name} born?"), ask(f"when {' '.join(event).removeprefix('when ')}?")
+    if not name or not dates_in(born.text) or not dates_in(then.text):
+        return None
+    verdict = difference(born.text, then.text, dates=True)
+    sources = " and ".join(dict.fromkeys((born.source, then.source)))
+    text = " ".join(dict.fromkeys((verdict, born.text, then.text)))
+    return Answer(heard.text, text, sources, born.title, min(born.confidence, then.confidence))
+
+
 def _sides(heard: Parse, thread: Sequence[Turn]) -> tuple[list[str], list[Turn]]:
     """Return the two things to compare, and their turns if they come from the thread."""
     between = next((word for word in heard.asked if word.low in ("or", "than")), None)
     if between is not None:
-        right = next((n for n in map(lambda w: _name(heard, w, thread), _after(heard, between)) if n), "")
-        left = next((n for n in map(lambda w: _name(heard, w, thread), reversed(_before(heard, between))) if n), "")
+        right = next((n for w in _after(heard, between) if (n := _name(heard, w, thread))), "")
+        left = next((n for w in reversed(_before(heard, between)) if (n := _name(heard, w, thread)) and n != right), "")
         if between.low == "than" and not left and thread:
             left = thread[-1].subject
         return [name for name in (left, right) if name], []
+    own = [name for name in (_name(heard, word, thread) for word in heard.asked if word.low not in _BOTH) if name]
+    if own and heard.kind is QuestionWord.YES_NO and thread:  # "is the Queen's Bridge longer?"
+        return [own[0], thread[-1].subject], []
     if any(word.pos == "PROPN" for word in heard.asked):
         return [], []
     if thread and len(thread[-1].items) == 2:

@@ -12,10 +12,10 @@ from ravestate.modules.meta.nlp import QuestionWord
 from ravestate.modules.meta.nlp.tree import Word
 
 from .answering import Answer, Answerer
-from .comparing import compared
+from .comparing import aged, compared
 from .names import Settings
 from .question import Parse, Question, as_question, is_vague, parse
-from .reckoning import Unanswerable, reckon
+from .reckoning import Unanswerable, dates_in, reckon
 from .thread import Reading, Turn, readings, turn_of
 
 COVERED = 0.8
@@ -40,9 +40,9 @@ def answer_in(answerer: Answerer, heard: Parse, thread: Sequence[Turn], settings
     def ask(question: str) -> Answer:
         return answerer.answer(as_question(question))
 
-    if (result := compared(heard, thread, ask)) is not None:
+    if (result := compared(heard, thread, ask) or aged(heard, thread, ask)) is not None:
         return result, turn_of(heard, result, now)
-    tried = readings(heard, thread)
+    tried = readings(heard, thread, answerer.titled)
     if not tried:
         return Answer(heard.text, reason="it refers to a question that nobody has asked"), None
     best: tuple[Answer, Reading, Parse] | None = None
@@ -59,7 +59,8 @@ def answer_in(answerer: Answerer, heard: Parse, thread: Sequence[Turn], settings
             question = replace(question, text=f"{reading.about}: {question.text}", words=words)
         answer = _decided(answerer, question, settings, titles)
         reason = reason or answer.reason
-        if not answer.text:
+        said = {turn.answer for turn in thread} if any(word.low == "else" for word in heard.asked) else ()
+        if not answer.text or answer.text in said:
             continue
         if not reading.about or answer.candidates[0].covered >= COVERED:
             answer = replace(answer, confidence=_shifted(answer.confidence, reading.prior))
@@ -80,13 +81,20 @@ def _reckoned(heard: Parse, thread: Sequence[Turn], settings: Settings) -> Answe
     try:
         result = reckon(text, told, date.today(), settings.rates)
         if not result and thread and not thread[-1].title and not heard.is_finite:
-            numbers = re.findall(r"\d[\d.,]*", text)
-            if len(numbers) == 1:  # "and of 200?": the last sum with another number
-                text = re.sub(r"\d[\d.,]*(?!.*\d)", numbers[0], thread[-1].question)
-                result = reckon(text, told[:-1], date.today(), settings.rates)
+            text = _again(text, thread[-1].question)
+            result = reckon(text, told[:-1], date.today(), settings.rates) if text else ""
     except Unanswerable as error:
         result = str(error)
     return Answer(text, result, confidence=1.0) if result else None
+
+
+def _again(text: str, before: str) -> str:
+    """Return the sum before with another number or date: *and of 200?*; empty if the text has none."""
+    dates, old = dates_in(text), dates_in(before)
+    if dates and old:
+        return before.lower().replace(old[-1].shown, dates[-1].shown)
+    numbers = re.findall(r"\d[\d.,]*", text)
+    return re.sub(r"\d[\d.,]*(?!.*\d)", numbers[0], before) if len(numbers) == 1 else ""
 
 
 def _decided(answerer: Answerer, question: Question, settings: Settings, titles: Sequence[str]) -> Answer:
@@ -96,6 +104,9 @@ def _decided(answerer: Answerer, question: Question, settings: Settings, titles:
         if decided.confidence >= settings.sure:
             return decided
     answer = answerer.answer(question, titles)
+    if answer.confidence < settings.unsure and (thing := re.match(r"how old (?:is|are|was) (.+)\?", question.text, re.IGNORECASE)):
+        others = [answerer.answer(f"when was {thing[1]} {done}?", titles) for done in ("born", "founded", "built")]
+        answer = max((answer, *others), key=lambda other: other.confidence)
     if question.doubtful and answer.confidence < settings.sure:
         return replace(answer, confidence=0.0)
     if is_vague(question) and answer.confidence >= settings.sure:

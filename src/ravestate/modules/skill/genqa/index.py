@@ -28,6 +28,7 @@ CREATE TABLE files (
 CREATE TABLE documents (
     first INTEGER PRIMARY KEY, last INTEGER NOT NULL, path TEXT NOT NULL, title TEXT NOT NULL, source TEXT NOT NULL
 );
+CREATE INDEX documents_of_title ON documents (title COLLATE NOCASE);
 CREATE INDEX documents_of_file ON documents (path);
 CREATE VIRTUAL TABLE passages USING fts5(title, text, hints, tokenize='{TOKENIZER}');
 CREATE VIRTUAL TABLE words USING fts5vocab(passages, 'row');
@@ -147,6 +148,15 @@ class Index:
         with self._lock, self._told():
             found = self._base.execute(
                 "SELECT source FROM documents WHERE first <= ? ORDER BY first DESC LIMIT 1", (row,)
+            ).fetchone()
+        return "" if found is None else found[0]
+
+    def title_of(self, name: str) -> str:
+        """Return the title that is `name`, in any case, with or without *the*; empty if there is none."""
+        bare = name.lower().removeprefix("the ")
+        with self._lock, self._told():
+            found = self._base.execute(
+                "SELECT title FROM documents WHERE title IN (?, ?) COLLATE NOCASE LIMIT 1", (bare, f"the {bare}")
             ).fetchone()
         return "" if found is None else found[0]
 

@@ -257,6 +257,8 @@ PRONOUNS = frozenset("it its they them their he him his she her there this that 
 
 def not_asked(heard: Parse, analysis: Analysis) -> str:
     """Return why an utterance does not ask for anything, from its parse and acts; empty if it may."""
+    if any(word.lemma == "mean" and word.head == word.index for word in heard.asked):  # "no, I meant ..."
+        return ""
     if len(analysis.text) > LONGEST:
         return "it is too long for a question"
     if heard.kind is not None:

@@ -56,6 +56,7 @@ class Dated:
     day: date
     exact: bool
     has_year: bool = True
+    shown: str = ""
 
 
 @cache
@@ -120,6 +121,8 @@ def _in_digits(text: str) -> str:
 
 def _sum(spoken: str, told: Sequence[str], rates: Mapping[str, float]) -> str:
     text = f" {spoken} "
+    for pattern, sum_ in vocabulary()["verbs"].items():
+        text = re.sub(rf"(?<= ){pattern}(?= )", sum_, text)
     for phrase, word in vocabulary()["joined"].items():
         text = text.replace(f" {phrase} ", f" {word} ").replace(f"{phrase} ", f"{word} ")
     for phrase, sign in vocabulary()["operators"].items():
@@ -152,8 +155,8 @@ def _sum(spoken: str, told: Sequence[str], rates: Mapping[str, float]) -> str:
                 return ""
             else:
                 target, target_word = unit, word
-        elif token in ("sqrt", "cbrt") or not token[0].isalnum():
-            if token not in "+-*/%().,'?" and token not in ("sqrt", "cbrt"):
+        elif token in _FUNCTIONS or not token[0].isalnum():
+            if token not in "+-*/%().,'?" and token not in _FUNCTIONS:
                 return ""
             if token not in ".,'?":
                 parts.append(token)
@@ -164,7 +167,7 @@ def _sum(spoken: str, told: Sequence[str], rates: Mapping[str, float]) -> str:
             return ""
         shown.append(token)
     numbers = [part for part in parts if part[:1].isdigit()]
-    signs = [part for part in parts if part in "+-*/%" or part in ("sqrt", "cbrt")]
+    signs = [part for part in parts if part in "+-*/%" or part in _FUNCTIONS]
     if not (target or signs or len(units) > 1) or not (numbers or that or told):
         return ""
     if not target and not signs:
@@ -242,7 +245,7 @@ def _evaluated(source: str, units: Sequence[str], rates: Mapping[str, float]) ->
     if any(unit.startswith("deg") for unit in units):
         number = re.search(r"-?\d[\d.]*", source)
         return _registry().Quantity(float(number[0]) if number else 0.0, next(u for u in units if u))
-    evaluator = SimpleEval(operators=_OPERATORS, functions={"sqrt": _root, "cbrt": math.cbrt}, names=names)
+    evaluator = SimpleEval(operators=_OPERATORS, functions=_FUNCTIONS, names=names)
     try:
         return evaluator.eval(source)
     except ZeroDivisionError:
@@ -269,6 +272,7 @@ def _root(value: float) -> float:
     return math.sqrt(value)
 
 
+_FUNCTIONS: dict[str, Callable[..., Any]] = {"sqrt": _root, "cbrt": math.cbrt, "abs": abs}
 _OPERATORS: dict[type, Callable[..., Any]] = {
     ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: operator.truediv, ast.Pow: _power,
     ast.Mod: operator.mod, ast.USub: operator.neg, ast.UAdd: operator.pos,
@@ -351,14 +355,23 @@ def measured(text: str) -> list[Quantity]:
     return _quantities((text,))
 
 
-def difference(one: str, other: str, *, dates: bool) -> str:
+def difference(one: str, other: str, *, dates: bool = False) -> str:
     """Return how far the numbers, or dates, of two texts are apart."""
     if dates:
-        return _between(*sorted((dates_in(one)[0], dates_in(other)[0]), key=lambda each: each.day), "year")
+        return _between(*sorted((dates_in(one)[0], dates_in(other)[-1]), key=lambda each: each.day), "year")
+    return _of_both(one, other, lambda first, second: abs(first - second))
+
+
+def together(one: str, other: str) -> str:
+    """Return the sum of the numbers of two texts."""
+    return _of_both(one, other, operator.add)
+
+
+def _of_both(one: str, other: str, work_out: Callable[[float, float], float]) -> str:
     for left in measured(one):
         for right in measured(other):
             if (values := left.beside(right)) is not None:
-                return f"{_number(round(abs(values[0] - values[1]), 6))} {left.shown.partition(' ')[2]}".strip() + "."
+                return f"{_number(round(work_out(*values), 6))} {left.shown.partition(' ')[2]}".strip() + "."
     return ""
 
 
@@ -387,7 +400,7 @@ def _found_dates(text: str) -> Iterator[Dated]:
                 one, other = (parse(" ".join(span), default=datetime(year, month, day), dayfirst=True) for year, month, day in ((2000, 1, 1), (2004, 3, 3)))
             except (ParserError, OverflowError, ValueError):
                 continue
-            yield Dated(one.date(), one.day == other.day and one.month == other.month, one.year == other.year)
+            yield Dated(one.date(), one.day == other.day and one.month == other.month, one.year == other.year, " ".join(span))
             place += size - 1
             break
         place += 1

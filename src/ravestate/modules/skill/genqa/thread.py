@@ -6,7 +6,7 @@ likelihood, and the documents decide between them.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 from ravestate.modules.meta.nlp import QuestionWord
@@ -88,6 +88,9 @@ def turn_of(asked: Parse, found: Answer, at: float, sexes: tuple[tuple[str, str]
     if asked.kind is QuestionWord.PERSON and not any(thing.is_person for thing in new):
         name = next((thing for thing in new if thing.is_name), None)
         new = [Thing(t.text, "PERSON") if t is name else t for t in new]
+    for sex in ("he", "she"):
+        if not words_of(sex).isdisjoint(words) and asked.kind is QuestionWord.PERSON:
+            sexes = (*sexes, *((thing.text, sex) for thing in new if thing.is_person))
     items = max((group for group in _lists(told.tree)), key=len, default=())
     return Turn(asked.text.rstrip("?"), answer, title, at, tuple(_by_likelihood(things)), tuple(new), items, sexes, found.source, found.confidence)
 
@@ -155,12 +158,13 @@ class Reading:
     sexes: tuple[tuple[str, str], ...] = ()
 
 
-def readings(seen: Parse, thread: Sequence[Turn]) -> list[Reading]:
+def readings(seen: Parse, thread: Sequence[Turn], titled: Callable[[str], str] = str) -> list[Reading]:
     """Return the questions that an utterance may stand for; none if it refers to something that is not in view.
 
     Args:
         seen: The utterance.
         thread: The latest questions, oldest first.
+        titled: A function from a name in any case to the title of a document about it; empty if there is none.
     """
     asked = seen.asked
     text = seen.text
@@ -169,7 +173,7 @@ def readings(seen: Parse, thread: Sequence[Turn]) -> list[Reading]:
     if not thread:
         return [] if _leans(seen) else [Reading(text)]
     found: dict[str, Reading] = {}
-    for reading in (*_all(seen, thread),):
+    for reading in _all(seen, thread, titled):
         found.setdefault(f"{reading.about} {reading.text}".lower().strip("? "), reading)
     return list(found.values())
 
@@ -189,9 +193,12 @@ def _is_bound(tree: Tree, pronoun: Word) -> bool:
     return any(word.pos in ("NOUN", "PROPN") and word.index < pronoun.index for word in tree.words)
 
 
-def _all(seen: Parse, thread: Sequence[Turn]) -> Iterator[Reading]:
+def _all(seen: Parse, thread: Sequence[Turn], titled: Callable[[str], str]) -> Iterator[Reading]:
     tree, last = seen.tree, thread[-1]
     words = [word for word in seen.asked if word.pos != "PUNCT"]
+    if (meant := correction(seen)) is not None:  # "no, I meant Mount Olin"
+        yield from _swapped(thread, Thing(tree.phrase(meant), "NAME"))
+        return
     while words and (words[0].pos == "CCONJ" or (words[0].low in ("what", "how") and words[1:] and words[1].low == "about")):
         words = words[1 if words[0].pos == "CCONJ" else 2 :]
     lead = len(words) < len([word for word in seen.asked if word.pos != "PUNCT"])
@@ -199,10 +206,9 @@ def _all(seen: Parse, thread: Sequence[Turn]) -> Iterator[Reading]:
         return
     text = tree.phrase(words)
     pronouns = [w for w in words if refers(w, words)]
-    ones = [w for w in words if w.low in ("one", "ones") and (w.pos in ("NUM", "NOUN", "PRON"))]
+    ones = [w for w in words if w.low in _ONES and w.pos in ("NUM", "NOUN", "PRON", "ADJ")]
     if ones:
         for item in _items(tree, ones[0], thread):
-            first = tree.subtree(ones[0]) if ones[0] in words else ones
             phrase = [w for w in phrase_of(tree, ones[0]) if w in words]
             rest = [w for w in words if w not in phrase]
             if any(w.tag in ("VBZ", "VBP", "VBD", "MD") for w in rest):
@@ -211,7 +217,7 @@ def _all(seen: Parse, thread: Sequence[Turn]) -> Iterator[Reading]:
                 yield from _swapped(thread, Thing(item, "NAME"))
         return
     if not any(w.tag in ("VBZ", "VBP", "VBD", "MD") for w in words):
-        yield from _fragments(seen, words, pronouns, thread, lead=lead)
+        yield from _fragments(seen, words, pronouns, thread, titled, lead=lead)
         return
     if pronouns:
         for rank, thing in enumerate(referents(pronouns[0], thread)):
@@ -220,13 +226,14 @@ def _all(seen: Parse, thread: Sequence[Turn]) -> Iterator[Reading]:
         if any(w.low == "it" for w in pronouns) and any(w.pos in ("NOUN", "PROPN", "VERB") for w in words):
             yield Reading(_mark(text, seen), -1.0)
         return
-    named = any(is_name(seen, word) for word in words)
+    named = any(is_name(seen, word) or titled(tree.phrase(phrase_of(tree, word))) for word in words)
     if not named and len(words) < 12:
         for rank, thing in enumerate(t for t in (*last.asked, *last.told) if t.is_name):
             yield Reading(_mark(text, seen), 0.8 - 0.4 * rank, about=thing.text)
     yield Reading(_mark(text, seen), 0.0 if named or lead else -1.0)
 
 
+_ONES = ("one", "ones", "former", "latter")
 SEXES = {"he": "he", "him": "he", "his": "he", "she": "she", "her": "she", "hers": "she"}
 
 
@@ -287,6 +294,8 @@ def _items(tree: Tree, one: Word, thread: Sequence[Turn]) -> Iterator[str]:
     for group in (*lists, subjects):
         if "other" in adjectives:
             yield from reversed(group[:-1])
+        if "former" in adjectives and len(group) > 1:
+            yield group[-2]
         for place, rank in enumerate(("first", "second", "third", "fourth", "fifth", "sixth")):
             if rank in adjectives and len(group) > place:
                 yield group[place]
@@ -312,6 +321,15 @@ def _mark(text: str, seen: Parse) -> str:
     return f"{text.strip(' ?.!,')}?"
 
 
+def correction(seen: Parse) -> list[Word] | None:
+    """Return the words for what was really meant: *I meant Mount Olin*."""
+    root = next((word for word in seen.asked if word.lemma == "mean" and word.head == word.index), None)
+    if root is None or not any(word.low == "i" for word in seen.tree.children(root, "nsubj")):
+        return None
+    things = seen.tree.children(root, "dobj", "attr", "oprd")
+    return seen.tree.subtree(things[0]) if things and things[0].pos in ("NOUN", "PROPN", "X") else None
+
+
 def _replaced(seen: Parse, words: Sequence[Word], instead: dict[int, str], pronouns: Sequence[Word], item: str) -> Iterator[Reading]:
     verb = next((i for i, w in enumerate(words) if w.tag in ("WP", "WRB", "WDT")), 0)
     if verb and all(w.index in instead for w in words[:verb] if w.pos != "PUNCT"):  # "the first one, who climbed it?"
@@ -320,12 +338,18 @@ def _replaced(seen: Parse, words: Sequence[Word], instead: dict[int, str], prono
 
 
 def _fragments(
-    seen: Parse, words: Sequence[Word], pronouns: Sequence[Word], thread: Sequence[Turn], *, lead: bool
+    seen: Parse,
+    words: Sequence[Word],
+    pronouns: Sequence[Word],
+    thread: Sequence[Turn],
+    titled: Callable[[str], str],
+    *,
+    lead: bool,
 ) -> Iterator[Reading]:
     """Yield the readings of an utterance without a verb: *and when?*, *and its captain?*, *and Spain?*."""
     tree, last = seen.tree, thread[-1]
     text = tree.phrase(words)
-    named = any(is_name(seen, word) for word in words)
+    named = any(is_name(seen, word) or titled(tree.phrase(phrase_of(tree, word))) for word in words)
     if pronouns:
         for rank, thing in enumerate(referents(pronouns[0], thread)):
             yield Reading(_with(seen, words, {p.index: _owned(p, thing.text) for p in pronouns}), -0.4 * rank)
