@@ -31,6 +31,8 @@ GOOD, VERY_GOOD, HOPELESS = 7.5, 9.0, -4.0
 few."""
 ENOUGH = 0.4
 """The minimum share of the question's words (0 to 1) in a passage that is read."""
+ENOUGH_THERE = 0.25
+"""The same in the documents that a talk is about."""
 LEVEL = 0.8
 """Scores that differ by less count as equal."""
 COMMON = 20_000
@@ -191,10 +193,12 @@ class Answerer:
         ]
         total = sum(weight for _, weight in weights) or 1.0
         retrieved: list[tuple[float, Found]] = []
-        for each, stems in zip(found, self._stems(*(f"{f.title} {f.text} {f.hints}" for f in found)), strict=True):
-            have = set(stems)
+        stems_of = [set(stems) for stems in self._stems(*(f"{each.title} {each.text} {each.hints}" for each in found))]
+        # A word that some of the documents in view have is not just another name for their subject.
+        told = [forms for forms in asked if titles and any(has(have, forms) for have in stems_of)]
+        for each, have in zip(found, stems_of, strict=True):
             covered = sum(weight for forms, weight in weights if has(have, forms)) / total
-            if covered >= ENOUGH and _can_answer(question, each) and all(has(have, need) for need in question.needs):
+            if covered >= (ENOUGH_THERE if titles else ENOUGH) and _can_answer(question, each) and all(has(have, need) for need in (*question.needs, *told)):
                 retrieved.append((covered, each))
         # The sort is stable, so BM25 decides between equals.
         return sorted(retrieved, key=lambda each: -each[0])

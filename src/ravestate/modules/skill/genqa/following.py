@@ -20,6 +20,8 @@ from .thread import Reading, Turn, readings, turn_of
 
 COVERED = 0.8
 """The minimum share of the question's words in a passage that the thread makes more likely."""
+VAGUE = -0.5
+"""The logarithm of odds that other passages from the thread lose."""
 MOST = 8
 """The maximum number of readings that are tried."""
 
@@ -62,8 +64,8 @@ def answer_in(answerer: Answerer, heard: Parse, thread: Sequence[Turn], settings
         said = {turn.answer for turn in thread} if any(word.low == "else" for word in heard.asked) else ()
         if not answer.text or answer.text in said:
             continue
-        if not reading.about or answer.candidates[0].covered >= COVERED:
-            answer = replace(answer, confidence=_shifted(answer.confidence, reading.prior))
+        vague = reading.about and answer.candidates[0].covered < COVERED
+        answer = replace(answer, confidence=_shifted(answer.confidence, VAGUE if vague else reading.prior))
         if best is None or answer.confidence > best[0].confidence:
             best = answer, reading, seen
         if best[0].confidence >= settings.sure:

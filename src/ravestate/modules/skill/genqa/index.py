@@ -156,7 +156,7 @@ class Index:
         bare = name.lower().removeprefix("the ")
         with self._lock, self._told():
             found = self._base.execute(
-                "SELECT title FROM documents WHERE title IN (?, ?) COLLATE NOCASE LIMIT 1", (bare, f"the {bare}")
+                "SELECT title FROM documents WHERE title COLLATE NOCASE IN (?, ?) LIMIT 1", (bare, f"the {bare}")
             ).fetchone()
         return "" if found is None else found[0]
 

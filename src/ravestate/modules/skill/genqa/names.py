@@ -25,7 +25,7 @@ class Settings(rs.Settings):
     """Whether to search the collection that comes with Ravestate as well: countries, nature, the calendar."""
     sure: Probability = 0.7
     """The minimum confidence of a sure answer."""
-    unsure: Probability = 0.4
+    unsure: Probability = 0.5
     """The minimum confidence of an answer with a doubt; below that, the module is silent."""
     wording: Literal["sentence", "model"] = "sentence"
     """``sentence``: the document's own words; ``model``: the words of wildtalk's language model. The prompt has only the

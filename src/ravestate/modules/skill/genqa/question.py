@@ -197,6 +197,8 @@ def _qualifiers(heard: Parse) -> tuple[list[tuple[str, ...]], list[str]]:
         if word.dep == "neg" or word.low in ("no", "never"):
             if not decides:
                 needs.append(("not", "no", "never", "none", "without"))
+        elif word.low in ("before", "after") and any(other.pos == "PROPN" for other in tree.children(word, "pobj")):
+            needs.append(tuple(sorted(words_of("order"))))
         elif word.low in words_of("excluding"):
             needs.append(tuple(sorted(words_of("excluding"))))
         elif _is_superlative(tree, word) or word.low in ranks:

@@ -8,13 +8,13 @@ import ravestate as rs
 from ravestate.errors import DeclarationError, DeclarationErrors, PlatformError
 from ravestate.language.bundled import ModelMissing, warn_once
 from ravestate.language.heap import give_back
-from ravestate.modules import nlp, verbaliser
+from ravestate.modules import nlp, rawio, verbaliser
 
 from .following import answer_in
 from .names import Settings, found, module, thread
 from .places import answerer_of
 from .question import not_asked, parsed
-from .thread import KEPT, REMEMBERED
+from .thread import KEPT, REMEMBERED, overheard, refers_back
 from .wording import intent_of, wording_rule
 
 
@@ -45,7 +45,7 @@ async def choose_wording(ctx: rs.RuleContext) -> None:
 
 # It runs for every utterance, question or not. A rule that waited for the signal of a question would hold each
 # statement for seconds, and `idle` would see no boredom meanwhile.
-@module.rule(when=nlp.text.changed & nlp.analysis.changed, reads=thread, writes=thread, emits=found)
+@module.rule(when=nlp.text.changed & nlp.analysis.changed, reads=(thread, rawio.output), writes=thread, emits=found)
 def find(ctx: rs.RuleContext) -> rs.Resign | None:
     """Search the documents."""
     settings: Settings = ctx.settings
@@ -56,8 +56,11 @@ def find(ctx: rs.RuleContext) -> rs.Resign | None:
     if (reason := not_asked(heard, analysis)):
         return rs.Resign(reason)
     turns = tuple(turn for turn in ctx[thread] if ctx.now - turn.at <= REMEMBERED)
+    said, view = ctx[rawio.output], turns
+    if said and not (turns and turns[-1].answer in said) and refers_back(heard):
+        view = (*turns, overheard(said, ctx.now))
     try:
-        answer, turn = answer_in(answerer_of(settings), heard, turns, settings, ctx.now)
+        answer, turn = answer_in(answerer_of(settings), heard, view, settings, ctx.now)
     except ModelMissing as error:
         warn_once(ctx.log, error)
         return rs.Resign(str(error))

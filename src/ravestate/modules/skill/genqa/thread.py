@@ -103,6 +103,17 @@ def _same(one: str, other: str) -> bool:
     return one.lower().removeprefix("the ") == other.lower().removeprefix("the ")
 
 
+def overheard(said: str, at: float) -> Turn:
+    """Return a turn of what the agent said without a question to the documents, for its names."""
+    told = [thing for thing in things_of(parse(said)) if thing.is_name]
+    return Turn("", said, "", at, told=tuple(told))
+
+
+def refers_back(seen: Parse) -> bool:
+    """Return whether an utterance has a pronoun for something that was named before."""
+    return any(refers(word, seen.asked) for word in seen.asked)
+
+
 def things_of(seen: Parse) -> list[Thing]:
     """Return the noun phrases of a text, the longer ones with *of* after their parts."""
     found: dict[str, Thing] = {}
@@ -220,9 +231,11 @@ def _all(seen: Parse, thread: Sequence[Turn], titled: Callable[[str], str]) -> I
         yield from _fragments(seen, words, pronouns, thread, titled, lead=lead)
         return
     if pronouns:
+        person = any(thing.is_person for thing in last.told)
         for rank, thing in enumerate(referents(pronouns[0], thread)):
+            far = 3.0 if pronouns[0].low in SEXES and person and not thing.is_person else 0.0
             sexes = ((thing.text, pronouns[0].low),) if pronouns[0].low in SEXES else ()
-            yield Reading(_with(seen, words, {p.index: _owned(p, thing.text) for p in pronouns}), -0.4 * rank, sexes=sexes)
+            yield Reading(_with(seen, words, {p.index: _owned(p, thing.text) for p in pronouns}), -0.4 * rank - far, sexes=sexes)
         if any(w.low == "it" for w in pronouns) and any(w.pos in ("NOUN", "PROPN", "VERB") for w in words):
             yield Reading(_mark(text, seen), -1.0)
         return
@@ -381,7 +394,7 @@ def _fragments(
 
 def _swapped(thread: Sequence[Turn], new: Thing) -> Iterator[Reading]:
     """Yield the last question about something else."""
-    last = thread[-1]
+    last = _last(thread)
     lower = last.question.lower()
     rank = 0
     for old in last.asked:
@@ -391,9 +404,13 @@ def _swapped(thread: Sequence[Turn], new: Thing) -> Iterator[Reading]:
             rank += 1
 
 
+def _last(thread: Sequence[Turn]) -> Turn:
+    return next((turn for turn in reversed(thread) if turn.question), thread[-1])
+
+
 def _asked_anew(text: str, thread: Sequence[Turn]) -> Iterator[Reading]:
     """Yield the last question with another question word."""
-    last = thread[-1]
+    last = _last(thread)
     seen = parse(last.question)
     words = [w for w in seen.tree.words if w.pos != "PUNCT"]
     wh = next((w for w in words if w.tag in ("WP", "WRB", "WDT", "WP$")), None)
@@ -406,7 +423,7 @@ def _asked_anew(text: str, thread: Sequence[Turn]) -> Iterator[Reading]:
 
 def _another_rank(text: str, thread: Sequence[Turn]) -> Iterator[Reading]:
     """Yield the last question with another rank: *and the second highest?*."""
-    seen = parse(thread[-1].question)
+    seen = parse(_last(thread).question)
     ranks = [w for w in seen.tree.words if w.tag in ("JJS", "RBS") or w.low in words_of("ranks")]
     if not ranks:
         return
