@@ -10,17 +10,16 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ravestate.language import Reranker
-
 from ravestate.modules._text import printable
 from ravestate.modules.meta.nlp import QuestionWord
 
 from .confidence import confidence
 from .index import Found, Index
+from .lexicon import variants_of
 from .passages import LONGEST
 from .question import Parse, Question, as_question
 from .shipped import bring_up
 from .stems import Stems
-from .lexicon import variants_of
 
 RETRIEVED = 16
 """The number of passages to compare word by word: so many with any word of a question, and as many with all words."""
@@ -126,7 +125,11 @@ class Answerer:
         Raises:
             PlatformError: See `load`.
         """
-        question = heard if isinstance(heard, Question) else as_question(heard if isinstance(heard, Parse) else printable(heard))
+        question = (
+            heard
+            if isinstance(heard, Question)
+            else as_question(heard if isinstance(heard, Parse) else printable(heard))
+        )
         if question.declined:
             return Answer(question.text, reason=question.declined)
         index = self._opened()
@@ -180,7 +183,11 @@ class Answerer:
         rare = [word for word in searched if standing(word) <= (COMMON_KIND if word in question.kinds else COMMON)]
         found = index.search(rare or searched, RETRIEVED, titles=titles, without=question.avoids)
         # A passage with all words may be hidden behind many that repeat the rarest one.
-        found += [each for each in index.search_all(asked, RETRIEVED, titles=titles, without=question.avoids) if each not in found]
+        found += [
+            each
+            for each in index.search_all(asked, RETRIEVED, titles=titles, without=question.avoids)
+            if each not in found
+        ]
 
         def has(have: set[str], forms: Iterable[str]) -> bool:
             return any(have.issuperset(stem_of[form]) for form in forms if form in stem_of)
@@ -198,7 +205,11 @@ class Answerer:
         told = [forms for forms in asked if titles and any(has(have, forms) for have in stems_of)]
         for each, have in zip(found, stems_of, strict=True):
             covered = sum(weight for forms, weight in weights if has(have, forms)) / total
-            if covered >= (ENOUGH_THERE if titles else ENOUGH) and _can_answer(question, each) and all(has(have, need) for need in (*question.needs, *told)):
+            if (
+                covered >= (ENOUGH_THERE if titles else ENOUGH)
+                and _can_answer(question, each)
+                and all(has(have, need) for need in (*question.needs, *told))
+            ):
                 retrieved.append((covered, each))
         # The sort is stable, so BM25 decides between equals.
         return sorted(retrieved, key=lambda each: -each[0])
@@ -234,7 +245,8 @@ def _readable(found: Found) -> str:
 
 
 _NUMBER = re.compile(
-    r"\d|\b(?:no|none|one|two|three|four|five|six|seven|eight|nine|ten|eleven|twelve|twenty|dozen|hundred|once|twice|half)\b", re.IGNORECASE
+    r"\d|\b(?:no|none|one|two|three|four|five|six|seven|eight|nine|ten|eleven|twelve|twenty|dozen|hundred|once|twice|half)\b",
+    re.IGNORECASE,
 )
 
 

@@ -14,7 +14,6 @@ from .question import Parse
 from .reckoning import dates_in, difference, measured, together, vocabulary
 from .thread import Turn, phrase_of, referents, refers
 
-
 _BOTH = ("difference", "together", "total", "altogether")
 """Words that ask for both numbers of the thread."""
 
@@ -38,7 +37,11 @@ def compared(heard: Parse, thread: Sequence[Turn], ask: Callable[[str], Answer])
     """
     table: dict[str, tuple[str, int]] = vocabulary()["comparatives"]
     word = next((word for word in heard.asked if word.low in (*table, *_BOTH)), None)
-    if word is None or heard.kind is None or (word.low in _BOTH and any(w.pos in ("PROPN", "NUM") for w in heard.asked)):
+    if (
+        word is None
+        or heard.kind is None
+        or (word.low in _BOTH and any(w.pos in ("PROPN", "NUM") for w in heard.asked))
+    ):
         return None
     base, direction = table.get(word.low, ("many", 1))
     names, turns = _sides(heard, thread)
@@ -81,7 +84,11 @@ def aged(heard: Parse, thread: Sequence[Turn], ask: Callable[[str], Answer]) -> 
     if low[:1] not in (["how"], ["so"]) or not (lived or ("old" in low and (when < len(words) or become))):
         return None
     name = next((n for word in words[:when] if (n := _name(heard, word, thread))), "")
-    event = [name if word.low in ("he", "she", "they", "it") else word.text for word in words[when:]] or ["did", name, "die"]
+    event = [name if word.low in ("he", "she", "they", "it") else word.text for word in words[when:]] or [
+        "did",
+        name,
+        "die",
+    ]
     born, then = ask(f"when was {name} born?"), ask(f"when {' '.join(event).removeprefix('when ')}?")
     if not name or not dates_in(born.text) or not dates_in(then.text):
         return None
@@ -126,7 +133,11 @@ def _before(heard: Parse, word: Word) -> list[Word]:
 def _name(heard: Parse, word: Word, thread: Sequence[Turn]) -> str:
     if refers(word, heard.asked):
         return next((thing.text for thing in referents(word, thread)), "")
-    if word.pos not in ("NOUN", "PROPN", "X") or word.dep in ("compound", "nmod", "amod") or word.low in ("one", "ones"):
+    if (
+        word.pos not in ("NOUN", "PROPN", "X")
+        or word.dep in ("compound", "nmod", "amod")
+        or word.low in ("one", "ones")
+    ):
         return ""
     own = phrase_of(heard.tree, word)
     return "" if any(w.tag in ("WDT", "WP") or w.low == "how" for w in own) else heard.tree.phrase(own)
@@ -135,7 +146,11 @@ def _name(heard: Parse, word: Word, thread: Sequence[Turn]) -> str:
 def _told(turn: Turn, base: str) -> Answer | None:
     """Return the answer of a turn if it measures what is compared."""
     words = set(turn.question.lower().split())
-    if base not in ("big", "large", "many", "much") and words.isdisjoint(variants_of(base)) and not (base == "old" and "when" in words):
+    if (
+        base not in ("big", "large", "many", "much")
+        and words.isdisjoint(variants_of(base))
+        and not (base == "old" and "when" in words)
+    ):
         return None
     return Answer(turn.question, turn.answer, turn.source, turn.title, turn.confidence)
 
@@ -147,7 +162,9 @@ def _asked(name: str, base: str, noun: str, ask: Callable[[str], Answer]) -> Ans
     elif base in ("old", "early", "late"):
         questions += [f"when was {name} {done}?" for done in ("born", "founded", "built")]
     answers = [ask(question) for question in questions]
-    right = [a for a in answers if a.text and (dates_in(a.text) if base in ("old", "early", "late") else measured(a.text))]
+    right = [
+        a for a in answers if a.text and (dates_in(a.text) if base in ("old", "early", "late") else measured(a.text))
+    ]
     return max(right, key=lambda answer: answer.confidence, default=None)
 
 

@@ -26,7 +26,9 @@ MOST = 8
 """The maximum number of readings that are tried."""
 
 
-def answer_in(answerer: Answerer, heard: Parse, thread: Sequence[Turn], settings: Settings, now: float) -> tuple[Answer, Turn | None]:
+def answer_in(
+    answerer: Answerer, heard: Parse, thread: Sequence[Turn], settings: Settings, now: float
+) -> tuple[Answer, Turn | None]:
     """Return the best supported answer to an utterance, and the turn to keep if there is one.
 
     Args:
@@ -106,7 +108,9 @@ def _decided(answerer: Answerer, question: Question, settings: Settings, titles:
         if decided.confidence >= settings.sure:
             return decided
     answer = answerer.answer(question, titles)
-    if answer.confidence < settings.unsure and (thing := re.match(r"how old (?:is|are|was) (.+)\?", question.text, re.IGNORECASE)):
+    if answer.confidence < settings.unsure and (
+        thing := re.match(r"how old (?:is|are|was) (.+)\?", question.text, re.IGNORECASE)
+    ):
         others = [answerer.answer(f"when was {thing[1]} {done}?", titles) for done in ("born", "founded", "built")]
         answer = max((answer, *others), key=lambda other: other.confidence)
     if question.doubtful and answer.confidence < settings.sure:

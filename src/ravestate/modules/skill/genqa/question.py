@@ -18,7 +18,7 @@ from .lexicon import variants_of, words_of
 
 LONGEST = 600
 """The maximum length of an utterance in characters; a longer one is not a question about the world."""
-THE_TWO = frozenset("i me my mine myself you your yours yourself u ur".split())
+THE_TWO = frozenset(["i", "me", "my", "mine", "myself", "you", "your", "yours", "yourself", "u", "ur"])
 """The pronouns for the user and the agent."""
 _WH = ("WP", "WP$", "WDT", "WRB")
 _FINITE = ("VBZ", "VBP", "VBD", "MD")
@@ -222,7 +222,9 @@ def _qualifiers(heard: Parse) -> tuple[list[tuple[str, ...]], list[str]]:
 def _is_superlative(tree: Tree, word: Word) -> bool:
     """Return whether it is a superlative; *most people* without *the* is none."""
     before = tree.before(word)
-    quantity = word.low in ("most", "least") and tree.head(word).pos == "NOUN" and (before is None or before.low != "the")
+    quantity = (
+        word.low in ("most", "least") and tree.head(word).pos == "NOUN" and (before is None or before.low != "the")
+    )
     return word.tag in ("JJS", "RBS") and not quantity
 
 
@@ -254,7 +256,9 @@ def is_vague(question: Question) -> bool:
     return len(question.words) < 2 and not PRONOUNS.isdisjoint(question.text.lower().split())
 
 
-PRONOUNS = frozenset("it its they them their he him his she her there this that these those".split())
+PRONOUNS = frozenset(
+    ["it", "its", "they", "them", "their", "he", "him", "his", "she", "her", "there", "this", "that", "these", "those"]
+)
 
 
 def not_asked(heard: Parse, analysis: Analysis) -> str:

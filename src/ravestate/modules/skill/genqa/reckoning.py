@@ -140,15 +140,23 @@ def _sum(spoken: str, told: Sequence[str], rates: Mapping[str, float]) -> str:
             parts.append(token.replace(",", ""))
         elif token in ("square", "cubic") and after in _units():
             squared = token
-        elif unit and (len(token) > 1 and token != "second" or before[:1].isdigit() or before in ("in", "to", "into")):
-            word, unit = (f"{squared} {token}", f"{unit}**{2 if squared == 'square' else 3}") if squared else (token, unit)
+        elif unit and (
+            (len(token) > 1 and token != "second") or before[:1].isdigit() or before in ("in", "to", "into")
+        ):
+            word, unit = (
+                (f"{squared} {token}", f"{unit}**{2 if squared == 'square' else 3}") if squared else (token, unit)
+            )
             number = tokens[place - 2] if squared and place > 1 else before
             squared = ""
             if number in ("degrees", "degree") and place > 1:
                 number = tokens[place - 2]
             if not number[:1].isdigit() and before in ("in", "to", "into") and target == "":
                 target, target_word = unit, word
-            elif number[:1].isdigit() or (number in ("a", "an", "one", "per") and place > 1 and tokens[place - 2] in ("in", "is", "are", "of", "to")):
+            elif number[:1].isdigit() or (
+                number in ("a", "an", "one", "per")
+                and place > 1
+                and tokens[place - 2] in ("in", "is", "are", "of", "to")
+            ):
                 parts.append(f"*u{len(units)}" if number[:1].isdigit() else f"1*u{len(units)}")
                 units.append(unit)
             elif target:
@@ -176,19 +184,34 @@ def _sum(spoken: str, told: Sequence[str], rates: Mapping[str, float]) -> str:
 
 
 def _worked_out(
-    spoken: str, parts: list[str], units: list[str], target: str, word: str, told: Sequence[str], rates: Mapping[str, float], *, that: bool, signs: bool
+    spoken: str,
+    parts: list[str],
+    units: list[str],
+    target: str,
+    word: str,
+    told: Sequence[str],
+    rates: Mapping[str, float],
+    *,
+    that: bool,
+    signs: bool,
 ) -> str:
     """Evaluate the parts; *that* is the last quantity told that fits."""
     known = _quantities(told)
     numbers = any(part[:1].isdigit() for part in parts)
-    needs_that = (that and (signs or not numbers)) or not numbers or (bool(known) and signs and parts[0] in "+*/-" and not units)
+    needs_that = (
+        (that and (signs or not numbers)) or not numbers or (bool(known) and signs and parts[0] in "+*/-" and not units)
+    )
     if not needs_that:
         parts = [part for part in parts if part != "that"]
     elif not known:
         return ""
     elif not that:
         parts = ["that", *parts]
-    chosen = next((q for q in known if not target or _alike(q.unit, target)), known[0] if known else None) if needs_that else None
+    chosen = (
+        next((q for q in known if not target or _alike(q.unit, target)), known[0] if known else None)
+        if needs_that
+        else None
+    )
     if needs_that and chosen is not None:
         parts = [part for place, part in enumerate(parts) if part != "that" or place == parts.index("that")]
         units = [*units, chosen.unit]
@@ -210,7 +233,9 @@ def _worked_out(
         value = result.to(_registry_unit(goal, rates)).magnitude if hasattr(result, "to") else result
     except Exception as error:
         if type(error).__name__ == "DimensionalityError":
-            raise Unanswerable(f"{_plain(units[-1]).capitalize()} and {_plain(target)} measure different things: I can't convert one into the other.") from None
+            raise Unanswerable(
+                f"{_plain(units[-1]).capitalize()} and {_plain(target)} measure different things: I can't convert one into the other."
+            ) from None
         raise
     return f"{shown} is {_number(value)} {_SHOWN.get(word, word) or _plain(goal)}."
 
@@ -310,9 +335,9 @@ def _unit(word: str, others: Sequence[str]) -> str:
 
 
 def _plain(unit: str) -> str:
-    return unit.replace(_CURRENCY, "").replace("**2", " squared").replace("degC", "degrees Celsius").replace("degF", "degrees Fahrenheit") + (
-        "" if unit.startswith("deg") or unit.endswith("2") else "s"
-    )
+    return unit.replace(_CURRENCY, "").replace("**2", " squared").replace("degC", "degrees Celsius").replace(
+        "degF", "degrees Fahrenheit"
+    ) + ("" if unit.startswith("deg") or unit.endswith("2") else "s")
 
 
 def _number(value: Any) -> str:
@@ -339,13 +364,21 @@ def _quantities(told: Sequence[str]) -> list[Quantity]:
             after = [*tokens[place + 1 : place + 3], "", ""]
             square = after[0] == "square"
             unit = _unit(after[1] if square else after[0], [_currencies().get(tokens[place - 1], "")] if place else [])
-            unit = unit or (_currencies().get(tokens[place - 1], "") if place else "") or _currencies().get(after[0], "")
+            unit = (
+                unit or (_currencies().get(tokens[place - 1], "") if place else "") or _currencies().get(after[0], "")
+            )
             if after[0] in ("pounds", "pound") and "cost" in tokens:
                 unit = _currencies()["pounds"]
             unit = f"{unit}**2" if square and unit else unit
             value = float(token.replace(",", ""))
             number = int(value) if value == int(value) else value
-            here.append(Quantity(number, unit, f"{token} {after[0]} {after[1]}" if square else f"{token} {after[0] if unit else ''}".strip()))
+            here.append(
+                Quantity(
+                    number,
+                    unit,
+                    f"{token} {after[0]} {after[1]}" if square else f"{token} {after[0] if unit else ''}".strip(),
+                )
+            )
         found += sorted(here, key=lambda quantity: not quantity.unit)
     return found
 
@@ -378,7 +411,7 @@ def _of_both(one: str, other: str, work_out: Callable[[float, float], float]) ->
 # ---------------------------------------------------------------------------------------------- dates
 
 
-_MONTHS = tuple("jan feb mar apr may jun jul aug sep oct nov dec".split())
+_MONTHS = tuple(["jan", "feb", "mar", "apr", "may", "jun", "jul", "aug", "sep", "oct", "nov", "dec"])
 
 
 def dates_in(text: str) -> list[Dated]:
@@ -397,10 +430,15 @@ def _found_dates(text: str) -> Iterator[Dated]:
             if len(span) < size or not _may_be_date(span):
                 continue
             try:
-                one, other = (parse(" ".join(span), default=datetime(year, month, day), dayfirst=True) for year, month, day in ((2000, 1, 1), (2004, 3, 3)))
+                one, other = (
+                    parse(" ".join(span), default=datetime(year, month, day), dayfirst=True)
+                    for year, month, day in ((2000, 1, 1), (2004, 3, 3))
+                )
             except (ParserError, OverflowError, ValueError):
                 continue
-            yield Dated(one.date(), one.day == other.day and one.month == other.month, one.year == other.year, " ".join(span))
+            yield Dated(
+                one.date(), one.day == other.day and one.month == other.month, one.year == other.year, " ".join(span)
+            )
             place += size - 1
             break
         place += 1
@@ -417,7 +455,10 @@ def _may_be_date(span: Sequence[str]) -> bool:
         return bool(numbers) and len(numbers) <= 2 and all(len(re.sub(r"\D", "", n)) <= 4 for n in numbers)
     if len(span) != 1 or not numbers:
         return False
-    return re.fullmatch(r"\d{1,4}[-/.]\d{1,2}[-/.]\d{1,4}", span[0]) is not None or re.fullmatch(r"1\d{3}|20\d\d", span[0]) is not None
+    return (
+        re.fullmatch(r"\d{1,4}[-/.]\d{1,2}[-/.]\d{1,4}", span[0]) is not None
+        or re.fullmatch(r"1\d{3}|20\d\d", span[0]) is not None
+    )
 
 
 def _dates(spoken: str, told: Sequence[str], today: date) -> str:
@@ -431,7 +472,8 @@ def _dates(spoken: str, told: Sequence[str], today: date) -> str:
     known = {*str(vocabulary()["framing"]).split(), *str(vocabulary()["dating"]).split()}
     if any(word not in known and word[:3] not in _MONTHS for word in words):
         return ""
-    if not dates and (refers or age or "ago" in words) and told and "today" not in words:
+    present = weekday and not words & {"that", "was"}  # "what day is it?"
+    if not dates and (refers or age or "ago" in words) and told and "today" not in words and not present:
         dates = [day for text in told[-2:] for day in dates_in(text)[:2]]
         if age and len(dates) < 2:
             return ""
@@ -445,7 +487,12 @@ def _dates(spoken: str, told: Sequence[str], today: date) -> str:
         dates = [Dated(dates[0].day.replace(year=today.year), dates[0].exact)]
     if weekday and dates[-1].exact:
         return f"{_day(dates[-1])} {'was' if dates[-1].day < today else 'is'} a {dates[-1].day:%A}."
-    if quantity is not None and len(dates) == 1 and words & {"after", "before", "from", "later", "earlier"} and dates[0].exact:
+    if (
+        quantity is not None
+        and len(dates) == 1
+        and words & {"after", "before", "from", "later", "earlier"}
+        and dates[0].exact
+    ):
         return _moved(dates[0], quantity, back=bool(words & {"before", "earlier"}))
     if len(dates) == 1 and (words & {"ago", "until", "since", "till"} or (refers and "ago" in words)):
         dates = [dates[0], Dated(today, dates[0].exact)]
@@ -474,7 +521,11 @@ def _moved(start: Dated, quantity: Quantity, *, back: bool) -> str:
 
     count = int(-quantity.value if back else quantity.value)
     try:
-        end = start.day + (timedelta(days=count * (7 if quantity.unit == "week" else 1)) if quantity.unit in ("day", "week") else relativedelta(**{f"{quantity.unit}s": count}))  # type: ignore[arg-type]
+        end = start.day + (
+            timedelta(days=count * (7 if quantity.unit == "week" else 1))
+            if quantity.unit in ("day", "week")
+            else relativedelta(**{f"{quantity.unit}s": count})
+        )  # type: ignore[arg-type]
     except (OverflowError, ValueError):
         raise Unanswerable("That is beyond the calendar.") from None
     return f"That is {_day(Dated(end, exact=True))}."

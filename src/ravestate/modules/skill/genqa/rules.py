@@ -53,7 +53,7 @@ def find(ctx: rs.RuleContext) -> rs.Resign | None:
     if analysis is None:
         return rs.Resign("nothing was analysed")
     heard = parsed(analysis.tree, analysis.entities, analysis.question)
-    if (reason := not_asked(heard, analysis)):
+    if reason := not_asked(heard, analysis):
         return rs.Resign(reason)
     turns = tuple(turn for turn in ctx[thread] if ctx.now - turn.at <= REMEMBERED)
     said, view = ctx[rawio.output], turns

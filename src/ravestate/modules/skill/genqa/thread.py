@@ -81,7 +81,11 @@ def turn_of(asked: Parse, found: Answer, at: float, sexes: tuple[tuple[str, str]
         for thing in things_of(asked)
         if thing.label not in ("ORDINAL", "CARDINAL")
     ]
-    if title and title.lower() in f"{asked.tree.text} {answer}".lower() and not any(_same(t.text, title) for t in things):
+    if (
+        title
+        and title.lower() in f"{asked.tree.text} {answer}".lower()
+        and not any(_same(t.text, title) for t in things)
+    ):
         things.append(Thing(title, next((t.label for t in things if t.text.lower() in title.lower()), "TITLE")))
     words = set(asked.text.lower().split())
     new = [t for t in things_of(told) if not _same(t.text, title) and not words.issuperset(t.text.lower().split())]
@@ -92,7 +96,18 @@ def turn_of(asked: Parse, found: Answer, at: float, sexes: tuple[tuple[str, str]
         if not words_of(sex).isdisjoint(words) and asked.kind is QuestionWord.PERSON:
             sexes = (*sexes, *((thing.text, sex) for thing in new if thing.is_person))
     items = max((group for group in _lists(told.tree)), key=len, default=())
-    return Turn(asked.text.rstrip("?"), answer, title, at, tuple(_by_likelihood(things)), tuple(new), items, sexes, found.source, found.confidence)
+    return Turn(
+        asked.text.rstrip("?"),
+        answer,
+        title,
+        at,
+        tuple(_by_likelihood(things)),
+        tuple(new),
+        items,
+        sexes,
+        found.source,
+        found.confidence,
+    )
 
 
 def _by_likelihood(things: Sequence[Thing]) -> list[Thing]:
@@ -147,7 +162,7 @@ def _lists(tree: Tree) -> Iterator[tuple[str, ...]]:
     """Yield the members of each enumeration."""
     for word in tree.words:
         members, last = [word], word
-        while (nexts := tree.children(last, "conj")):
+        while nexts := tree.children(last, "conj"):
             last = nexts[0]
             members.append(last)
         if len(members) > 1 and word.pos in ("NOUN", "PROPN") and word.dep != "conj":
@@ -192,7 +207,9 @@ def readings(seen: Parse, thread: Sequence[Turn], titled: Callable[[str], str] =
 def _leans(seen: Parse) -> bool:
     """Return whether an utterance cannot be understood alone."""
     words = [word for word in seen.asked if word.pos != "PUNCT"]
-    if not any(word.pos in ("NOUN", "PROPN", "VERB", "NUM", "ADJ", "X") and word.low not in ("one", "ones") for word in words):
+    if not any(
+        word.pos in ("NOUN", "PROPN", "VERB", "NUM", "ADJ", "X") and word.low not in ("one", "ones") for word in words
+    ):
         return True
     if any(word.tag == "PRP$" and not _is_bound(seen.tree, word) for word in words):
         return True
@@ -210,7 +227,9 @@ def _all(seen: Parse, thread: Sequence[Turn], titled: Callable[[str], str]) -> I
     if (meant := correction(seen)) is not None:  # "no, I meant Mount Olin"
         yield from _swapped(thread, Thing(tree.phrase(meant), "NAME"))
         return
-    while words and (words[0].pos == "CCONJ" or (words[0].low in ("what", "how") and words[1:] and words[1].low == "about")):
+    while words and (
+        words[0].pos == "CCONJ" or (words[0].low in ("what", "how") and words[1:] and words[1].low == "about")
+    ):
         words = words[1 if words[0].pos == "CCONJ" else 2 :]
     lead = len(words) < len([word for word in seen.asked if word.pos != "PUNCT"])
     if not words:
@@ -223,7 +242,9 @@ def _all(seen: Parse, thread: Sequence[Turn], titled: Callable[[str], str]) -> I
             phrase = [w for w in phrase_of(tree, ones[0]) if w in words]
             rest = [w for w in words if w not in phrase]
             if any(w.tag in ("VBZ", "VBP", "VBD", "MD") for w in rest):
-                yield from _replaced(seen, words, {w.index: (item if w is phrase[0] else "") for w in phrase}, pronouns, item)
+                yield from _replaced(
+                    seen, words, {w.index: (item if w is phrase[0] else "") for w in phrase}, pronouns, item
+                )
             else:
                 yield from _swapped(thread, Thing(item, "NAME"))
         return
@@ -235,7 +256,9 @@ def _all(seen: Parse, thread: Sequence[Turn], titled: Callable[[str], str]) -> I
         for rank, thing in enumerate(referents(pronouns[0], thread)):
             far = 3.0 if pronouns[0].low in SEXES and person and not thing.is_person else 0.0
             sexes = ((thing.text, pronouns[0].low),) if pronouns[0].low in SEXES else ()
-            yield Reading(_with(seen, words, {p.index: _owned(p, thing.text) for p in pronouns}), -0.4 * rank - far, sexes=sexes)
+            yield Reading(
+                _with(seen, words, {p.index: _owned(p, thing.text) for p in pronouns}), -0.4 * rank - far, sexes=sexes
+            )
         if any(w.low == "it" for w in pronouns) and any(w.pos in ("NOUN", "PROPN", "VERB") for w in words):
             yield Reading(_mark(text, seen), -1.0)
         return
@@ -257,7 +280,9 @@ def refers(word: Word, words: Sequence[Word]) -> bool:
         return word.dep != "expl" and word.tag != "EX"
     if word.low in ("that", "this"):
         return word.dep in ("nsubj", "nsubjpass", "pobj", "dobj", "attr", "ROOT") and word.tag == "DT"
-    return not any(w.pos in ("NOUN", "PROPN") and w.index < word.index and w.dep in ("nsubj", "nsubjpass") for w in words)
+    return not any(
+        w.pos in ("NOUN", "PROPN") and w.index < word.index and w.dep in ("nsubj", "nsubjpass") for w in words
+    )
 
 
 def referents(pronoun: Word, thread: Sequence[Turn]) -> list[Thing]:
@@ -266,7 +291,11 @@ def referents(pronoun: Word, thread: Sequence[Turn]) -> list[Thing]:
     known = {name: SEXES[said] for turn in thread for name, said in turn.sexes}
     found: dict[str, Thing] = {}
     for turn in reversed(thread[-2:]):
-        things = [*turn.told, *turn.asked] if sex or pronoun.low == "there" or _asks_for_thing(turn) else [*turn.asked, *turn.told]
+        things = (
+            [*turn.told, *turn.asked]
+            if sex or pronoun.low == "there" or _asks_for_thing(turn)
+            else [*turn.asked, *turn.told]
+        )
         things = sorted(things, key=lambda thing: _unlikely(pronoun.low, sex, thing, known))
         for thing in things:
             if _unlikely(pronoun.low, sex, thing, known) < 3:
@@ -285,7 +314,13 @@ def _unlikely(pronoun: str, sex: str | None, thing: Thing, known: dict[str, str]
             return 3
         if _sex_of(thing.text) not in (None, sex):
             return 3
-        return 0 if thing.is_person else 1 if thing.label in ("NAME", "TITLE", "ORG", "GPE", "PRODUCT", "WORK_OF_ART", "FAC") else 2
+        return (
+            0
+            if thing.is_person
+            else 1
+            if thing.label in ("NAME", "TITLE", "ORG", "GPE", "PRODUCT", "WORK_OF_ART", "FAC")
+            else 2
+        )
     if thing.label in NUMBERS:
         return 3
     if pronoun == "there":
@@ -343,7 +378,9 @@ def correction(seen: Parse) -> list[Word] | None:
     return seen.tree.subtree(things[0]) if things and things[0].pos in ("NOUN", "PROPN", "X") else None
 
 
-def _replaced(seen: Parse, words: Sequence[Word], instead: dict[int, str], pronouns: Sequence[Word], item: str) -> Iterator[Reading]:
+def _replaced(
+    seen: Parse, words: Sequence[Word], instead: dict[int, str], pronouns: Sequence[Word], item: str
+) -> Iterator[Reading]:
     verb = next((i for i, w in enumerate(words) if w.tag in ("WP", "WRB", "WDT")), 0)
     if verb and all(w.index in instead for w in words[:verb] if w.pos != "PUNCT"):  # "the first one, who climbed it?"
         words = words[verb:]
@@ -428,7 +465,11 @@ def _another_rank(text: str, thread: Sequence[Turn]) -> Iterator[Reading]:
     if not ranks:
         return
     before = seen.tree.before(ranks[0])
-    whole = [w for w in seen.tree.words if w not in ranks and w is not before or (before and before.low != "the" and w is before)]
+    whole = [
+        w
+        for w in seen.tree.words
+        if (w not in ranks and w is not before) or (before and before.low != "the" and w is before)
+    ]
     at = ranks[0].index
     left, right = [w for w in whole if w.index < at], [w for w in whole if w.index > at]
     bare = text if text.lower().startswith("the ") else f"the {text}"
