@@ -32,7 +32,8 @@ ROWS = HERE / "thread_rows.yaml"
 def measure_followups(file: Path = ROWS) -> Result:
     """Run the talks of a file, each in a context of its own."""
     content = yaml.safe_load(file.read_text(encoding="utf-8"))
-    counts = dict.fromkeys(("right", "answered right", "rightly silent", "wrongly silent", "wrong"), 0)
+    outcomes = ("right", "answered right", "rightly silent", "wrongly silent", "wrong")
+    counts: dict[str, int] = dict.fromkeys(outcomes, 0)
     misses: list[str] = []
     with tempfile.TemporaryDirectory(prefix="ravestate-followups-") as folder:
         path = Path(folder) / "index.sqlite"

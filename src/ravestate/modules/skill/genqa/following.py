@@ -6,7 +6,7 @@ import math
 import re
 from collections.abc import Sequence
 from dataclasses import replace
-from datetime import date
+from datetime import datetime
 
 from ravestate.modules.meta.nlp import QuestionWord
 from ravestate.modules.meta.nlp.tree import Word
@@ -80,13 +80,13 @@ def answer_in(
 
 def _reckoned(heard: Parse, thread: Sequence[Turn], settings: Settings) -> Answer | None:
     """Return the result of a sum; None if the utterance is none."""
-    told = [turn.answer for turn in thread]
+    told, today = [turn.answer for turn in thread], datetime.now().astimezone().date()
     text = heard.text
     try:
-        result = reckon(text, told, date.today(), settings.rates)
+        result = reckon(text, told, today, settings.rates)
         if not result and thread and not thread[-1].title and not heard.is_finite:
             text = _again(text, thread[-1].question)
-            result = reckon(text, told[:-1], date.today(), settings.rates) if text else ""
+            result = reckon(text, told[:-1], today, settings.rates) if text else ""
     except Unanswerable as error:
         result = str(error)
     return Answer(text, result, confidence=1.0) if result else None

@@ -1,4 +1,4 @@
-"""Lists of words from ``words.yaml``, and the words that count as the same."""
+"""Lists of words from YAML, and the words that count as the same."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from ravestate.yaml_text import load_yaml
 
 
 @cache
-def lexicon() -> dict[str, Any]:
-    """Return the file ``words.yaml``."""
-    return load_yaml((files(__package__ or "") / "words.yaml").read_text(encoding="utf-8"), "words.yaml")
+def lexicon(name: str = "words.yaml") -> dict[str, Any]:
+    """Return a YAML file of this folder."""
+    return load_yaml((files(__package__ or "") / name).read_text(encoding="utf-8"), name)
 
 
 @cache
 def words_of(name: str) -> frozenset[str]:
-    """Return a list of the file as a set."""
+    """Return a list of ``words.yaml`` as a set."""
     return frozenset(str(lexicon()[name]).split())
 
 
@@ -25,9 +25,8 @@ def words_of(name: str) -> frozenset[str]:
 def _variants() -> dict[str, tuple[str, ...]]:
     found: dict[str, tuple[str, ...]] = {}
     for group in str(lexicon()["same"]).replace("\n", "|").split("|"):
-        words = group.split()
-        for word in words:
-            found[word] = tuple(dict.fromkeys((*found.get(word, (word,)), *words)))
+        for word in group.split():
+            found[word] = tuple(dict.fromkeys((*found.get(word, (word,)), *group.split())))
     return found
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -34,7 +35,7 @@ class Settings(rs.Settings):
     """The folder of another cross-encoder (``model.onnx``, ``tokenizer.json``); the confidence is calibrated for the
     bundled one."""
 
-    rates: dict[str, float] = {}
+    rates: Mapping[str, float] = Field(default_factory=dict[str, float])
     """The value of one ``dollar``, ``euro``, ``sterling``..., each in the same currency; without it no money is exchanged."""
 
     @model_validator(mode="after")

@@ -6,22 +6,26 @@ import ast
 import math
 import operator
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from datetime import date, datetime, timedelta
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from datetime import date, datetime
 from functools import cache
-from importlib.resources import files
 from typing import Any
 
-from ravestate.yaml_text import load_yaml
+from .lexicon import lexicon
 
 LONGEST = 200
 """Characters of a sum."""
 DIGITS = 30
 """The maximum number of digits of a result."""
+_MONEY = "money:"
 _TOKEN = re.compile(r"\d[\d,]*(?:\.\d+)?|[^\W\d_]+|[^\w\s]")
-_CURRENCY = "currency:"
-_SHOWN = {"kmh": "km/h", "mps": "m/s"}
+_MONTHS = "jan|feb|mar|apr|may|jun|jul|aug|sep|oct|nov|dec"
+_DATE = re.compile(
+    rf"\b(?:\d{{1,2}}(?:st|nd|rd|th)? (?:of )?(?:{_MONTHS})[a-z]*\.?,?(?: \d{{4}})?|\d{{4}}-\d{{1,2}}-\d{{1,2}}|"
+    rf"\d{{1,2}}[./]\d{{1,2}}[./]\d{{4}}|(?:{_MONTHS})[a-z]*\.? \d{{1,2}}(?:st|nd|rd|th)?\b,?(?: \d{{4}})?|"
+    rf"(?:{_MONTHS})[a-z]*\.? \d{{4}}|(?<![\d.,])(?:1\d{{3}}|20\d\d)(?![\d,%]))\b"
+)
 
 
 class Unanswerable(Exception):
@@ -34,51 +38,36 @@ class Quantity:
 
     value: float
     unit: str
-    shown: str
-    """As written."""
+    word: str
+    """The unit as written."""
 
     def beside(self, other: Quantity) -> tuple[float, float] | None:
-        """Return both values in the same unit; None if they measure different things."""
-        if not self.unit and not other.unit:
-            return self.value, other.value
-        if not self.unit or not other.unit or not _alike(self.unit, other.unit):
-            return None
+        """Return both values in this unit; None if they measure different things."""
         if self.unit == other.unit:
             return self.value, other.value
-        registry = _registry()
-        return self.value, float(registry.Quantity(other.value, other.unit).to(self.unit).magnitude)
+        if not _alike(self.unit, other.unit):
+            return None
+        return self.value, float(_registry().Quantity(other.value, other.unit).to(self.unit).magnitude)
 
 
 @dataclass(frozen=True, slots=True)
 class Dated:
-    """A date; without a day and a month only the year counts."""
+    """A date."""
 
     day: date
     exact: bool
+    """Whether day and month are known."""
+    shown: str
+    """As written."""
     has_year: bool = True
-    shown: str = ""
+
+    def __str__(self) -> str:
+        return f"{self.day.day} {self.day:%B %Y}" if self.exact else str(self.day.year)
 
 
-@cache
-def vocabulary() -> dict[str, Any]:
-    """Return the file ``reckoning.yaml``."""
-    return load_yaml((files(__package__ or "") / "reckoning.yaml").read_text(encoding="utf-8"), "reckoning.yaml")
-
-
-@cache
-def _units() -> dict[str, str]:
-    found: dict[str, str] = {}
-    for name, words in vocabulary()["units"].items():
-        found.update(dict.fromkeys((*str(words).split(), name), name))
-    return found
-
-
-@cache
-def _currencies() -> dict[str, str]:
-    found: dict[str, str] = {}
-    for name, words in vocabulary()["currencies"].items():
-        found.update(dict.fromkeys((*str(words).split(), name), _CURRENCY + name))
-    return found
+def words_for(name: str) -> frozenset[str]:
+    """Return a list of words from ``reckoning.yaml``."""
+    return frozenset(str(lexicon("reckoning.yaml")[name]).split())
 
 
 def reckon(text: str, told: Sequence[str], today: date, rates: Mapping[str, float] | None = None) -> str:
@@ -95,212 +84,155 @@ def reckon(text: str, told: Sequence[str], today: date, rates: Mapping[str, floa
 
     Example:
         >>> reckon("what is 17 percent of 80", (), date(2026, 1, 1))
-        '17 percent of 80 is 13.6.'
+        'That is 13.6.'
         >>> reckon("how many days between 3 May and 1 June 2024", (), date(2026, 1, 1))
         'From 3 May 2024 to 1 June 2024 it is 29 days.'
     """
     if len(text) > LONGEST:
         return ""
-    spoken = _in_digits(text.strip(" ?!.").lower())
+    spoken = _in_digits(text.strip(" ?!."))
     return _dates(spoken, told, today) or _sum(spoken, told, rates or {})
 
 
-def _in_digits(text: str) -> str:
-    from text_to_num import alpha2digit
+def measured(text: str, after: Sequence[str] = ()) -> list[Quantity]:
+    """Return the numbers of a text; those with a unit before those without.
 
-    digits: str = alpha2digit(text, "en", 0.0).replace(" a 1", " 1")
-    return re.sub(
-        r"(\d[\d,.]*) (10{3}|10{6}|10{9})\b",
-        lambda found: f"{float(found[1].replace(',', '')) * int(found[2]):.15g}",
-        digits,
-    )
+    Args:
+        text: The text.
+        after: Earlier texts, whose numbers follow.
+    """
+    found: list[Quantity] = []
+    tokens = [*_TOKEN.findall(_in_digits(text)), "", "", ""]
+    for place, token in enumerate(tokens):
+        if token[:1].isdigit():
+            number = float(token.replace(",", ""))
+            power, word = (2, tokens[place + 2]) if tokens[place + 1] == "square" else (1, tokens[place + 1])
+            money = _currencies().get(tokens[place - 1] if place else "") or _currencies().get(word, "")
+            unit = money if money and ("cost" in text or word not in _units()) else _units().get(word, "")
+            unit = f"{unit}**2" if unit and power > 1 else unit
+            found.append(Quantity(int(number) if number == int(number) else number, unit, word if unit else ""))
+    found.sort(key=lambda quantity: not quantity.unit)
+    return found + (measured(after[-1]) if after else [])
+
+
+def of_both(one: str, other: str, work_out: Callable[[float, float], float]) -> str:
+    """Return the result for the first two numbers of two texts that measure the same; empty if there are none."""
+    pairs = ((left, left.beside(right)) for left in measured(one) for right in measured(other))
+    found = next(((left, values) for left, values in pairs if values is not None), None)
+    return "" if found is None else f"{_number(work_out(*found[1]))} {found[0].word}".strip() + "."
 
 
 # ------------------------------------------------------------------------------------- sums and units
 
 
+def _in_digits(text: str) -> str:
+    """Return a text in lower case with its numbers in digits."""
+    from text_to_num import alpha2digit  # pyright: ignore[reportMissingTypeStubs,reportUnknownVariableType]
+
+    digits = str(alpha2digit(text.lower(), "en", 0.0)).replace(" a 1", " 1")  # pyright: ignore[reportUnknownArgumentType]
+    scaled = r"(\d[\d,.]*) (10{3}|10{6}|10{9})\b"  # 1.5 million
+    return re.sub(scaled, lambda found: f"{float(found[1].replace(',', '')) * int(found[2]):.15g}", digits)
+
+
 def _sum(spoken: str, told: Sequence[str], rates: Mapping[str, float]) -> str:
-    text = f" {spoken} "
-    for pattern, sum_ in vocabulary()["verbs"].items():
-        text = re.sub(rf"(?<= ){pattern}(?= )", sum_, text)
-    for phrase, word in vocabulary()["joined"].items():
-        text = text.replace(f" {phrase} ", f" {word} ").replace(f"{phrase} ", f"{word} ")
-    for phrase, sign in vocabulary()["operators"].items():
-        letters = phrase[0].isalpha()
-        text = text.replace(f" {phrase} " if letters else phrase, f" {sign} ")
+    text, words = f" {spoken} ", lexicon("reckoning.yaml")
+    for pattern, instead in words["verbs"].items():
+        text = re.sub(rf"(?<= ){pattern}(?= )", instead, text)
+    for phrase, sign in (*words["joined"].items(), *words["operators"].items()):
+        text = text.replace(f" {phrase} " if phrase[0].isalpha() else phrase, f" {sign} ")
+    known = measured(told[-1], told[:-1][-1:]) if told else []
     tokens = _TOKEN.findall(re.sub(r"(?<=\d)\s*x\s*(?=\d)", "*", text))
     parts: list[str] = []
     units: list[str] = []
-    target, target_word, shown, that, squared = "", "", list[str](), False, ""
+    target = word = power = ""
     for place, token in enumerate(tokens):
-        before = tokens[place - 1] if place else ""
-        after = tokens[place + 1] if place + 1 < len(tokens) else ""
-        unit = _unit(token, [*units, *(q.unit for q in _quantities(told))])
+        before = next((t for t in reversed(tokens[:place]) if t not in ("square", "cubic", "degrees", "degree")), "")
+        leading = before in ("in", "to", "into", "as", "many")
+        unit = _unit(token, [*units, *(quantity.unit for quantity in known)])
         if token[0].isdigit():
+            parts += ["+"] if parts and parts[-1].startswith("*u") else []  # 5 feet 10 inches
             parts.append(token.replace(",", ""))
-        elif token in ("square", "cubic") and after in _units():
-            squared = token
-        elif unit and (
-            (len(token) > 1 and token != "second") or before[:1].isdigit() or before in ("in", "to", "into")
-        ):
-            word, unit = (
-                (f"{squared} {token}", f"{unit}**{2 if squared == 'square' else 3}") if squared else (token, unit)
-            )
-            number = tokens[place - 2] if squared and place > 1 else before
-            squared = ""
-            if number in ("degrees", "degree") and place > 1:
-                number = tokens[place - 2]
-            if not number[:1].isdigit() and before in ("in", "to", "into") and target == "":
-                target, target_word = unit, word
-            elif number[:1].isdigit() or (
-                number in ("a", "an", "one", "per")
-                and place > 1
-                and tokens[place - 2] in ("in", "is", "are", "of", "to")
-            ):
-                parts.append(f"*u{len(units)}" if number[:1].isdigit() else f"1*u{len(units)}")
-                units.append(unit)
+        elif token in ("square", "cubic") and place + 1 < len(tokens) and tokens[place + 1] in _units():
+            power = "**2" if token == "square" else "**3"
+        elif unit and (before[0:1].isdigit() or leading or (len(token) > 1 and token != "second")):
+            if before[:1].isdigit() or (before in ("a", "an", "per") and not target == unit):
+                parts.append(f"{'' if before[:1].isdigit() else '1'}*u{len(units)}")
+                units.append(unit + power)
             elif target:
                 return ""
             else:
-                target, target_word = unit, word
-        elif token in _FUNCTIONS or not token[0].isalnum():
-            if token not in "+-*/%().,'?" and token not in _FUNCTIONS:
-                return ""
-            if token not in ".,'?":
-                parts.append(token)
-        elif token in str(vocabulary()["that"]).split():
-            that = True
+                target, word = unit + power, f"square {token}" if power else token
+            power = ""
+        elif token in _FUNCTIONS or token in "+-*/%()":
+            parts.append(token)
+        elif token in words_for("that"):
             parts.append("that")
-        elif token not in str(vocabulary()["framing"]).split():
+        elif token not in ".,'?" and token not in words_for("framing"):
             return ""
-        shown.append(token)
-    numbers = [part for part in parts if part[:1].isdigit()]
-    signs = [part for part in parts if part in "+-*/%" or part in _FUNCTIONS]
-    if not (target or signs or len(units) > 1) or not (numbers or that or told):
+    signs = any(part in "+-*/%" or part in _FUNCTIONS for part in parts)
+    numbers = any(part[0].isdigit() for part in parts)
+    if not (target or signs) or not (parts or known):
         return ""
-    if not target and not signs:
-        return ""
-    return _worked_out(spoken, parts, units, target, target_word, told, rates, that=that, signs=bool(signs))
-
-
-def _worked_out(
-    spoken: str,
-    parts: list[str],
-    units: list[str],
-    target: str,
-    word: str,
-    told: Sequence[str],
-    rates: Mapping[str, float],
-    *,
-    that: bool,
-    signs: bool,
-) -> str:
-    """Evaluate the parts; *that* is the last quantity told that fits."""
-    known = _quantities(told)
-    numbers = any(part[:1].isdigit() for part in parts)
-    needs_that = (
-        (that and (signs or not numbers)) or not numbers or (bool(known) and signs and parts[0] in "+*/-" and not units)
-    )
-    if not needs_that:
-        parts = [part for part in parts if part != "that"]
-    elif not known:
-        return ""
-    elif not that:
-        parts = ["that", *parts]
-    chosen = (
-        next((q for q in known if not target or _alike(q.unit, target)), known[0] if known else None)
-        if needs_that
-        else None
-    )
-    if needs_that and chosen is not None:
-        parts = [part for place, part in enumerate(parts) if part != "that" or place == parts.index("that")]
-        units = [*units, chosen.unit]
-        value = f"({chosen.value!r}*u{len(units) - 1})" if chosen.unit else f"({chosen.value!r})"
+    if "that" in parts and numbers and not signs:
+        parts.remove("that")
+    elif (not numbers or (known and parts[0] in "+*/-" and not units)) and "that" not in parts:
+        parts.insert(0, "that")
+    if "that" in parts:
+        fitting = [quantity for quantity in known if not target or _alike(quantity.unit, target)]
+        if not fitting:
+            return ""
+        units.append(fitting[0].unit)
+        value = f"({fitting[0].value!r}*u{len(units) - 1})"
+        parts = [part for place, part in enumerate(parts) if part != "that" or "that" not in parts[:place]]
         parts = [value if part == "that" else part for part in parts]
-    used = [unit for unit in (*units, target) if unit.startswith(_CURRENCY)]
-    if used and (len(set(used)) > 1 or len({*units, target} - {""}) > 1):
-        if any(unit[len(_CURRENCY) :] not in rates for unit in used):
-            raise Unanswerable("I know no exchange rates, so I can't work that out.")
-    source = "".join(parts)
-    source = re.sub(r"(sqrt|cbrt)(-?\d[\d.]*|\([^()]*\))", r"\1(\2)", source)
-    source = re.sub(r"(?<=u\d)(?=\d)", "+", source)  # 5 feet 3 inches
-    result = _evaluated(source, units, rates)
-    shown = _said(spoken, chosen, target, word, signs=signs)
-    if not any(units):
-        return f"{shown} is {_number(result)}." if not target else ""
+    result = _result("".join(parts), units, target, word, rates)
+    return f"That is {result}." if result else ""
+
+
+def _result(source: str, units: Sequence[str], target: str, word: str, rates: Mapping[str, float]) -> str:
+    """Return the value of an expression in its target unit."""
+    money = {unit.removeprefix(_MONEY) for unit in (*units, target) if unit.startswith(_MONEY)}
+    if len(money) > 1 and not money <= rates.keys():
+        raise Unanswerable("I know no exchange rates, so I can't work that out.")
+    goal = target or next((unit for unit in units if unit), "")
     try:
-        goal = target or next(unit for unit in units if unit)
-        value = result.to(_registry_unit(goal, rates)).magnitude if hasattr(result, "to") else result
-    except Exception as error:
-        if type(error).__name__ == "DimensionalityError":
-            raise Unanswerable(
-                f"{_plain(units[-1]).capitalize()} and {_plain(target)} measure different things: I can't convert one into the other."
-            ) from None
-        raise
-    return f"{shown} is {_number(value)} {_SHOWN.get(word, word) or _plain(goal)}."
-
-
-def _said(spoken: str, that: Quantity | None, target: str, word: str, *, signs: bool) -> str:
-    """Return the sum as the user said it, without the frame."""
-    text = spoken
-    if that is not None:
-        if not signs:
-            return that.shown
-        found = _THAT.search(text)
-        text = _THAT.sub(that.shown, text, count=1) if found else f"{that.shown} {text}"
-    if target:
-        text = re.sub(rf"(?:how (?:many|much) |\b(?:in|to|into|as) ){re.escape(word)}\b", " ", text)
-    words = text.split()
-    framing = frozenset(str(vocabulary()["framing"]).split()) - {"a", "an", "the"}
-    while words and words[0] in framing:
-        words = words[1:]
-    while words and words[-1] in framing:
-        words = words[:-1]
-    text = " ".join(words)
-    return text[:1].upper() + text[1:]
-
-
-_THAT = re.compile(r"\b(?:that|it|this|them)\b")
-
-
-def _evaluated(source: str, units: Sequence[str], rates: Mapping[str, float]) -> Any:
-    from simpleeval import InvalidExpression, SimpleEval
-
-    names = {f"u{place}": _registry_unit(unit, rates) * 1 if unit else 1 for place, unit in enumerate(units)}
-    if any(unit.startswith("deg") for unit in units):
-        number = re.search(r"-?\d[\d.]*", source)
-        return _registry().Quantity(float(number[0]) if number else 0.0, next(u for u in units if u))
-    evaluator = SimpleEval(operators=_OPERATORS, functions=_FUNCTIONS, names=names)
-    try:
-        return evaluator.eval(source)
+        value = _evaluated(
+            re.sub(r"(sqrt|cbrt)(-?\d[\d.]*)", r"\1(\2)", source), [_in_pint(unit, rates) for unit in units]
+        )
+        if not goal:
+            return _number(value)
+        return f"{_number(value.to(_in_pint(goal, rates)).magnitude)} {lexicon('reckoning.yaml')['shown'].get(word, word) or goal.removeprefix(_MONEY) + 's'}"
     except ZeroDivisionError:
         raise Unanswerable("Nothing can be divided by zero.") from None
     except OverflowError:
         raise Unanswerable("That number is too large for me.") from None
-    except (InvalidExpression, SyntaxError, TypeError, ValueError) as error:
-        if type(error).__name__ == "DimensionalityError":
-            raise Unanswerable("These measure different things, so they can't be added.") from None
-        if isinstance(error, ValueError) and "root" in str(error):
-            raise Unanswerable("A negative number has no real square root.") from None
-        raise Unanswerable("") from None
+    except ValueError:
+        raise Unanswerable("A negative number has no real root.") from None
+    except Exception as error:  # of simpleeval and pint
+        if type(error).__name__ != "DimensionalityError":
+            return ""
+        raise Unanswerable("These measure different things, so I can't turn one into the other.") from None
+
+
+def _evaluated(source: str, units: Sequence[Any]) -> Any:
+    from simpleeval import SimpleEval  # pyright: ignore[reportMissingTypeStubs]
+
+    names = {f"u{place}": unit for place, unit in enumerate(units)}
+    if (heat := re.fullmatch(r"\(?(-?[\d.]+)\*(u\d)\)?", source)) and not names[heat[2]]._is_multiplicative:
+        return _registry().Quantity(float(heat[1]), names[heat[2]].units)  # 20 degrees, not 20 times one degree
+    return SimpleEval(operators=_OPERATORS, functions=_FUNCTIONS, names=names).eval(source)  # pyright: ignore[reportUnknownMemberType,reportUnknownVariableType]
 
 
 def _power(base: Any, exponent: Any) -> Any:
-    if isinstance(base, int | float) and base and abs(exponent) * max(abs(math.log10(abs(base))), 0.01) > DIGITS:
+    if isinstance(base, int | float) and base and abs(exponent) * abs(math.log10(abs(base))) > DIGITS:
         raise OverflowError
     return base**exponent
 
 
-def _root(value: float) -> float:
-    if value < 0:
-        raise ValueError("root of a negative number")
-    return math.sqrt(value)
-
-
-_FUNCTIONS: dict[str, Callable[..., Any]] = {"sqrt": _root, "cbrt": math.cbrt, "abs": abs}
+_FUNCTIONS: dict[str, Callable[..., Any]] = {"sqrt": math.sqrt, "cbrt": math.cbrt, "abs": abs}
 _OPERATORS: dict[type, Callable[..., Any]] = {
-    ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: operator.truediv, ast.Pow: _power,
-    ast.Mod: operator.mod, ast.USub: operator.neg, ast.UAdd: operator.pos,
+    ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Pow: _power, ast.Mod: operator.mod,
+    ast.Div: lambda one, other: one / other, ast.USub: operator.neg, ast.UAdd: operator.pos,
 }  # fmt: skip
 
 
@@ -308,228 +240,119 @@ _OPERATORS: dict[type, Callable[..., Any]] = {
 def _registry() -> Any:
     import pint
 
-    return pint.UnitRegistry(autoconvert_offset_to_baseunit=True)
+    make: Any = pint.UnitRegistry
+    registry: Any = make(autoconvert_offset_to_baseunit=True)
+    registry.define("money = [money]")
+    return registry
 
 
-def _registry_unit(unit: str, rates: Mapping[str, float]) -> Any:
-    if unit.startswith(_CURRENCY):
-        name = unit[len(_CURRENCY) :]
-        registry = _registry()
-        if "money" not in registry:
-            registry.define("money = [money]")
-        return registry.Unit("money") * rates.get(name, 1.0) if rates else registry.Unit("money")
-    return _registry().Unit(unit)
+def _in_pint(unit: str, rates: Mapping[str, float]) -> Any:
+    """Return one of a unit."""
+    if unit.startswith(_MONEY):
+        return rates.get(unit.removeprefix(_MONEY), 1.0) * _registry().money
+    return _registry().Quantity(1, unit) if unit else 1
 
 
 def _alike(one: str, other: str) -> bool:
-    if one.startswith(_CURRENCY) or other.startswith(_CURRENCY):
-        return one.startswith(_CURRENCY) == other.startswith(_CURRENCY)
-    return bool(one) and _registry().Unit(one).is_compatible_with(_registry().Unit(other))
+    if one.startswith(_MONEY) or other.startswith(_MONEY):
+        return one.startswith(_MONEY) and other.startswith(_MONEY)
+    return bool(one and other) and bool(_registry().Unit(one).is_compatible_with(_registry().Unit(other)))
+
+
+@cache
+def _units() -> dict[str, str]:
+    table: dict[str, str] = lexicon("reckoning.yaml")["units"]
+    return {word: name for name, words in table.items() for word in (name, *words.split())}
+
+
+@cache
+def _currencies() -> dict[str, str]:
+    table: dict[str, str] = lexicon("reckoning.yaml")["currencies"]
+    return {word: _MONEY + name for name, words in table.items() for word in (name, *words.split())}
 
 
 def _unit(word: str, others: Sequence[str]) -> str:
     """Return the unit of a word; *pounds* are money beside money."""
-    if word in _currencies() and (word not in _units() or any(unit.startswith(_CURRENCY) for unit in others)):
-        return _currencies()[word]
-    return _units().get(word, "")
-
-
-def _plain(unit: str) -> str:
-    return unit.replace(_CURRENCY, "").replace("**2", " squared").replace("degC", "degrees Celsius").replace(
-        "degF", "degrees Fahrenheit"
-    ) + ("" if unit.startswith("deg") or unit.endswith("2") else "s")
+    money = any(unit.startswith(_MONEY) for unit in others)
+    return _currencies()[word] if word in _currencies() and (money or word not in _units()) else _units().get(word, "")
 
 
 def _number(value: Any) -> str:
     """Return a number in digits, rounded to what matters."""
-    if isinstance(value, int):
-        if abs(value) >= 10**DIGITS:
-            raise Unanswerable("That number is too large for me.")
-        return f"{value:,}"
     if not math.isfinite(value) or abs(value) >= 10**DIGITS:
-        raise Unanswerable("That number is too large for me.")
-    rounded = round(value, 3) if abs(value) >= 1 else float(f"{value:.3g}")
+        raise OverflowError
+    rounded = value if isinstance(value, int) else round(value, 3) if abs(value) >= 1 else float(f"{value:.3g}")
     return f"{int(rounded):,}" if rounded == int(rounded) else f"{rounded:,}"
-
-
-def _quantities(told: Sequence[str]) -> list[Quantity]:
-    """Return the numbers of the latest answers, the last answer first; those with a unit before those without."""
-    found: list[Quantity] = []
-    for text in reversed(told[-2:]):
-        tokens = _TOKEN.findall(_in_digits(text.lower()))
-        here: list[Quantity] = []
-        for place, token in enumerate(tokens):
-            if not token[0].isdigit():
-                continue
-            after = [*tokens[place + 1 : place + 3], "", ""]
-            square = after[0] == "square"
-            unit = _unit(after[1] if square else after[0], [_currencies().get(tokens[place - 1], "")] if place else [])
-            unit = (
-                unit or (_currencies().get(tokens[place - 1], "") if place else "") or _currencies().get(after[0], "")
-            )
-            if after[0] in ("pounds", "pound") and "cost" in tokens:
-                unit = _currencies()["pounds"]
-            unit = f"{unit}**2" if square and unit else unit
-            value = float(token.replace(",", ""))
-            number = int(value) if value == int(value) else value
-            here.append(
-                Quantity(
-                    number,
-                    unit,
-                    f"{token} {after[0]} {after[1]}" if square else f"{token} {after[0] if unit else ''}".strip(),
-                )
-            )
-        found += sorted(here, key=lambda quantity: not quantity.unit)
-    return found
-
-
-def measured(text: str) -> list[Quantity]:
-    """Return the numbers of a text; those with a unit before those without."""
-    return _quantities((text,))
-
-
-def difference(one: str, other: str, *, dates: bool = False) -> str:
-    """Return how far the numbers, or dates, of two texts are apart."""
-    if dates:
-        return _between(*sorted((dates_in(one)[0], dates_in(other)[-1]), key=lambda each: each.day), "year")
-    return _of_both(one, other, lambda first, second: abs(first - second))
-
-
-def together(one: str, other: str) -> str:
-    """Return the sum of the numbers of two texts."""
-    return _of_both(one, other, operator.add)
-
-
-def _of_both(one: str, other: str, work_out: Callable[[float, float], float]) -> str:
-    for left in measured(one):
-        for right in measured(other):
-            if (values := left.beside(right)) is not None:
-                return f"{_number(round(work_out(*values), 6))} {left.shown.partition(' ')[2]}".strip() + "."
-    return ""
 
 
 # ---------------------------------------------------------------------------------------------- dates
 
 
-_MONTHS = tuple(["jan", "feb", "mar", "apr", "may", "jun", "jul", "aug", "sep", "oct", "nov", "dec"])
-
-
 def dates_in(text: str) -> list[Dated]:
     """Return the dates of a text, in order."""
-    return list(_found_dates(_in_digits(text.lower()) if text else ""))
-
-
-def _found_dates(text: str) -> Iterator[Dated]:
     from dateutil.parser import ParserError, parse
 
-    tokens = [token.strip(".?!()\"';:") for token in text.replace(",", " ").split()]
-    place = 0
-    while place < len(tokens):
-        for size in (5, 4, 3, 2, 1):
-            span = tokens[place : place + size]
-            if len(span) < size or not _may_be_date(span):
-                continue
-            try:
-                one, other = (
-                    parse(" ".join(span), default=datetime(year, month, day), dayfirst=True)
-                    for year, month, day in ((2000, 1, 1), (2004, 3, 3))
-                )
-            except (ParserError, OverflowError, ValueError):
-                continue
-            yield Dated(
-                one.date(), one.day == other.day and one.month == other.month, one.year == other.year, " ".join(span)
+    found: list[Dated] = []
+    for match in _DATE.finditer(text.lower()):
+        try:  # parts that are missing come from the default
+            one, other = (
+                parse(match[0], default=datetime(*day), dayfirst=True) for day in ((2000, 1, 1), (2004, 3, 3))
             )
-            place += size - 1
-            break
-        place += 1
-
-
-def _may_be_date(span: Sequence[str]) -> bool:
-    """Return whether words have the parts of a date: a month with a day or a year, or a year alone."""
-    month = any(word.isalpha() and word[:3] in _MONTHS and len(word) < 10 for word in span)
-    numbers = [word for word in span if word[:1].isdigit()]
-    filler = [word for word in span if not word[:1].isdigit() and word[:3] not in _MONTHS]
-    if any(word not in ("of", "the") for word in filler) or span[0] in ("of",) or span[-1] in ("of", "the"):
-        return False
-    if month:
-        return bool(numbers) and len(numbers) <= 2 and all(len(re.sub(r"\D", "", n)) <= 4 for n in numbers)
-    if len(span) != 1 or not numbers:
-        return False
-    return (
-        re.fullmatch(r"\d{1,4}[-/.]\d{1,2}[-/.]\d{1,4}", span[0]) is not None
-        or re.fullmatch(r"1\d{3}|20\d\d", span[0]) is not None
-    )
+        except (ParserError, OverflowError, ValueError):
+            continue
+        exact = one.day == other.day and one.month == other.month
+        found.append(Dated(one.date(), exact, match[0], one.year == other.year))
+    return found
 
 
 def _dates(spoken: str, told: Sequence[str], today: date) -> str:
-    words = set(re.findall(r"[a-z]+", spoken))
     dates = dates_in(spoken)
-    refers = bool(words & {"that", "it", "this", "them"})
+    words = set(re.findall(r"[a-z]+", spoken))
+    months = {word for word in words if word[:3] in _MONTHS.split("|")}
+    if words - months - words_for("framing") - words_for("dating"):
+        return ""
     unit = next((name for name in ("day", "week", "month", "year") if words & {name, f"{name}s"}), "")
-    weekday = "weekday" in words or ("day" in words and ("what" in words or "which" in words) and "days" not in words)
-    quantity = next((q for q in _quantities((spoken,)) if q.unit in ("day", "week", "month", "year")), None)
-    age = "old" in words and not dates
-    known = {*str(vocabulary()["framing"]).split(), *str(vocabulary()["dating"]).split()}
-    if any(word not in known and word[:3] not in _MONTHS for word in words):
+    weekday = "weekday" in words or ("day" in words and bool(words & {"what", "which"}))
+    refers = bool(words & {"that", "this", "them", "was", "did"} or (words & {"it", "old"} and not weekday))
+    if not dates and refers and told and not (weekday and "today" in words):
+        dates = [day for text in told[-2:] for day in dates_in(text)[:2]][-1 if weekday or "ago" in words else -2 :]
+    if not dates or ("old" in words and len(dates) < 2):
         return ""
-    present = weekday and not words & {"that", "was"}  # "what day is it?"
-    if not dates and (refers or age or "ago" in words) and told and "today" not in words and not present:
-        dates = [day for text in told[-2:] for day in dates_in(text)[:2]]
-        if age and len(dates) < 2:
-            return ""
-        dates = dates[-2:] if not weekday else dates[-1:]
-    if not dates:
-        return ""
-    if len(dates) > 1:
-        year = next((each.day.year for each in reversed(dates) if each.has_year), today.year)
-        dates = [each if each.has_year else Dated(each.day.replace(year=year), each.exact) for each in dates]
-    elif not dates[0].has_year:
-        dates = [Dated(dates[0].day.replace(year=today.year), dates[0].exact)]
+    year = next((each.day.year for each in reversed(dates) if each.has_year), today.year)
+    dates = [each if each.has_year else replace(each, day=each.day.replace(year=year)) for each in dates]
     if weekday and dates[-1].exact:
-        return f"{_day(dates[-1])} {'was' if dates[-1].day < today else 'is'} a {dates[-1].day:%A}."
-    if (
-        quantity is not None
-        and len(dates) == 1
-        and words & {"after", "before", "from", "later", "earlier"}
-        and dates[0].exact
-    ):
-        return _moved(dates[0], quantity, back=bool(words & {"before", "earlier"}))
-    if len(dates) == 1 and (words & {"ago", "until", "since", "till"} or (refers and "ago" in words)):
-        dates = [dates[0], Dated(today, dates[0].exact)]
-    if len(dates) < 2 or not (unit or age or words & {"long", "ago", "between", "time"}):
+        return f"{dates[-1]} {'was' if dates[-1].day < today else 'is'} a {dates[-1].day:%A}."
+    shift = next((q for q in measured(_DATE.sub("", spoken)) if q.unit in ("day", "week", "month", "year")), None)
+    if shift is not None and len(dates) == 1 and dates[0].exact and words & words_for("shifting"):
+        return _moved(dates[0], shift, back=bool(words & {"before", "earlier"}))
+    if len(dates) == 1 and words & {"ago", "until", "since", "till"}:
+        dates.append(Dated(today, dates[0].exact, ""))
+    if len(dates) < 2 or not (unit or words & {"old", "long", "ago", "between", "time"}):
         return ""
-    return _between(*sorted(dates[:2], key=lambda each: each.day), unit or ("year" if age else ""))
+    return apart(dates[0], dates[1], unit or ("year" if "old" in words else ""))
 
 
-def _between(first: Dated, last: Dated, unit: str) -> str:
+def apart(one: Dated, other: Dated, unit: str = "year") -> str:
+    """Return the time between two dates in words; `unit`: day, week, month or year."""
     from dateutil.relativedelta import relativedelta
 
-    apart = relativedelta(last.day, first.day)
-    days = (last.day - first.day).days
-    unit = unit or ("day" if first.exact and last.exact and days < 100 else "year")
-    if not (first.exact and last.exact) and unit != "year":
+    first, last = sorted((one, other), key=lambda each: each.day)
+    exact, days = first.exact and last.exact, (last.day - first.day).days
+    unit = unit or ("day" if exact and days < 100 else "year")
+    if not exact and unit != "year":
         raise Unanswerable("I only know the years of that, not the days.")
-    count = {"day": days, "week": days // 7, "month": apart.years * 12 + apart.months, "year": apart.years}[unit]
-    if unit == "year" and not (first.exact and last.exact):
-        count = last.day.year - first.day.year
+    gone = relativedelta(last.day, first.day)
+    years = gone.years if exact else last.day.year - first.day.year
+    count = {"day": days, "week": days // 7, "month": gone.years * 12 + gone.months, "year": years}[unit]
     rest = f" and {days % 7} days" if unit == "week" and days % 7 else ""
-    return f"From {_day(first)} to {_day(last)} it is {count:,} {unit}{'' if count == 1 else 's'}{rest}."
+    return f"From {first} to {last} it is {count:,} {unit}{'' if count == 1 else 's'}{rest}."
 
 
-def _moved(start: Dated, quantity: Quantity, *, back: bool) -> str:
+def _moved(start: Dated, by: Quantity, *, back: bool) -> str:
     from dateutil.relativedelta import relativedelta
 
-    count = int(-quantity.value if back else quantity.value)
+    parts: dict[str, Any] = {f"{by.unit}s": int(-by.value if back else by.value)}
     try:
-        end = start.day + (
-            timedelta(days=count * (7 if quantity.unit == "week" else 1))
-            if quantity.unit in ("day", "week")
-            else relativedelta(**{f"{quantity.unit}s": count})
-        )  # type: ignore[arg-type]
+        return f"That is {replace(start, day=start.day + relativedelta(**parts))}."
     except (OverflowError, ValueError):
         raise Unanswerable("That is beyond the calendar.") from None
-    return f"That is {_day(Dated(end, exact=True))}."
-
-
-def _day(each: Dated) -> str:
-    return f"{each.day.day} {each.day:%B %Y}" if each.exact else str(each.day.year)

@@ -254,7 +254,7 @@ def _all(seen: Parse, thread: Sequence[Turn], titled: Callable[[str], str]) -> I
     if pronouns:
         person = any(thing.is_person for thing in last.told)
         for rank, thing in enumerate(referents(pronouns[0], thread)):
-            far = 3.0 if pronouns[0].low in SEXES and person and not thing.is_person else 0.0
+            far = 5.0 if pronouns[0].low in SEXES and person and not thing.is_person else 0.0
             sexes = ((thing.text, pronouns[0].low),) if pronouns[0].low in SEXES else ()
             yield Reading(
                 _with(seen, words, {p.index: _owned(p, thing.text) for p in pronouns}), -0.4 * rank - far, sexes=sexes
