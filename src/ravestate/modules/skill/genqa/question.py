@@ -20,8 +20,9 @@ LONGEST = 600
 """The maximum length of an utterance in characters; a longer one is not a question about the world."""
 THE_TWO = frozenset(["i", "me", "my", "mine", "myself", "you", "your", "yours", "yourself", "u", "ur"])
 """The pronouns for the user and the agent."""
-_WH = ("WP", "WP$", "WDT", "WRB")
-_FINITE = ("VBZ", "VBP", "VBD", "MD")
+_OTHERS = frozenset(["it", "its", "they", "them", "their", "he", "him", "his", "she", "her"])
+WH = ("WP", "WP$", "WDT", "WRB")
+FINITE = ("VBZ", "VBP", "VBD", "MD")
 _NAMES = ("GPE", "LOC", "PERSON", "ORG", "FAC", "NORP", "WORK_OF_ART", "EVENT", "PRODUCT", "LANGUAGE")
 
 
@@ -65,7 +66,7 @@ class Parse:
     @property
     def is_finite(self) -> bool:
         """Whether it has a finite verb."""
-        return any(word.tag in _FINITE for word in self.asked)
+        return any(word.tag in FINITE for word in self.asked)
 
 
 def parse(text: str) -> Parse:
@@ -77,7 +78,7 @@ def parse(text: str) -> Parse:
 def parsed(tree: Tree, entities: Sequence[Entity], kind: QuestionWord | None) -> Parse:
     """Return the parse with the words that ask: the first sentence with a question word or mark, else the last."""
     sentences = [tree.subtree(word) for word in tree.words if word.head == word.index and word.pos != "PUNCT"]
-    asking = [s for s in sentences if any(word.tag in _WH for word in s) or s[-1].text.endswith("?")]
+    asking = [s for s in sentences if any(word.tag in WH for word in s) or s[-1].text.endswith("?")]
     asked = (asking or sentences[-1:] or [[]])[0]
     root = next((word for word in asked if word.head == word.index), None)
     if root is not None:
@@ -97,14 +98,14 @@ def _alone(tree: Tree, root: Word, asked: list[Word]) -> list[Word]:
         mark = inner[0]
         if mark.low in ("if", "whether"):
             return inner[1:]
-        if mark.tag in _WH or (inner[1:] and mark.pos == "ADP" and inner[1].tag in _WH):
+        if mark.tag in WH or (inner[1:] and mark.pos == "ADP" and inner[1].tag in WH):
             return inner
     if root.lemma not in words_of("asking"):
         return asked
     near = (root, *tree.children(root, "dobj", "dative"))
     about = next((word for word in asked if word.low == "about" and tree.head(word) in near), None)
     things = tree.children(about, "pobj") if about else tree.children(root, "dobj", "oprd", "attr", "ccomp")
-    thing = next((word for word in things if word.low not in THE_TWO and word.tag not in _WH), None)
+    thing = next((word for word in things if word.low not in THE_TWO and word.tag not in WH), None)
     return asked if thing is None else tree.subtree(thing)
 
 
@@ -147,7 +148,7 @@ def _parts(word: Word) -> list[str]:
 
 
 def _means(word: Word) -> bool:
-    if word.low in words_of("light") or word.tag in _WH or word.low in THE_TWO:
+    if word.low in words_of("light") or word.tag in WH or word.low in THE_TWO:
         return False
     return word.pos not in ("AUX", "DET", "PRON", "ADP", "CCONJ", "SCONJ", "PART", "INTJ", "PUNCT", "SYM") or (
         word.low in words_of("excluding")
@@ -197,7 +198,9 @@ def _qualifiers(heard: Parse) -> tuple[list[tuple[str, ...]], list[str]]:
         if word.dep == "neg" or word.low in ("no", "never"):
             if not decides:
                 needs.append(("not", "no", "never", "none", "without"))
-        elif word.low in ("before", "after") and any(other.pos == "PROPN" for other in tree.children(word, "pobj")):
+        elif word.low in ("before", "after") and any(
+            other.tag not in ("CD", "WDT") for other in tree.children(word, "pobj")
+        ):
             needs.append(tuple(sorted(words_of("order"))))
         elif word.low in words_of("excluding"):
             needs.append(tuple(sorted(words_of("excluding"))))
@@ -253,12 +256,7 @@ def is_vague(question: Question) -> bool:
         >>> is_vague(as_question("Can they fly?")), is_vague(as_question("When did it start to rain?"))
         (True, False)
     """
-    return len(question.words) < 2 and not PRONOUNS.isdisjoint(question.text.lower().split())
-
-
-PRONOUNS = frozenset(
-    ["it", "its", "they", "them", "their", "he", "him", "his", "she", "her", "there", "this", "that", "these", "those"]
-)
+    return len(question.words) < 2 and not _OTHERS.isdisjoint(question.text.strip("?").lower().split())
 
 
 def not_asked(heard: Parse, analysis: Analysis) -> str:
@@ -271,6 +269,6 @@ def not_asked(heard: Parse, analysis: Analysis) -> str:
         return ""
     if any(match.score >= 0.5 for match in analysis.acts.values()):
         return "it is small talk"
-    if heard.is_finite and not any(word.tag in _WH for word in heard.asked):
+    if heard.is_finite and not any(word.tag in WH for word in heard.asked):
         return "it is not a question"
     return ""

@@ -155,7 +155,7 @@ def _sum(spoken: str, told: Sequence[str], rates: Mapping[str, float]) -> str:
         elif token in ("square", "cubic") and place + 1 < len(tokens) and tokens[place + 1] in _units():
             power = "**2" if token == "square" else "**3"
         elif unit and (before[0:1].isdigit() or leading or (len(token) > 1 and token != "second")):
-            if before[:1].isdigit() or (before in ("a", "an", "per") and not target == unit):
+            if before[:1].isdigit() or (before in ("a", "an", "per") and target != unit):
                 parts.append(f"{'' if before[:1].isdigit() else '1'}*u{len(units)}")
                 units.append(unit + power)
             elif target:
@@ -229,10 +229,14 @@ def _power(base: Any, exponent: Any) -> Any:
     return base**exponent
 
 
+def _divided(one: Any, other: Any) -> Any:
+    return one / other
+
+
 _FUNCTIONS: dict[str, Callable[..., Any]] = {"sqrt": math.sqrt, "cbrt": math.cbrt, "abs": abs}
 _OPERATORS: dict[type, Callable[..., Any]] = {
     ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Pow: _power, ast.Mod: operator.mod,
-    ast.Div: lambda one, other: one / other, ast.USub: operator.neg, ast.UAdd: operator.pos,
+    ast.Div: _divided, ast.USub: operator.neg, ast.UAdd: operator.pos,
 }  # fmt: skip
 
 
@@ -296,7 +300,8 @@ def dates_in(text: str) -> list[Dated]:
     for match in _DATE.finditer(text.lower()):
         try:  # parts that are missing come from the default
             one, other = (
-                parse(match[0], default=datetime(*day), dayfirst=True) for day in ((2000, 1, 1), (2004, 3, 3))
+                parse(match[0], default=datetime(*day), dayfirst=True)
+                for day in ((2000, 1, 1), (2004, 3, 3))  # noqa: DTZ001
             )
         except (ParserError, OverflowError, ValueError):
             continue

@@ -14,7 +14,7 @@ from .following import answer_in
 from .names import Settings, found, module, thread
 from .places import answerer_of
 from .question import not_asked, parsed
-from .thread import KEPT, REMEMBERED, overheard, refers_back
+from .thread import KEPT, REMEMBERED, overheard, refers
 from .wording import intent_of, wording_rule
 
 
@@ -57,7 +57,7 @@ def find(ctx: rs.RuleContext) -> rs.Resign | None:
         return rs.Resign(reason)
     turns = tuple(turn for turn in ctx[thread] if ctx.now - turn.at <= REMEMBERED)
     said, view = ctx[rawio.output], turns
-    if said and not (turns and turns[-1].answer in said) and refers_back(heard):
+    if said and not (turns and turns[-1].answer in said) and any(refers(word, heard.asked) for word in heard.asked):
         view = (*turns, overheard(said, ctx.now))
     try:
         answer, turn = answer_in(answerer_of(settings), heard, view, settings, ctx.now)

@@ -6,7 +6,7 @@ likelihood, and the documents decide between them.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from ravestate.modules.meta.nlp import QuestionWord
@@ -14,16 +14,36 @@ from ravestate.modules.meta.nlp.tree import Tree, Word
 
 from .answering import Answer
 from .lexicon import words_of
-from .question import PRONOUNS, Parse, is_name, parse
+from .question import FINITE, WH, Parse, is_name, parse
 
 NUMBERS = ("DATE", "TIME", "CARDINAL", "QUANTITY", "MONEY", "PERCENT", "ORDINAL")
 """The labels of entities that are no names."""
+PLACES = ("GPE", "LOC", "FAC")
 LONGEST = 200
 """Characters of a question that may refer to another."""
 KEPT = 6
 """The number of questions that stay in view."""
 REMEMBERED = 120.0
 """Seconds for which later questions may refer to one."""
+LESS = -0.4
+"""The logarithm of odds that each reading loses to the one before."""
+FAR = -5.0
+"""The same for *she* as a thing, such as a ship, with a person in view."""
+SEXES = {"he": "he", "him": "he", "his": "he", "she": "she", "her": "she", "hers": "she"}
+PRONOUNS = frozenset((*SEXES, *["it", "its", "they", "them", "their", "there", "this", "that"]))
+_ONES = ("one", "ones", "former", "latter")
+_PLACES_IN_LIST = {
+    "first": 0,
+    "second": 1,
+    "third": 2,
+    "fourth": 3,
+    "fifth": 4,
+    "sixth": 5,
+    "last": -1,
+    "latter": -1,
+    "former": -2,
+}
+_OWN = ("det", "amod", "compound", "nummod", "poss", "nmod", "quantmod")
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,7 +52,7 @@ class Thing:
 
     text: str
     label: str
-    """The label of the entity; empty for a common noun."""
+    """The label of the entity; ``NAME`` or ``TITLE`` for other names, empty for common nouns."""
 
     @property
     def is_person(self) -> bool:
@@ -52,124 +72,24 @@ class Turn:
     question: str
     answer: str
     title: str
-    """The title of the document with the answer."""
+    """The title of the document with the answer; empty for a sum."""
     at: float
     """Its time, in seconds since the context began."""
     asked: tuple[Thing, ...] = ()
-    """What the question is about, most likely first."""
+    """The things in the question, most likely first."""
     told: tuple[Thing, ...] = ()
-    """What only the answer names, most likely first."""
+    """The things that only the answer names, most likely first."""
     items: tuple[str, ...] = ()
     """The members of a list in the answer."""
     sexes: tuple[tuple[str, str], ...] = ()
-    """Names with the pronoun that the user chose for them."""
+    """Names with their pronouns: ``he`` or ``she``."""
     source: str = ""
     confidence: float = 1.0
 
     @property
     def subject(self) -> str:
-        """What the question is about; empty for sums."""
+        """The name that the question is about; empty without one."""
         return next((thing.text for thing in self.asked if thing.is_name), "")
-
-
-def turn_of(asked: Parse, found: Answer, at: float, sexes: tuple[tuple[str, str], ...] = ()) -> Turn:
-    """Return the turn of a complete question and its answer."""
-    answer, title = found.text, found.title
-    told = parse(answer)
-    things = [
-        Thing(title, thing.label or "TITLE") if _same(thing.text, title) else thing
-        for thing in things_of(asked)
-        if thing.label not in ("ORDINAL", "CARDINAL")
-    ]
-    if (
-        title
-        and title.lower() in f"{asked.tree.text} {answer}".lower()
-        and not any(_same(t.text, title) for t in things)
-    ):
-        things.append(Thing(title, next((t.label for t in things if t.text.lower() in title.lower()), "TITLE")))
-    words = set(asked.text.lower().split())
-    new = [t for t in things_of(told) if not _same(t.text, title) and not words.issuperset(t.text.lower().split())]
-    if asked.kind is QuestionWord.PERSON and not any(thing.is_person for thing in new):
-        name = next((thing for thing in new if thing.is_name), None)
-        new = [Thing(t.text, "PERSON") if t is name else t for t in new]
-    for sex in ("he", "she"):
-        if not words_of(sex).isdisjoint(words) and asked.kind is QuestionWord.PERSON:
-            sexes = (*sexes, *((thing.text, sex) for thing in new if thing.is_person))
-    items = max((group for group in _lists(told.tree)), key=len, default=())
-    return Turn(
-        asked.text.rstrip("?"),
-        answer,
-        title,
-        at,
-        tuple(_by_likelihood(things)),
-        tuple(new),
-        items,
-        sexes,
-        found.source,
-        found.confidence,
-    )
-
-
-def _by_likelihood(things: Sequence[Thing]) -> list[Thing]:
-    return sorted(dict.fromkeys(things), key=lambda thing: not thing.is_name)  # names first
-
-
-def _same(one: str, other: str) -> bool:
-    return one.lower().removeprefix("the ") == other.lower().removeprefix("the ")
-
-
-def overheard(said: str, at: float) -> Turn:
-    """Return a turn of what the agent said without a question to the documents, for its names."""
-    told = [thing for thing in things_of(parse(said)) if thing.is_name]
-    return Turn("", said, "", at, told=tuple(told))
-
-
-def refers_back(seen: Parse) -> bool:
-    """Return whether an utterance has a pronoun for something that was named before."""
-    return any(refers(word, seen.asked) for word in seen.asked)
-
-
-def things_of(seen: Parse) -> list[Thing]:
-    """Return the noun phrases of a text, the longer ones with *of* after their parts."""
-    found: dict[str, Thing] = {}
-    for word in seen.tree.words:
-        if word.pos not in ("NOUN", "PROPN", "X") or word.dep in ("compound", "nmod", "amod") or word.tag == "WP":
-            continue
-        words = phrase_of(seen.tree, word)
-        label = next((e.label for e in seen.entities if e.start < word.end and word.start < e.end), "")
-        if any(other.tag == "WRB" for other in words):  # how many people
-            continue
-        text = seen.tree.phrase(words)
-        found.setdefault(text.lower(), Thing(text, label or ("NAME" if word.pos == "PROPN" else "")))
-        for preposition in seen.tree.children(word, "prep"):
-            whole = [*words, *seen.tree.subtree(preposition)]
-            if preposition.low == "of" and not any(w.tag == "WP" for w in whole):
-                text = seen.tree.phrase(whole)
-                found.setdefault(text.lower(), Thing(text, ""))
-    return list(found.values())
-
-
-def phrase_of(tree: Tree, head: Word) -> list[Word]:
-    """Return a noun with its own words to the left."""
-    words = [head]
-    for child in tree.children(head):
-        if child.index < head.index and child.dep in ("det", "amod", "compound", "nummod", "poss", "nmod", "quantmod"):
-            words += tree.subtree(child)
-    return sorted(words, key=lambda word: word.index)
-
-
-def _lists(tree: Tree) -> Iterator[tuple[str, ...]]:
-    """Yield the members of each enumeration."""
-    for word in tree.words:
-        members, last = [word], word
-        while nexts := tree.children(last, "conj"):
-            last = nexts[0]
-            members.append(last)
-        if len(members) > 1 and word.pos in ("NOUN", "PROPN") and word.dep != "conj":
-            yield tuple(tree.phrase(phrase_of(tree, member)) for member in members)
-
-
-# ------------------------------------------------------------------------------------------------ readings
 
 
 @dataclass(frozen=True, slots=True)
@@ -184,6 +104,80 @@ class Reading:
     sexes: tuple[tuple[str, str], ...] = ()
 
 
+def turn_of(asked: Parse, found: Answer, at: float, sexes: tuple[tuple[str, str], ...] = ()) -> Turn:
+    """Return the turn of a complete question and its answer."""
+    answer, title = found.text, found.title
+    told, words = parse(answer), set(asked.text.lower().split())
+    things = [Thing(title, thing.label or "TITLE") if _same(thing.text, title) else thing for thing in things_of(asked)]
+    things = [thing for thing in things if thing.label not in ("ORDINAL", "CARDINAL")]
+    if (
+        title
+        and title.lower() in f"{asked.tree.text} {answer}".lower()
+        and not any(_same(t.text, title) for t in things)
+    ):
+        things.append(Thing(title, next((t.label for t in things if t.is_name and t.text in title), "TITLE")))
+    things.sort(key=lambda thing: not thing.is_name)
+    new = [t for t in things_of(told) if not _same(t.text, title) and not words.issuperset(t.text.lower().split())]
+    if asked.kind is QuestionWord.PERSON:
+        if not any(thing.is_person for thing in new):
+            name = next((thing for thing in new if thing.is_name), None)
+            new = [Thing(thing.text, "PERSON") if thing is name else thing for thing in new]
+        known = [sex for sex in ("he", "she") if not words_of(sex).isdisjoint(words)]
+        sexes = (*sexes, *((thing.text, sex) for thing in new if thing.is_person for sex in known))
+    items = max(_lists(told.tree), key=len, default=())
+    question = asked.text.rstrip("?")
+    return Turn(question, answer, title, at, tuple(things), tuple(new), items, sexes, found.source, found.confidence)
+
+
+def overheard(said: str, at: float) -> Turn:
+    """Return a turn of what the agent said by itself, for the names in it."""
+    return Turn("", said, "", at, told=tuple(thing for thing in things_of(parse(said)) if thing.is_name))
+
+
+def things_of(seen: Parse) -> list[Thing]:
+    """Return the noun phrases of a text; *the mayor of Tarm* also as a whole."""
+    found: dict[str, Thing] = {}
+    for word in seen.tree.words:
+        own = phrase_of(seen.tree, word) if _is_noun(word) else []
+        if not own or any(other.tag in WH for other in own):
+            continue
+        label = next((e.label for e in seen.entities if e.start < word.end and word.start < e.end), "")
+        text = seen.tree.phrase(own)
+        found.setdefault(text.lower(), Thing(text, label or ("NAME" if word.pos == "PROPN" else "")))
+        for of in seen.tree.children(word, "prep"):
+            if of.low == "of":
+                text = seen.tree.phrase([*own, *seen.tree.subtree(of)])
+                found.setdefault(text.lower(), Thing(text, ""))
+    return list(found.values())
+
+
+def _is_noun(word: Word) -> bool:
+    return word.pos in ("NOUN", "PROPN", "X") and word.dep not in ("compound", "nmod", "amod")
+
+
+def phrase_of(tree: Tree, head: Word) -> list[Word]:
+    """Return a noun with its own words to the left."""
+    left = [child for child in tree.children(head, *_OWN) if child.index < head.index]
+    return [*(word for child in left for word in tree.subtree(child)), head]
+
+
+def _same(one: str, other: str) -> bool:
+    return one.lower().removeprefix("the ") == other.lower().removeprefix("the ")
+
+
+def _lists(tree: Tree) -> Iterator[tuple[str, ...]]:
+    """Yield the members of each enumeration."""
+    for word in tree.words:
+        members = [word]
+        while nexts := tree.children(members[-1], "conj"):
+            members.append(nexts[0])
+        if len(members) > 1 and _is_noun(word) and word.dep != "conj":
+            yield tuple(tree.phrase(phrase_of(tree, member)) for member in members)
+
+
+# ------------------------------------------------------------------------------------------------ readings
+
+
 def readings(seen: Parse, thread: Sequence[Turn], titled: Callable[[str], str] = str) -> list[Reading]:
     """Return the questions that an utterance may stand for; none if it refers to something that is not in view.
 
@@ -192,14 +186,12 @@ def readings(seen: Parse, thread: Sequence[Turn], titled: Callable[[str], str] =
         thread: The latest questions, oldest first.
         titled: A function from a name in any case to the title of a document about it; empty if there is none.
     """
-    asked = seen.asked
-    text = seen.text
-    if not asked or len(text) > LONGEST:
-        return [Reading(text)]
+    if not seen.asked or len(seen.text) > LONGEST:
+        return [Reading(seen.text)]
     if not thread:
-        return [] if _leans(seen) else [Reading(text)]
+        return [] if _leans(seen) else [Reading(seen.text)]
     found: dict[str, Reading] = {}
-    for reading in _all(seen, thread, titled):
+    for reading in _Follow(seen, thread, titled).readings():
         found.setdefault(f"{reading.about} {reading.text}".lower().strip("? "), reading)
     return list(found.values())
 
@@ -207,270 +199,199 @@ def readings(seen: Parse, thread: Sequence[Turn], titled: Callable[[str], str] =
 def _leans(seen: Parse) -> bool:
     """Return whether an utterance cannot be understood alone."""
     words = [word for word in seen.asked if word.pos != "PUNCT"]
-    if not any(
-        word.pos in ("NOUN", "PROPN", "VERB", "NUM", "ADJ", "X") and word.low not in ("one", "ones") for word in words
-    ):
-        return True
-    if any(word.tag == "PRP$" and not _is_bound(seen.tree, word) for word in words):
-        return True
-    return words[0].pos == "CCONJ" and not seen.is_finite
-
-
-def _is_bound(tree: Tree, pronoun: Word) -> bool:
-    """Return whether a noun before a pronoun takes it: *how do plants make their food*."""
-    return any(word.pos in ("NOUN", "PROPN") and word.index < pronoun.index for word in tree.words)
-
-
-def _all(seen: Parse, thread: Sequence[Turn], titled: Callable[[str], str]) -> Iterator[Reading]:
-    tree, last = seen.tree, thread[-1]
-    words = [word for word in seen.asked if word.pos != "PUNCT"]
-    if (meant := correction(seen)) is not None:  # "no, I meant Mount Olin"
-        yield from _swapped(thread, Thing(tree.phrase(meant), "NAME"))
-        return
-    while words and (
-        words[0].pos == "CCONJ" or (words[0].low in ("what", "how") and words[1:] and words[1].low == "about")
-    ):
-        words = words[1 if words[0].pos == "CCONJ" else 2 :]
-    lead = len(words) < len([word for word in seen.asked if word.pos != "PUNCT"])
-    if not words:
-        return
-    text = tree.phrase(words)
-    pronouns = [w for w in words if refers(w, words)]
-    ones = [w for w in words if w.low in _ONES and w.pos in ("NUM", "NOUN", "PRON", "ADJ")]
-    if ones:
-        for item in _items(tree, ones[0], thread):
-            phrase = [w for w in phrase_of(tree, ones[0]) if w in words]
-            rest = [w for w in words if w not in phrase]
-            if any(w.tag in ("VBZ", "VBP", "VBD", "MD") for w in rest):
-                yield from _replaced(
-                    seen, words, {w.index: (item if w is phrase[0] else "") for w in phrase}, pronouns, item
-                )
-            else:
-                yield from _swapped(thread, Thing(item, "NAME"))
-        return
-    if not any(w.tag in ("VBZ", "VBP", "VBD", "MD") for w in words):
-        yield from _fragments(seen, words, pronouns, thread, titled, lead=lead)
-        return
-    if pronouns:
-        person = any(thing.is_person for thing in last.told)
-        for rank, thing in enumerate(referents(pronouns[0], thread)):
-            far = 5.0 if pronouns[0].low in SEXES and person and not thing.is_person else 0.0
-            sexes = ((thing.text, pronouns[0].low),) if pronouns[0].low in SEXES else ()
-            yield Reading(
-                _with(seen, words, {p.index: _owned(p, thing.text) for p in pronouns}), -0.4 * rank - far, sexes=sexes
-            )
-        if any(w.low == "it" for w in pronouns) and any(w.pos in ("NOUN", "PROPN", "VERB") for w in words):
-            yield Reading(_mark(text, seen), -1.0)
-        return
-    named = any(is_name(seen, word) or titled(tree.phrase(phrase_of(tree, word))) for word in words)
-    if not named and len(words) < 12:
-        for rank, thing in enumerate(t for t in (*last.asked, *last.told) if t.is_name):
-            yield Reading(_mark(text, seen), 0.8 - 0.4 * rank, about=thing.text)
-    yield Reading(_mark(text, seen), 0.0 if named or lead else -1.0)
-
-
-_ONES = ("one", "ones", "former", "latter")
-SEXES = {"he": "he", "him": "he", "his": "he", "she": "she", "her": "she", "hers": "she"}
+    content = ("NOUN", "PROPN", "VERB", "NUM", "ADJ", "X")
+    bound = next((word.index for word in words if word.pos in ("NOUN", "PROPN")), len(seen.tree.words))
+    return (
+        not any(word.pos in content and word.low not in _ONES for word in words)
+        or any(word.tag == "PRP$" and word.index < bound for word in words)
+        or (words[0].pos == "CCONJ" and not seen.is_finite)
+    )
 
 
 def refers(word: Word, words: Sequence[Word]) -> bool:
-    if word.low not in PRONOUNS or word.low in ("these", "those"):
+    """Return whether a word is a pronoun for something outside its sentence."""
+    if word.low not in PRONOUNS:
         return False
     if word.low == "there":
         return word.dep != "expl" and word.tag != "EX"
     if word.low in ("that", "this"):
         return word.dep in ("nsubj", "nsubjpass", "pobj", "dobj", "attr", "ROOT") and word.tag == "DT"
-    return not any(
-        w.pos in ("NOUN", "PROPN") and w.index < word.index and w.dep in ("nsubj", "nsubjpass") for w in words
-    )
+    subjects = ("nsubj", "nsubjpass")  # how do plants make their food
+    return not any(w.pos in ("NOUN", "PROPN") and w.index < word.index and w.dep in subjects for w in words)
 
 
 def referents(pronoun: Word, thread: Sequence[Turn]) -> list[Thing]:
-    """Return what a pronoun may stand for, most likely first."""
+    """Return the things that a pronoun may stand for, most likely first."""
     sex = SEXES.get(pronoun.low)
     known = {name: SEXES[said] for turn in thread for name, said in turn.sexes}
     found: dict[str, Thing] = {}
     for turn in reversed(thread[-2:]):
-        things = (
-            [*turn.told, *turn.asked]
-            if sex or pronoun.low == "there" or _asks_for_thing(turn)
-            else [*turn.asked, *turn.told]
-        )
-        things = sorted(things, key=lambda thing: _unlikely(pronoun.low, sex, thing, known))
-        for thing in things:
-            if _unlikely(pronoun.low, sex, thing, known) < 3:
-                found.setdefault(thing.text.lower(), thing)
+        told_first = sex or pronoun.low == "there" or turn.question.lower().startswith(("what ", "which "))
+        things = [*turn.told, *turn.asked] if told_first else [*turn.asked, *turn.told]
+        for rank in (0, 1, 2):
+            found |= {
+                t.text.lower(): t
+                for t in things
+                if _unlikely(pronoun.low, sex, t, known) == rank and t.text.lower() not in found
+            }
     return list(found.values())[:6]
 
 
-def _asks_for_thing(turn: Turn) -> bool:
-    return turn.question.lower().startswith(("what ", "which "))
-
-
-def _unlikely(pronoun: str, sex: str | None, thing: Thing, known: dict[str, str]) -> int:
-    """Return how unlikely a thing is for a pronoun, from 0; 3 and more is out of the question."""
+def _unlikely(pronoun: str, sex: str | None, thing: Thing, known: Mapping[str, str]) -> int:
+    """Return how unlikely a thing is for a pronoun, from 0; 3 is out of the question."""
     if sex:
-        if known.get(thing.text, sex) != sex:
-            return 3
-        if _sex_of(thing.text) not in (None, sex):
-            return 3
-        return (
-            0
-            if thing.is_person
-            else 1
-            if thing.label in ("NAME", "TITLE", "ORG", "GPE", "PRODUCT", "WORK_OF_ART", "FAC")
-            else 2
-        )
+        return 3 if known.get(thing.text, sex) != sex else 0 if thing.is_person else 1 if thing.is_name else 2
     if thing.label in NUMBERS:
         return 3
     if pronoun == "there":
-        return 0 if thing.label in ("GPE", "LOC", "FAC") else 1 if thing.label and not thing.is_person else 2
+        return 0 if thing.label in PLACES else 1 if thing.is_name and not thing.is_person else 2
     if pronoun in ("it", "its"):
         return 2 if thing.is_person else 0 if thing.label else 1
     return 0 if thing.label else 1
 
 
-def _sex_of(text: str) -> str | None:
-    return None
-
-
-def _items(tree: Tree, one: Word, thread: Sequence[Turn]) -> Iterator[str]:
-    """Yield what *the first one*, *the other one* may stand for."""
-    adjectives = [w.low for w in tree.children(one, "amod", "det", "nummod")] + [one.low]
-    subjects = list(dict.fromkeys(name.text for turn in thread for name in turn.asked[:1]))
-    lists = [list(turn.items) for turn in reversed(thread[-2:]) if turn.items]
-    for group in (*lists, subjects):
-        if "other" in adjectives:
-            yield from reversed(group[:-1])
-        if "former" in adjectives and len(group) > 1:
-            yield group[-2]
-        for place, rank in enumerate(("first", "second", "third", "fourth", "fifth", "sixth")):
-            if rank in adjectives and len(group) > place:
-                yield group[place]
-        if "last" in adjectives or "latter" in adjectives:
-            yield group[-1]
-
-
-def _owned(pronoun: Word, thing: str) -> str:
-    if pronoun.tag == "PRP$":
-        return f"{thing}'s"
-    if pronoun.low == "there":
-        return f"in {thing}"
-    return thing
-
-
-def _with(seen: Parse, words: Sequence[Word], instead: dict[int, str]) -> str:
-    """Return words as a question, some of them replaced."""
-    parts = [instead.get(word.index, word.text) for word in words]
-    return _mark(" ".join(part for part in parts if part).replace(" 's", "'s").replace(" n't", "n't"), seen)
-
-
-def _mark(text: str, seen: Parse) -> str:
-    return f"{text.strip(' ?.!,')}?"
-
-
-def correction(seen: Parse) -> list[Word] | None:
+def correction(seen: Parse) -> list[Word]:
     """Return the words for what was really meant: *I meant Mount Olin*."""
     root = next((word for word in seen.asked if word.lemma == "mean" and word.head == word.index), None)
     if root is None or not any(word.low == "i" for word in seen.tree.children(root, "nsubj")):
-        return None
-    things = seen.tree.children(root, "dobj", "attr", "oprd")
-    return seen.tree.subtree(things[0]) if things and things[0].pos in ("NOUN", "PROPN", "X") else None
+        return []
+    things = [word for word in seen.tree.children(root, "dobj", "attr", "oprd") if _is_noun(word)]
+    return seen.tree.subtree(things[0]) if things else []
 
 
-def _replaced(
-    seen: Parse, words: Sequence[Word], instead: dict[int, str], pronouns: Sequence[Word], item: str
-) -> Iterator[Reading]:
-    verb = next((i for i, w in enumerate(words) if w.tag in ("WP", "WRB", "WDT")), 0)
-    if verb and all(w.index in instead for w in words[:verb] if w.pos != "PUNCT"):  # "the first one, who climbed it?"
-        words = words[verb:]
-    yield Reading(_with(seen, words, {**{p.index: _owned(p, item) for p in pronouns}, **instead}))
+class _Follow:
+    """An utterance after others."""
 
+    def __init__(self, seen: Parse, thread: Sequence[Turn], titled: Callable[[str], str]) -> None:
+        self.seen, self.tree, self.thread = seen, seen.tree, thread
+        self.last = thread[-1]
+        self.before = next((turn for turn in reversed(thread) if turn.question), self.last)
+        words = said = [word for word in seen.asked if word.pos != "PUNCT"]
+        while words and (
+            words[0].pos == "CCONJ" or [word.low for word in words[:2]] in (["what", "about"], ["how", "about"])
+        ):
+            words = words[1 if words[0].pos == "CCONJ" else 2 :]
+        self.words, self.leads = words, len(words) < len(said)
+        self.text = self.tree.phrase(words)
+        self.pronouns = [word for word in words if refers(word, words)]
+        self.named = any(
+            is_name(seen, w) or titled(self.tree.phrase(phrase_of(self.tree, w))) for w in words if _is_noun(w)
+        )
+        self.names = [thing for thing in (*self.last.asked, *self.last.told) if thing.is_name]
 
-def _fragments(
-    seen: Parse,
-    words: Sequence[Word],
-    pronouns: Sequence[Word],
-    thread: Sequence[Turn],
-    titled: Callable[[str], str],
-    *,
-    lead: bool,
-) -> Iterator[Reading]:
-    """Yield the readings of an utterance without a verb: *and when?*, *and its captain?*, *and Spain?*."""
-    tree, last = seen.tree, thread[-1]
-    text = tree.phrase(words)
-    named = any(is_name(seen, word) or titled(tree.phrase(phrase_of(tree, word))) for word in words)
-    if pronouns:
-        for rank, thing in enumerate(referents(pronouns[0], thread)):
-            yield Reading(_with(seen, words, {p.index: _owned(p, thing.text) for p in pronouns}), -0.4 * rank)
-        return
-    if any(w.tag in ("WRB", "WP", "WDT") for w in words):  # and when?
-        yield from _asked_anew(text, thread)
-        return
-    if not lead and named:
-        yield Reading(text if seen.kind is None else f"{text}?")
-    head = words[-1]
-    if head.tag in ("JJS", "JJR", "JJ", "RBS", "RB", "CD") and not named:
-        yield from _another_rank(text, thread)
-        return
-    first = words[0]
-    if first.pos in ("ADP", "SCONJ") or first.tag == "IN":
-        inner = tree.phrase(words[1:])
-        yield from _swapped(thread, Thing(inner, "NAME" if named else ""))
-        yield Reading(f"{last.question} {text}?", -0.2)
-        return
-    if named:
-        yield from _swapped(thread, Thing(text, "NAME"))
-    for rank, thing in enumerate(t for t in (*last.asked, *last.told) if t.is_name):
-        yield Reading(f"{text} of {thing.text}?", -0.4 * rank)
-    if not named:
-        yield from _swapped(thread, Thing(text, ""))
-        if not lead:
-            yield Reading(text if seen.kind is None else f"{text}?", -1.0)
+    def readings(self) -> Iterator[Reading]:
+        """Yield the readings, most likely first."""
+        one = next(
+            (word for word in self.words if word.low in _ONES and word.pos in ("NUM", "NOUN", "PRON", "ADJ")), None
+        )
+        if meant := correction(self.seen):
+            yield from self._swapped(self.tree.phrase(meant), named=True)
+        elif one is not None:
+            yield from self._chosen(one)
+        elif self.words and not any(word.tag in FINITE for word in self.words):
+            yield from self._fragment()
+        elif self.pronouns:
+            yield from self._resolved()
+            if any(w.low == "it" for w in self.pronouns) and any(
+                w.pos in ("NOUN", "PROPN", "VERB") for w in self.words
+            ):
+                yield Reading(f"{self.text}?", -1.0)  # when did it start to rain
+        elif self.words:
+            if not self.named:
+                for rank, thing in enumerate(self.names):  # who was on board
+                    yield Reading(f"{self.text}?", 0.8 + LESS * rank, about=thing.text)
+            yield Reading(f"{self.text}?", 0.0 if self.named or self.leads else -1.0)
 
+    def _resolved(self) -> Iterator[Reading]:
+        pronoun = self.pronouns[0].low
+        person = pronoun in SEXES and any(thing.is_person for thing in self.last.told)
+        for rank, thing in enumerate(referents(self.pronouns[0], self.thread)):
+            sexes = ((thing.text, pronoun),) if pronoun in SEXES else ()
+            far = FAR if person and not thing.is_person else 0.0
+            yield Reading(self._with(self.words, thing.text), LESS * rank + far, sexes=sexes)
 
-def _swapped(thread: Sequence[Turn], new: Thing) -> Iterator[Reading]:
-    """Yield the last question about something else."""
-    last = _last(thread)
-    lower = last.question.lower()
-    rank = 0
-    for old in last.asked:
-        at = lower.find(old.text.lower())
-        if at >= 0 and old.is_name == new.is_name:
-            yield Reading(f"{last.question[:at]}{new.text}{last.question[at + len(old.text) :]}?", -0.4 * rank)
-            rank += 1
+    def _with(self, words: Sequence[Word], thing: str, instead: Sequence[Word] = ()) -> str:
+        """Return words as a question, with a thing in place of the pronouns and of the phrase `instead`."""
+        parts: list[str] = []
+        for word in words:
+            if word in instead:
+                parts += [thing] if word is instead[0] else []
+            elif word in self.pronouns:
+                parts.append(f"{thing}'s" if word.tag == "PRP$" else f"in {thing}" if word.low == "there" else thing)
+            else:
+                parts.append(word.text)
+        return " ".join(parts).replace(" 's", "'s").replace(" n't", "n't").strip(" ?!.,") + "?"
 
+    def _chosen(self, one: Word) -> Iterator[Reading]:
+        """Yield the readings of *the first one* and *the other one*: members of a list, or earlier subjects."""
+        own = [word for word in phrase_of(self.tree, one) if word in self.words]
+        rest = [word for word in self.words if word not in own]
+        if any(word.tag in WH for word in rest) and rest[0].index > one.index:  # the first one, who climbed it?
+            words = rest
+        else:
+            words = self.words if any(word.tag in FINITE for word in rest) else []
+        low = {word.low for word in own}
+        subjects = list(dict.fromkeys(turn.asked[0].text for turn in self.thread if turn.asked))
+        for group in (*(list(turn.items) for turn in reversed(self.thread[-2:]) if turn.items), subjects):
+            chosen = group[-2::-1] if "other" in low else []
+            for rank, place in _PLACES_IN_LIST.items():
+                if rank in low and -len(group) <= place < len(group):
+                    chosen.append(group[place])
+            for thing in chosen:
+                if words:
+                    yield Reading(self._with(words, thing, own))
+                else:
+                    yield from self._swapped(thing, named=True)
 
-def _last(thread: Sequence[Turn]) -> Turn:
-    return next((turn for turn in reversed(thread) if turn.question), thread[-1])
+    def _fragment(self) -> Iterator[Reading]:
+        """Yield the readings of an utterance without a verb: *and when?*, *and its captain?*, *and Spain?*."""
+        alone = f"{self.text}?" if self.seen.kind is not None else self.text
+        first, last = self.words[0], self.words[-1]
+        if self.pronouns:
+            yield from self._resolved()
+        elif any(word.tag in WH for word in self.words):
+            yield from self._asked_anew()
+        elif not self.named and last.tag in ("JJS", "JJR", "JJ", "RBS", "RB", "CD"):
+            yield from self._ranked()
+        elif first.pos in ("ADP", "SCONJ"):
+            yield from self._swapped(self.tree.phrase(self.words[1:]), named=self.named)
+            yield Reading(f"{self.before.question} {self.text}?", LESS)
+        else:
+            if self.named:
+                yield from ([] if self.leads else [Reading(alone)])
+                yield from self._swapped(self.text, named=True)
+            for rank, thing in enumerate(self.names):
+                yield Reading(f"{self.text} of {thing.text}?", LESS * rank)
+            if not self.named:
+                yield from self._swapped(self.text, named=False)
+                yield from ([] if self.leads else [Reading(alone, -1.0)])
 
+    def _swapped(self, new: str, *, named: bool) -> Iterator[Reading]:
+        """Yield the question before about something else."""
+        question = self.before.question
+        olds = [thing.text for thing in self.before.asked if thing.is_name == named]
+        for rank, old in enumerate(olds):
+            at = question.lower().find(old.lower())
+            if at >= 0:
+                yield Reading(f"{question[:at]}{new}{question[at + len(old) :]}?", LESS * rank)
 
-def _asked_anew(text: str, thread: Sequence[Turn]) -> Iterator[Reading]:
-    """Yield the last question with another question word."""
-    last = _last(thread)
-    seen = parse(last.question)
-    words = [w for w in seen.tree.words if w.pos != "PUNCT"]
-    wh = next((w for w in words if w.tag in ("WP", "WRB", "WDT", "WP$")), None)
-    if wh is None:
-        return
-    # The phrase of the question word ends before the verb.
-    end = next((w.index for w in words if w.index > wh.index and w.pos in ("AUX", "VERB")), wh.index + 1)
-    yield Reading(f"{text} {seen.tree.phrase([w for w in words if w.index >= end])}?")
+    def _asked_anew(self) -> Iterator[Reading]:
+        """Yield the question before with another question word."""
+        words = [word for word in parse(self.before.question).tree.words if word.pos != "PUNCT"]
+        asks = next((place for place, word in enumerate(words) if word.tag in WH), None)
+        if asks is not None:
+            verb = next((p for p, word in enumerate(words) if p > asks and word.pos in ("AUX", "VERB")), asks + 1)
+            yield Reading(" ".join([self.text, *(word.text for word in words[verb:])]).replace(" 's", "'s") + "?")
 
-
-def _another_rank(text: str, thread: Sequence[Turn]) -> Iterator[Reading]:
-    """Yield the last question with another rank: *and the second highest?*."""
-    seen = parse(_last(thread).question)
-    ranks = [w for w in seen.tree.words if w.tag in ("JJS", "RBS") or w.low in words_of("ranks")]
-    if not ranks:
-        return
-    before = seen.tree.before(ranks[0])
-    whole = [
-        w
-        for w in seen.tree.words
-        if (w not in ranks and w is not before) or (before and before.low != "the" and w is before)
-    ]
-    at = ranks[0].index
-    left, right = [w for w in whole if w.index < at], [w for w in whole if w.index > at]
-    bare = text if text.lower().startswith("the ") else f"the {text}"
-    yield Reading(f"{seen.tree.phrase(left)} {bare} {seen.tree.phrase(right)}?".strip())
+    def _ranked(self) -> Iterator[Reading]:
+        """Yield the question before with another rank: *and the second highest?*."""
+        words = parse(self.before.question).tree.words
+        ranks = [
+            place for place, word in enumerate(words) if word.tag in ("JJS", "RBS") or word.low in words_of("ranks")
+        ]
+        if ranks:
+            left = [word.text for word in words[: ranks[0]]]
+            left = left[:-1] if left[-1:] == ["the"] and self.text.lower().startswith("the ") else left
+            yield Reading(
+                " ".join([*left, self.text, *(word.text for word in words[ranks[-1] + 1 :])]).replace(" 's", "'s") + "?"
+            )
