@@ -201,7 +201,9 @@ def _result(source: str, units: Sequence[str], target: str, word: str, rates: Ma
         )
         if not goal:
             return _number(value)
-        return f"{_number(value.to(_in_pint(goal, rates)).magnitude)} {lexicon('reckoning.yaml')['shown'].get(word, word) or goal.removeprefix(_MONEY) + 's'}"
+        unit = _in_pint(goal, rates)
+        value = (value / unit).to("") if money else value.to(unit)
+        return f"{_number(value.magnitude)} {lexicon('reckoning.yaml')['shown'].get(word, word) or goal.removeprefix(_MONEY) + 's'}"
     except ZeroDivisionError:
         raise Unanswerable("Nothing can be divided by zero.") from None
     except OverflowError:

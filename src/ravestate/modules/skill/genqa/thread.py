@@ -141,8 +141,9 @@ def things_of(seen: Parse) -> list[Thing]:
         own = phrase_of(seen.tree, word) if _is_noun(word) else []
         if not own or any(other.tag in WH for other in own):
             continue
-        label = next((e.label for e in seen.entities if e.start < word.end and word.start < e.end), "")
-        text = seen.tree.phrase(own)
+        entity = next((e for e in seen.entities if e.start < word.end and word.start < e.end), None)
+        label = entity.label if entity else ""
+        text = entity.text if entity and label == "PERSON" else seen.tree.phrase(own)
         found.setdefault(text.lower(), Thing(text, label or ("NAME" if word.pos == "PROPN" else "")))
         for of in seen.tree.children(word, "prep"):
             if of.low == "of":
@@ -178,7 +179,7 @@ def _lists(tree: Tree) -> Iterator[tuple[str, ...]]:
 # ------------------------------------------------------------------------------------------------ readings
 
 
-def readings(seen: Parse, thread: Sequence[Turn], titled: Callable[[str], str] = str) -> list[Reading]:
+def readings(seen: Parse, thread: Sequence[Turn], titled: Callable[[str], str] = lambda _: "") -> list[Reading]:
     """Return the questions that an utterance may stand for; none if it refers to something that is not in view.
 
     Args:
@@ -199,7 +200,9 @@ def readings(seen: Parse, thread: Sequence[Turn], titled: Callable[[str], str] =
 def _leans(seen: Parse) -> bool:
     """Return whether an utterance cannot be understood alone."""
     words = [word for word in seen.asked if word.pos != "PUNCT"]
-    content = ("NOUN", "PROPN", "VERB", "NUM", "ADJ", "X")
+    content = ["NOUN", "PROPN", "VERB", "NUM", "X"]
+    if not any(refers(word, words) or word.low in _ONES for word in words):
+        content.append("ADJ")
     bound = next((word.index for word in words if word.pos in ("NOUN", "PROPN")), len(seen.tree.words))
     return (
         not any(word.pos in content and word.low not in _ONES for word in words)
@@ -325,6 +328,9 @@ class _Follow:
     def _chosen(self, one: Word) -> Iterator[Reading]:
         """Yield the readings of *the first one* and *the other one*: members of a list, or earlier subjects."""
         own = [word for word in phrase_of(self.tree, one) if word in self.words]
+        before = self.tree.before(own[0])
+        if before is not None and before.low == "the":
+            own = [before, *own]
         rest = [word for word in self.words if word not in own]
         if any(word.tag in WH for word in rest) and rest[0].index > one.index:  # the first one, who climbed it?
             words = rest
