@@ -29,8 +29,8 @@ from ravestate.testing import simulate
 ROWS = HERE / "thread_rows.yaml"
 
 
-def measure_followups(file: Path = ROWS) -> Result:
-    """Run the talks of a file, each in a context of its own."""
+def measure_followups(file: Path = ROWS, every: int = 1) -> Result:
+    """Run the talks of a file, each in a context of its own; with `every`, only each such talk."""
     content = yaml.safe_load(file.read_text(encoding="utf-8"))
     outcomes = ("right", "answered right", "rightly silent", "wrongly silent", "wrong")
     counts: dict[str, int] = dict.fromkeys(outcomes, 0)
@@ -39,7 +39,7 @@ def measure_followups(file: Path = ROWS) -> Result:
         path = Path(folder) / "index.sqlite"
         _write(path, content["documents"])
         settings: dict[str, Any] = {"genqa": {"index": str(path), "collection": False}}
-        for case in content["cases"]:
+        for case in (cases := content["cases"][::every]):
             reply = _reply(settings, case)
             outcome = _outcome(reply, case)
             counts[outcome] += 1
@@ -48,8 +48,7 @@ def measure_followups(file: Path = ROWS) -> Result:
                 misses.append(f"{' / '.join((*case['talk'], case['follow']))}: {outcome}: {reply!r}")
         for answerer in [places._answerers.pop(key) for key in [*places._answerers] if key[0] == path]:  # pyright: ignore[reportPrivateUsage]
             answerer.close()
-    cases = len(content["cases"])
-    return Result(file.stem, cases, {what: count / cases for what, count in counts.items()}, misses)
+    return Result(file.stem, len(cases), {what: count / len(cases) for what, count in counts.items()}, misses)
 
 
 def results() -> list[Result]:

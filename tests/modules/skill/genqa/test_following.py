@@ -1,7 +1,6 @@
 """An answer in a talk: qualifiers are met, things are compared, and readings compete."""
 
 from collections.abc import Iterator
-from pathlib import Path
 
 import pytest
 

@@ -49,7 +49,9 @@ def test_without_a_thread_a_reference_means_nothing(heard: str) -> None:
     assert readings(parse(heard), ()) == []
 
 
-@pytest.mark.parametrize("heard", ["What is the capital of France?", "When did it start to rain?", "how do plants make their food?"])
+@pytest.mark.parametrize(
+    "heard", ["What is the capital of France?", "When did it start to rain?", "how do plants make their food?"]
+)
 def test_a_complete_question_stays(heard: str) -> None:
     assert readings(parse(heard), ())[0].text == heard
 
@@ -60,7 +62,9 @@ def test_any_text_has_readings(heard: str) -> None:
 
 
 def test_a_question_without_a_name_is_about_the_subject_in_view_first() -> None:
-    first, *_ = readings(parse("who was on board?"), talk(("When did the Marlow sink?", "The Marlow sank.", "The Marlow")))
+    first, *_ = readings(
+        parse("who was on board?"), talk(("When did the Marlow sink?", "The Marlow sank.", "The Marlow"))
+    )
     assert first.about == "The Marlow"
 
 
@@ -73,4 +77,6 @@ def test_names_count_in_any_case_if_a_document_is_about_them() -> None:
 
 def test_what_the_agent_said_gives_names_as_well() -> None:
     said = overheard("I live in Hannover.", 0.0)
-    assert "how many people live in Hannover?" in [r.text for r in readings(parse("how many people live there?"), [said])]
+    assert "how many people live in Hannover?" in [
+        r.text for r in readings(parse("how many people live there?"), [said])
+    ]

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import logging
 import math
 import re
 from collections.abc import Sequence
 from dataclasses import replace
 from datetime import datetime
+from functools import cache
 
 from ravestate.modules.meta.nlp import QuestionWord
 from ravestate.modules.meta.nlp.tree import Word
@@ -18,6 +20,7 @@ from .question import Parse, Question, as_question, is_vague, parse
 from .reckoning import Unanswerable, dates_in, reckon
 from .thread import Reading, Turn, readings, turn_of
 
+_log = logging.getLogger("ravestate.genqa")
 COVERED = 0.8
 """The minimum share of the question's words in a passage that the thread makes more likely."""
 VAGUE = -0.5
@@ -89,7 +92,16 @@ def _reckoned(heard: Parse, thread: Sequence[Turn], settings: Settings) -> Answe
             result = reckon(text, told[:-1], today, settings.rates) if text else ""
     except Unanswerable as error:
         result = str(error)
+    except ImportError as error:
+        _warn(str(error))
+        return None
     return Answer(text, result, confidence=1.0) if result else None
+
+
+@cache
+def _warn(error: str) -> None:
+    """Say once that a library is missing."""
+    _log.warning("sums, units and dates are not worked out (%s): pip install 'ravestate[genqa]'", error)
 
 
 def _again(text: str, before: str) -> str:

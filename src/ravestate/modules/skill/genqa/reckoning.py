@@ -302,8 +302,7 @@ def dates_in(text: str) -> list[Dated]:
     for match in _DATE.finditer(text.lower()):
         try:  # parts that are missing come from the default
             one, other = (
-                parse(match[0], default=datetime(*day), dayfirst=True)
-                for day in ((2000, 1, 1), (2004, 3, 3))  # noqa: DTZ001
+                parse(match[0], default=datetime(*day), dayfirst=True) for day in ((2000, 1, 1), (2004, 3, 3))
             )
         except (ParserError, OverflowError, ValueError):
             continue
