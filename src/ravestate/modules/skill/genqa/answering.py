@@ -201,8 +201,20 @@ class Answerer:
         total = sum(weight for _, weight in weights) or 1.0
         retrieved: list[tuple[float, Found]] = []
         stems_of = [set(stems) for stems in self._stems(*(f"{each.title} {each.text} {each.hints}" for each in found))]
-        # A word that some of the documents in view have is not just another name for their subject.
+        # A word that some of the documents in view have is not just another name for their subject, unless they say so.
         told = [forms for forms in asked if titles and any(has(have, forms) for have in stems_of)]
+        also = [
+            f
+            for f in told
+            if any(
+                has(have, f) and _DEFINES.match(e.text.removeprefix(e.title))
+                for e, have in zip(found, stems_of, strict=True)
+            )
+        ]
+        also = also if len(told) > len(also) else []
+        told = [forms for forms in told if forms not in also]
+        weights = [(forms, weight) for forms, weight in weights if forms not in also]
+        total = sum(weight for _, weight in weights) or 1.0
         for each, have in zip(found, stems_of, strict=True):
             covered = sum(weight for forms, weight in weights if has(have, forms)) / total
             if (
@@ -250,6 +262,7 @@ _NUMBER = re.compile(
 )
 
 
+_DEFINES = re.compile(r" (?:is|was|are|were) (?:an?|the) ")
 _TIME = re.compile(
     r"\b(?:century|spring|summer|autumn|winter|night|day|morning|evening|noon|\w+day|year|month|week|after|before|when|during|every|"
     r"once|ago|January|February|March|April|May|June|July|August|September|October|November|December)s?\b"

@@ -143,11 +143,23 @@ def _asked(name: str, base: str, noun: str, ask: Callable[[str], Answer]) -> Ans
     questions = [f"how {base} is {name}?"]
     if base == "many" or noun:
         questions = [f"how many {noun or 'people'} does {name} have?"]
-    elif base in _TIMED:
-        questions += [f"when was {name} {done}?" for done in ("born", "founded", "built")]
+    elif base in _TIMED and (found := begun(name, ask)) is not None:
+        return found
     answers = [ask(question) for question in questions]
     right = [found for found in answers if (dates_in if base in _TIMED else measured)(found.text)]
     return max(right, key=lambda answer: answer.confidence, default=None)
+
+
+def begun(name: str, ask: Callable[[str], Answer]) -> Answer | None:
+    """Return when somebody was born, or something was founded or built; None if no passage about it says so."""
+    answers = [ask(f"when was {name} {done}?") for done in ("born", "founded", "built")]
+    bare = name.lower().removeprefix("the ")
+    own = [
+        a
+        for a in answers
+        if dates_in(a.text) and a.text.lower().removeprefix("the ").startswith((bare, "she ", "he ", "it "))
+    ]
+    return max(own, key=lambda answer: answer.confidence, default=None)
 
 
 def _values(one: str, other: str, base: str) -> tuple[float, float] | None:

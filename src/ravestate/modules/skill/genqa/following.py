@@ -14,7 +14,7 @@ from ravestate.modules.meta.nlp import QuestionWord
 from ravestate.modules.meta.nlp.tree import Word
 
 from .answering import Answer, Answerer
-from .comparing import aged, compared
+from .comparing import aged, begun, compared
 from .names import Settings
 from .question import Parse, Question, as_question, is_vague, parse
 from .reckoning import Unanswerable, dates_in, reckon
@@ -23,8 +23,8 @@ from .thread import Reading, Turn, readings, turn_of
 _log = logging.getLogger("ravestate.genqa")
 COVERED = 0.8
 """The minimum share of the question's words in a passage that the thread makes more likely."""
-VAGUE = -0.5
-"""The logarithm of odds that other passages from the thread lose."""
+VAGUE, AGAIN = -0.8, -3.0
+"""The logarithm of odds that other passages lose in a follow-up, and the last answer once more."""
 MOST = 8
 """The maximum number of readings that are tried."""
 
@@ -69,8 +69,12 @@ def answer_in(
         said = {turn.answer for turn in thread} if any(word.low == "else" for word in heard.asked) else ()
         if not answer.text or answer.text in said:
             continue
-        vague = reading.about and answer.candidates[0].covered < COVERED
-        answer = replace(answer, confidence=_shifted(answer.confidence, VAGUE if vague else reading.prior))
+        prior = reading.prior
+        if reading.text != heard.text or reading.about:
+            covered = answer.candidates[0].covered if answer.candidates else 1.0
+            prior += 0.0 if covered >= COVERED else AGAIN if answer.text == thread[-1].answer else VAGUE
+            prior = min(prior, VAGUE) if reading.about and covered < COVERED else prior
+        answer = replace(answer, confidence=_shifted(answer.confidence, prior))
         if best is None or answer.confidence > best[0].confidence:
             best = answer, reading, seen
         if best[0].confidence >= settings.sure:
@@ -123,8 +127,7 @@ def _decided(answerer: Answerer, question: Question, settings: Settings, titles:
     if answer.confidence < settings.unsure and (
         thing := re.match(r"how old (?:is|are|was) (.+)\?", question.text, re.IGNORECASE)
     ):
-        others = [answerer.answer(f"when was {thing[1]} {done}?", titles) for done in ("born", "founded", "built")]
-        answer = max((answer, *others), key=lambda other: other.confidence)
+        answer = begun(thing[1], lambda text: answerer.answer(text, titles)) or answer
     if question.doubtful and answer.confidence < settings.sure:
         return replace(answer, confidence=0.0)
     if is_vague(question) and answer.confidence >= settings.sure:

@@ -26,6 +26,10 @@ FINITE = ("VBZ", "VBP", "VBD", "MD")
 _NAMES = ("GPE", "LOC", "PERSON", "ORG", "FAC", "NORP", "WORK_OF_ART", "EVENT", "PRODUCT", "LANGUAGE")
 
 
+_ABOUT_DEEDS = (QuestionWord.REASON, QuestionWord.FORM)
+"""Kinds of questions that need more than a name."""
+
+
 @dataclass(frozen=True, slots=True)
 class Question:
     """A question about the world."""
@@ -130,6 +134,9 @@ def as_question(heard: str | Parse) -> Question:
     reason, doubtful = _declined(heard, said), heard.kind is None
     if not reason and content and all(word.lower() in words_of("moment") for word in content):
         reason = "it is about the moment, which documents do not know"
+    named = {part for word in said if is_name(heard, word) for part in _parts(word)}
+    if not reason and words and heard.kind in _ABOUT_DEEDS and named.issuperset(words):
+        reason = "it asks nothing about a name"
     if not reason and not words:
         reason = "it has no word to look for"
     if any(word.low in THE_TWO for word in said):
@@ -182,8 +189,8 @@ def _is_anybody(heard: Parse, word: Word) -> bool:
         return True
     if heard.kind not in (QuestionWord.FORM, QuestionWord.PLACE, QuestionWord.TIME, QuestionWord.AMOUNT):
         return any(helper.low in ("must", "may") for helper in helpers)
-    things = heard.tree.children(verb, "dobj")
-    return any(h.tag == "MD" for h in helpers) or any(thing.pos in ("NOUN", "PROPN") for thing in things)
+    things = [other for other in heard.tree.subtree(verb) if other.pos in ("NOUN", "PROPN")]
+    return bool(things) or any(helper.tag == "MD" for helper in helpers)
 
 
 def _qualifiers(heard: Parse) -> tuple[list[tuple[str, ...]], list[str]]:

@@ -28,6 +28,9 @@ _DATE = re.compile(
 )
 
 
+_DEFAULTS = (datetime(2000, 1, 1), datetime(2004, 3, 3))  # noqa: DTZ001
+
+
 class Unanswerable(Exception):
     """A sum without a result; the message says why."""
 
@@ -301,9 +304,7 @@ def dates_in(text: str) -> list[Dated]:
     found: list[Dated] = []
     for match in _DATE.finditer(text.lower()):
         try:  # parts that are missing come from the default
-            one, other = (
-                parse(match[0], default=datetime(*day), dayfirst=True) for day in ((2000, 1, 1), (2004, 3, 3))
-            )
+            one, other = (parse(match[0], default=default, dayfirst=True) for default in _DEFAULTS)
         except (ParserError, OverflowError, ValueError):
             continue
         exact = one.day == other.day and one.month == other.month

@@ -85,6 +85,8 @@ class Turn:
     """Names with their pronouns: ``he`` or ``she``."""
     source: str = ""
     confidence: float = 1.0
+    defines: bool = False
+    """Whether the question only asks for its subject: *who is Clara Venn?*. The answer tells of nobody else then."""
 
     @property
     def subject(self) -> str:
@@ -116,7 +118,11 @@ def turn_of(asked: Parse, found: Answer, at: float, sexes: tuple[tuple[str, str]
         and not any(_same(t.text, title) for t in things)
     ):
         things.append(Thing(title, next((t.label for t in things if t.is_name and t.text in title), "TITLE")))
+    named = set(title.lower().split())
+    things = [t for t in things if _same(t.text, title) or not named.issuperset(t.text.lower().split())]
     things.sort(key=lambda thing: not thing.is_name)
+    defines = bool(title) and len(things) == 1 and _same(things[0].text, title) and asked.kind is QuestionWord.PERSON
+    defines = defines and any(word.lemma == "be" for word in asked.asked)
     new = [t for t in things_of(told) if not _same(t.text, title) and not words.issuperset(t.text.lower().split())]
     if asked.kind is QuestionWord.PERSON:
         if not any(thing.is_person for thing in new):
@@ -126,7 +132,9 @@ def turn_of(asked: Parse, found: Answer, at: float, sexes: tuple[tuple[str, str]
         sexes = (*sexes, *((thing.text, sex) for thing in new if thing.is_person for sex in known))
     items = max(_lists(told.tree), key=len, default=())
     question = asked.text.rstrip("?")
-    return Turn(question, answer, title, at, tuple(things), tuple(new), items, sexes, found.source, found.confidence)
+    return Turn(
+        question, answer, title, at, tuple(things), tuple(new), items, sexes, found.source, found.confidence, defines
+    )
 
 
 def overheard(said: str, at: float) -> Turn:
@@ -143,7 +151,7 @@ def things_of(seen: Parse) -> list[Thing]:
             continue
         entity = next((e for e in seen.entities if e.start < word.end and word.start < e.end), None)
         label = entity.label if entity else ""
-        text = entity.text if entity and label == "PERSON" else seen.tree.phrase(own)
+        text = entity.text.removesuffix("'s") if entity and label == "PERSON" else seen.tree.phrase(own)
         found.setdefault(text.lower(), Thing(text, label or ("NAME" if word.pos == "PROPN" else "")))
         for of in seen.tree.children(word, "prep"):
             if of.low == "of":
@@ -172,6 +180,8 @@ def _lists(tree: Tree) -> Iterator[tuple[str, ...]]:
         members = [word]
         while nexts := tree.children(members[-1], "conj"):
             members.append(nexts[0])
+        if len(members) > 2 and tree.children(word, "nummod"):  # two moons, Ibo and Usk
+            members = members[1:]
         if len(members) > 1 and _is_noun(word) and word.dep != "conj":
             yield tuple(tree.phrase(phrase_of(tree, member)) for member in members)
 
@@ -229,14 +239,15 @@ def referents(pronoun: Word, thread: Sequence[Turn]) -> list[Thing]:
     known = {name: SEXES[said] for turn in thread for name, said in turn.sexes}
     found: dict[str, Thing] = {}
     for turn in reversed(thread[-2:]):
-        told_first = sex or pronoun.low == "there" or turn.question.lower().startswith(("what ", "which "))
+        told_first = not turn.defines and (
+            sex or pronoun.low == "there" or turn.question.lower().startswith(("what ", "which "))
+        )
         things = [*turn.told, *turn.asked] if told_first else [*turn.asked, *turn.told]
         for rank in (0, 1, 2):
-            found |= {
-                t.text.lower(): t
-                for t in things
-                if _unlikely(pronoun.low, sex, t, known) == rank and t.text.lower() not in found
-            }
+            for thing in things:
+                fits = rank == 0 or not turn.defines or thing in turn.asked
+                if fits and _unlikely(pronoun.low, sex, thing, known) == rank:
+                    found.setdefault(thing.text.lower(), thing)
     return list(found.values())[:6]
 
 
@@ -277,9 +288,8 @@ class _Follow:
         self.words, self.leads = words, len(words) < len(said)
         self.text = self.tree.phrase(words)
         self.pronouns = [word for word in words if refers(word, words)]
-        self.named = any(
-            is_name(seen, w) or titled(self.tree.phrase(phrase_of(self.tree, w))) for w in words if _is_noun(w)
-        )
+        heads = [self.tree.phrase(phrase_of(self.tree, word)) for word in words if _is_noun(word)]
+        self.named = any(is_name(seen, word) for word in words) or any(map(titled, (self.text, *heads)))
         self.names = [thing for thing in (*self.last.asked, *self.last.told) if thing.is_name]
 
     def readings(self) -> Iterator[Reading]:
@@ -307,7 +317,7 @@ class _Follow:
 
     def _resolved(self) -> Iterator[Reading]:
         pronoun = self.pronouns[0].low
-        person = pronoun in SEXES and any(thing.is_person for thing in self.last.told)
+        person = pronoun in SEXES and not self.last.defines and any(thing.is_person for thing in self.last.told)
         for rank, thing in enumerate(referents(self.pronouns[0], self.thread)):
             sexes = ((thing.text, pronoun),) if pronoun in SEXES else ()
             far = FAR if person and not thing.is_person else 0.0
