@@ -252,7 +252,7 @@ def _picked(tree: Tree, rank: Word) -> Iterator[Word]:
     if head.pos == "ADJ" and tree.head(head).pos in ("NOUN", "PROPN"):
         head = tree.head(head)
     for word in tree.subtree(head):
-        if _means(word) and word != rank and word.low not in words_of("kinds") | words_of("people"):
+        if _means(word) and word != rank and word.low not in words_of("kinds") | words_of("people") | words_of("ranks"):
             yield word
 
 

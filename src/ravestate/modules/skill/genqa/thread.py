@@ -86,7 +86,7 @@ class Turn:
     source: str = ""
     confidence: float = 1.0
     defines: bool = False
-    """Whether the question only asks for its subject: *who is Clara Venn?*. The answer tells of nobody else then."""
+    """Whether the question only asks for its subject: *who is Clara Venn?*. A pronoun then means the subject."""
 
     @property
     def subject(self) -> str:
