@@ -27,6 +27,7 @@ from ravestate.modules.skill.genqa.passages import passages_of
 from ravestate.testing import simulate
 
 ROWS = HERE / "thread_rows.yaml"
+FILES = (ROWS, HERE / "thread_station_rows.yaml")
 
 
 def measure_followups(file: Path = ROWS, every: int = 1) -> Result:
@@ -53,7 +54,7 @@ def measure_followups(file: Path = ROWS, every: int = 1) -> Result:
 
 def results() -> list[Result]:
     """Measure the talks for development; `measure.py` prints them."""
-    return [measure_followups(ROWS)]
+    return [measure_followups(file) for file in FILES]
 
 
 def _write(path: Path, documents: list[dict[str, Any]]) -> None:
