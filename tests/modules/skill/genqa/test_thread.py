@@ -80,3 +80,8 @@ def test_what_the_agent_said_gives_names_as_well() -> None:
     assert "how many people live in Hannover?" in [
         r.text for r in readings(parse("how many people live there?"), [said])
     ]
+
+
+def test_the_subject_of_a_question_that_only_asks_for_it_is_meant_first() -> None:
+    turns = talk(("who is bertha", "Bertha is a giant tortoise in Willowbrook Zoo.", "Bertha"))
+    assert readings(parse("when did she come to the zoo?"), turns)[0].text == "when did Bertha come to the zoo?"

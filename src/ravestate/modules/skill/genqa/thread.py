@@ -245,8 +245,8 @@ def referents(pronoun: Word, thread: Sequence[Turn]) -> list[Thing]:
         things = [*turn.told, *turn.asked] if told_first else [*turn.asked, *turn.told]
         for rank in (0, 1, 2):
             for thing in things:
-                fits = rank == 0 or not turn.defines or thing in turn.asked
-                if fits and _unlikely(pronoun.low, sex, thing, known) == rank:
+                unlikely = _unlikely(pronoun.low, sex, thing, known)
+                if unlikely == rank or (turn.defines and thing in turn.asked and unlikely < 3):
                     found.setdefault(thing.text.lower(), thing)
     return list(found.values())[:6]
 
