@@ -19,6 +19,8 @@ from ravestate.modules.skill.agentqa.life import Life
 from ravestate.modules.skill.agentqa.life_file import read_life
 from ravestate.modules.skill.agentqa.router import Match, Router
 from ravestate.modules.skill.genqa.answering import Answerer
+from ravestate.modules.skill.genqa.following import answer_in
+from ravestate.modules.skill.genqa.question import not_asked, parsed
 
 
 def _seen(text: str) -> Analysis:
@@ -90,11 +92,12 @@ def _router() -> Router:
 
 
 def genqa(text: str) -> Reply | None:
-    """By genqa, which is only asked what nlp takes for a question."""
-    settings = genqa_module.Settings()
-    if _seen(text).question is None:
+    """By genqa, without a talk before."""
+    settings, seen = genqa_module.Settings(), _seen(text)
+    heard = parsed(seen.tree, seen.entities, seen.question)
+    if not_asked(heard, seen):
         return None
-    answer = _answerer().answer(text)
+    answer, _ = answer_in(_answerer(), heard, (), settings, 0.0)
     if not answer.text or answer.confidence < settings.unsure:
         return None
     return Reply(answer.text, sure=answer.confidence >= settings.sure)

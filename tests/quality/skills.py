@@ -8,15 +8,13 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 
-from quality import measure
+from quality import measure, modules
 from quality.modules import _seen
 from ravestate.language.acts import heard, only
 from ravestate.language.matcher import bundled_matcher
 from ravestate.modules.skill.agentqa.life_file import read_life
 from ravestate.modules.skill.agentqa.remarks import act_in, remark_in
 from ravestate.modules.skill.agentqa.router import Match, router_of
-from ravestate.modules.skill.genqa.question import as_question
-from ravestate.modules.skill.genqa.referring import Before, completed
 from ravestate.modules.skill.persqa.talk import Talk
 from ravestate.modules.skill.persqa.topics import Fact
 from ravestate.modules.skill.persqa.understanding import Heard, understand
@@ -29,7 +27,6 @@ FLOORS = {
     "agentqa_asks": 0.98,
     "agentqa_remarks": 0.97,
     "genqa_declined": 0.97,
-    "genqa_references": 0.97,
     "wildtalk_facts": 0.97,
     "hibye_words": 0.97,
 }
@@ -81,13 +78,8 @@ def agentqa_remarks(sentence: str) -> str:
 
 
 def genqa_declined(sentence: str) -> str:
-    """Return whether a question is looked up: ``-`` where no document can have the answer."""
-    return "-" if as_question(sentence).declined else "asked"
-
-
-def genqa_references(sentence: str) -> str:
-    """Return the question that is meant after one about the population of Austria."""
-    return completed(sentence, Before("what is the population of Austria", "Austria", 0.0)) or "-"
+    """Return whether a question is answered: ``-`` where no document can have the answer."""
+    return "-" if modules.genqa(sentence) is None else "said"
 
 
 def wildtalk_facts(sentence: str) -> str:
@@ -105,7 +97,7 @@ def hibye_words(sentence: str) -> str:
 SETS: dict[str, Callable[[str], str]] = {
     function.__name__: function
     for function in (
-        persqa_facts, agentqa_asks, agentqa_remarks, genqa_declined, genqa_references, wildtalk_facts, hibye_words,
+        persqa_facts, agentqa_asks, agentqa_remarks, genqa_declined, wildtalk_facts, hibye_words,
     )
 }  # fmt: skip
 

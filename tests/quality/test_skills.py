@@ -6,7 +6,7 @@ from collections import Counter
 
 import pytest
 
-from quality import measure, skills
+from quality import followups, measure, skills
 from quality.modules import plain
 from ravestate.modules.skill.agentqa.life_file import read_life
 
@@ -36,3 +36,9 @@ def test_no_question_to_the_agent_is_one_of_its_examples() -> None:
     examples = {plain(question) for topic in life.topics.values() for question in topic.questions}
     examples |= set(map(plain, life.others))
     assert examples.isdisjoint(plain(text) for text, _ in measure.labelled("agentqa_asks"))
+
+
+def test_follow_ups_are_answered_above_the_floor() -> None:
+    result = followups.measure_followups(every=4)
+    assert result.shares["right"] >= 0.93, "\n  ".join(result.misses)
+    assert result.shares["wrong"] <= 0.03, "\n  ".join(result.misses)

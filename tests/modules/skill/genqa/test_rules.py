@@ -97,7 +97,7 @@ def test_a_question_may_refer_to_the_one_before_for_a_while(settings: dict[str, 
             ("And its capital?", "The capital of Austria is Vienna."),
             ("It is nice.", "Hm."),
             ("And of Spain?", "The capital of Spain is Madrid."),
-            ("how many people live there?", "The population of Spain is"),
+            ("how many people live there?", "Madrid, with 6.751 million people"),
         ):
             sim.say(text)
             assert answer in sim.said[-1], text

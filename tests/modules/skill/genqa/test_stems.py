@@ -2,8 +2,8 @@
 
 import sqlite3
 
+from ravestate.modules.skill.genqa.lexicon import variants_of
 from ravestate.modules.skill.genqa.stems import TOKENIZER, Stems
-from ravestate.modules.skill.genqa.variants import variants_of
 
 
 def test_stems_of_each_text_in_order() -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from . import rules as rules
 from .answering import Answer, Answerer, Candidate
-from .names import Settings, before, found, module
-from .referring import Before
+from .names import Settings, found, module, thread
+from .thread import Turn
 
-__all__ = ["Answer", "Answerer", "Before", "Candidate", "Settings", "before", "found", "module"]
+__all__ = ["Answer", "Answerer", "Candidate", "Settings", "Turn", "found", "module", "thread"]

@@ -5,19 +5,21 @@ from __future__ import annotations
 import math
 import re
 import threading
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from ravestate.language import Reranker
+from ravestate.modules._text import printable
+from ravestate.modules.meta.nlp import QuestionWord
 
 from .confidence import confidence
 from .index import Found, Index
+from .lexicon import variants_of
 from .passages import LONGEST
-from .question import Question, as_question
+from .question import Parse, Question, as_question
 from .shipped import bring_up
 from .stems import Stems
-from .variants import variants_of
 
 RETRIEVED = 16
 """The number of passages to compare word by word: so many with any word of a question, and as many with all words."""
@@ -28,6 +30,8 @@ GOOD, VERY_GOOD, HOPELESS = 7.5, 9.0, -4.0
 few."""
 ENOUGH = 0.4
 """The minimum share of the question's words (0 to 1) in a passage that is read."""
+ENOUGH_THERE = 0.25
+"""The same in the documents that a talk is about."""
 LEVEL = 0.8
 """Scores that differ by less count as equal."""
 COMMON = 20_000
@@ -111,25 +115,37 @@ class Answerer:
                 self._index.close()
                 self._index = None
 
-    def answer(self, heard: str) -> Answer:
+    def answer(self, heard: str | Parse | Question, titles: Sequence[str] = ()) -> Answer:
         """Answer an utterance from the documents.
+
+        Args:
+            heard: The utterance, or what is known of it already.
+            titles: The titles of the documents to search; empty for all.
 
         Raises:
             PlatformError: See `load`.
         """
-        question = as_question(heard)
+        question = (
+            heard
+            if isinstance(heard, Question)
+            else as_question(heard if isinstance(heard, Parse) else printable(heard))
+        )
         if question.declined:
             return Answer(question.text, reason=question.declined)
         index = self._opened()
         if not index.size():
             return Answer(question.text, reason="there are no documents")
-        retrieved = self._retrieve(index, question)
+        retrieved = self._retrieve(index, question, titles)
         if not retrieved:
-            return Answer(question.text, reason="no document mentions it")
+            return Answer(question.text, reason="no document states all of it")
         read = self._read(question, retrieved)
         best = read[0]
         sure = confidence(best.score, best.covered)
         return Answer(question.text, best.text, index.source(best.row), best.title, sure, tuple(read))
+
+    def titled(self, name: str) -> str:
+        """Return the title of a document about `name`, in any case, with or without *the*; empty if there is none."""
+        return self._opened().title_of(name)
 
     # ---------------------------------------------------------------------------------- internals
 
@@ -150,45 +166,65 @@ class Answerer:
                 self._stems = Stems()
             return self._index
 
-    def _retrieve(self, index: Index, question: Question) -> list[tuple[float, Found]]:
-        """Return the passages to read with their share of the question, best first."""
+    def _retrieve(self, index: Index, question: Question, titles: Sequence[str]) -> list[tuple[float, Found]]:
+        """Return the passages to read with their share of the question, best first; all meet its qualifiers."""
         assert self._stems is not None  # `_opened` has set it
         asked = [variants_of(word) for word in question.words[:WORDS]]
-        searched = list(dict.fromkeys(word for group in (*asked, question.kinds[:WORDS]) for word in group))
-        stem_of = {word: stems for word, stems in zip(searched, self._stems(*searched), strict=True) if stems}
+        groups = (*asked, question.kinds[:WORDS], *question.needs)
+        known_words = list(dict.fromkeys(word for group in groups for word in group))
+        stem_of = {word: stems for word, stems in zip(known_words, self._stems(*known_words), strict=True) if stems}
         known = index.frequencies(sorted({stem for stems in stem_of.values() for stem in stems}))
 
         def standing(word: str) -> int:
             """Return the maximum number of passages with a word."""
             return min(known.get(stem, 0) for stem in stem_of[word])
 
-        rare = [word for word in stem_of if standing(word) <= (COMMON_KIND if word in question.kinds else COMMON)]
-        others = _other_ranks(question.text)
-        found = index.search(rare or list(stem_of), RETRIEVED, others)
+        searched = [word for word in dict.fromkeys(w for g in groups[: len(asked) + 1] for w in g) if word in stem_of]
+        rare = [word for word in searched if standing(word) <= (COMMON_KIND if word in question.kinds else COMMON)]
+        found = index.search(rare or searched, RETRIEVED, titles=titles, without=question.avoids)
         # A passage with all words may be hidden behind many that repeat the rarest one.
-        found += [each for each in index.search_all(asked, RETRIEVED, others) if each not in found]
+        found += [
+            each
+            for each in index.search_all(asked, RETRIEVED, titles=titles, without=question.avoids)
+            if each not in found
+        ]
 
-        # The weight of each word, and the forms that it may have in a passage.
+        def has(have: set[str], forms: Iterable[str]) -> bool:
+            return any(have.issuperset(stem_of[form]) for form in forms if form in stem_of)
+
         size = index.size()
-        wanted = [
-            (
-                math.log1p(size / (max(map(standing, forms)) + 0.5)),
-                [frozenset(stem_of[form]) for form in forms],
+        weights = [
+            (forms, math.log1p(size / (max(map(standing, known_forms)) + 0.5)))
+            for forms in asked
+            if (known_forms := [form for form in forms if form in stem_of])
+        ]
+        total = sum(weight for _, weight in weights) or 1.0
+        retrieved: list[tuple[float, Found]] = []
+        stems_of = [set(stems) for stems in self._stems(*(f"{each.title} {each.text} {each.hints}" for each in found))]
+        # A word that some of the documents in view have is not just another name for their subject, unless they say so.
+        told = [forms for forms in asked if titles and any(has(have, forms) for have in stems_of)]
+        also = [
+            f
+            for f in told
+            if any(
+                has(have, f) and _DEFINES.match(e.text.removeprefix(e.title))
+                for e, have in zip(found, stems_of, strict=True)
             )
-            for group in asked
-            if (forms := [form for form in group if form in stem_of])
         ]
-        total = sum(weight for weight, _ in wanted) or 1.0
-        covered = [
-            sum(weight for weight, forms in wanted if any(form <= have for form in forms)) / total
-            for have in map(set, self._stems(*(f"{each.title} {each.text} {each.hints}" for each in found)))
-        ]
+        also = also if len(told) > len(also) else []
+        told = [forms for forms in told if forms not in also]
+        weights = [(forms, weight) for forms, weight in weights if forms not in also]
+        total = sum(weight for _, weight in weights) or 1.0
+        for each, have in zip(found, stems_of, strict=True):
+            covered = sum(weight for forms, weight in weights if has(have, forms)) / total
+            if (
+                covered >= (ENOUGH_THERE if titles else ENOUGH)
+                and _can_answer(question, each)
+                and all(has(have, need) for need in (*question.needs, *told))
+            ):
+                retrieved.append((covered, each))
         # The sort is stable, so BM25 decides between equals.
-        order = sorted(
-            (place for place in range(len(found)) if covered[place] >= ENOUGH),
-            key=lambda place: -covered[place],
-        )
-        return [(covered[place], found[place]) for place in order]
+        return sorted(retrieved, key=lambda each: -each[0])
 
     def _read(self, question: Question, retrieved: Sequence[tuple[float, Found]]) -> list[Candidate]:
         read: list[Candidate] = []
@@ -220,16 +256,30 @@ def _readable(found: Found) -> str:
     return text[:LONGEST]
 
 
-_SUPERLATIVE = re.compile(r"\b(?:\w{3,}est|most|least)\b", re.IGNORECASE)
-_RANKS = ("second", "third", "fourth", "fifth", "sixth", "seventh", "eighth", "ninth", "tenth")
+_NUMBER = re.compile(
+    r"\d|\b(?:no|none|one|two|three|four|five|six|seven|eight|nine|ten|eleven|twelve|twenty|dozen|hundred|once|twice|half)\b",
+    re.IGNORECASE,
+)
 
 
-def _other_ranks(question: str) -> list[str]:
-    """Return ranks that a passage must not name: a question about the largest is not about the second largest."""
-    if not _SUPERLATIVE.search(question):
-        return []
-    asked = set(question.lower().split())
-    return [rank for rank in _RANKS if rank not in asked]
+_DEFINES = re.compile(r" (?:is|was|are|were) (?:an?|the) ")
+_TIME = re.compile(
+    r"\b(?:century|spring|summer|autumn|winter|night|day|morning|evening|noon|\w+day|year|month|week|after|before|when|during|every|"
+    r"once|ago|January|February|March|April|May|June|July|August|September|October|November|December)s?\b"
+)
+
+
+def _can_answer(question: Question, found: Found) -> bool:
+    """Return whether a passage has the kind of thing that was asked for: a number, or the name of a place."""
+    asked = question.text.lower()
+    if question.kind is QuestionWord.AMOUNT and ("how many " in asked or "how much " in asked):
+        return _NUMBER.search(found.text) is not None
+    if question.kind is QuestionWord.TIME and not re.search(r"\d", found.text):
+        return _TIME.search(found.text) is not None
+    if question.kind is QuestionWord.PLACE and "where" not in asked:
+        names = re.findall(r"(?<=[^.!?] )[A-Z][^\W_]+", found.text) + found.title.split()
+        return any(name.lower() not in asked for name in names)
+    return True
 
 
 def _besides(text: str, asked: set[str]) -> int:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-INTERCEPT, SCORE, COVERED = -6.419, 0.634, 5.337
+INTERCEPT, SCORE, COVERED = -5.806, 0.699, 4.481
 
 
 def confidence(score: float, covered: float) -> float:

@@ -28,6 +28,7 @@ CREATE TABLE files (
 CREATE TABLE documents (
     first INTEGER PRIMARY KEY, last INTEGER NOT NULL, path TEXT NOT NULL, title TEXT NOT NULL, source TEXT NOT NULL
 );
+CREATE INDEX documents_of_title ON documents (title COLLATE NOCASE);
 CREATE INDEX documents_of_file ON documents (path);
 CREATE VIRTUAL TABLE passages USING fts5(title, text, hints, tokenize='{TOKENIZER}');
 CREATE VIRTUAL TABLE words USING fts5vocab(passages, 'row');
@@ -150,6 +151,15 @@ class Index:
             ).fetchone()
         return "" if found is None else found[0]
 
+    def title_of(self, name: str) -> str:
+        """Return the title that is `name`, in any case, with or without *the*; empty if there is none."""
+        bare = name.lower().removeprefix("the ")
+        with self._lock, self._told():
+            found = self._base.execute(
+                "SELECT title FROM documents WHERE title COLLATE NOCASE IN (?, ?) LIMIT 1", (bare, f"the {bare}")
+            ).fetchone()
+        return "" if found is None else found[0]
+
     # ---------------------------------------------------------------------------------- searching
 
     def frequencies(self, stems: Sequence[str]) -> dict[str, int]:
@@ -158,20 +168,25 @@ class Index:
         with self._lock, self._told():
             return dict(self._base.execute(f"SELECT term, doc FROM words WHERE term IN ({marks})", tuple(stems)))
 
-    def search(self, words: Sequence[str], limit: int, without: Sequence[str] = ()) -> list[Found]:
+    def search(
+        self, words: Sequence[str], limit: int, *, titles: Sequence[str] = (), without: Sequence[str] = ()
+    ) -> list[Found]:
         """Return the passages that share most with `words`, by BM25, best first.
 
         Args:
             words: Any text; operators of the query language are plain words here.
             limit: The maximum number of passages.
+            titles: The titles to search; empty for all.
             without: Words that exclude a passage.
         """
-        return self._matching(_any_of(words), limit, without)
+        return self._matching(_any_of(words), limit, titles, without)
 
-    def search_all(self, groups: Sequence[Sequence[str]], limit: int, without: Sequence[str] = ()) -> list[Found]:
+    def search_all(
+        self, groups: Sequence[Sequence[str]], limit: int, *, titles: Sequence[str] = (), without: Sequence[str] = ()
+    ) -> list[Found]:
         """Return passages like `search`, but only those with a word of each group."""
         each = [any_of for group in groups if (any_of := _any_of(group))]
-        return self._matching(" AND ".join(f"({any_of})" for any_of in each), limit, without)
+        return self._matching(" AND ".join(f"({any_of})" for any_of in each), limit, titles, without)
 
     # ------------------------------------------------------------------------------------ writing
 
@@ -219,9 +234,11 @@ class Index:
 
     # ---------------------------------------------------------------------------------- internals
 
-    def _matching(self, query: str, limit: int, without: Sequence[str]) -> list[Found]:
+    def _matching(self, query: str, limit: int, titles: Sequence[str], without: Sequence[str]) -> list[Found]:
         if not query:
             return []
+        if titles:
+            query = f"({query}) AND title : ({_any_of(titles)})"
         if without:
             query = f"({query}) NOT ({_any_of(without)})"
         with self._lock, self._told():

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -11,7 +12,7 @@ import ravestate as rs
 from ravestate.modules import nlp, rawio, verbaliser
 
 from .answering import Answer
-from .referring import Before
+from .thread import Turn
 
 Probability = Annotated[float, Field(ge=0, le=1)]
 
@@ -25,7 +26,7 @@ class Settings(rs.Settings):
     """Whether to search the collection that comes with Ravestate as well: countries, nature, the calendar."""
     sure: Probability = 0.7
     """The minimum confidence of a sure answer."""
-    unsure: Probability = 0.4
+    unsure: Probability = 0.5
     """The minimum confidence of an answer with a doubt; below that, the module is silent."""
     wording: Literal["sentence", "model"] = "sentence"
     """``sentence``: the document's own words; ``model``: the words of wildtalk's language model. The prompt has only the
@@ -33,6 +34,9 @@ class Settings(rs.Settings):
     reader: Path | None = None
     """The folder of another cross-encoder (``model.onnx``, ``tokenizer.json``); the confidence is calibrated for the
     bundled one."""
+
+    rates: Mapping[str, float] = Field(default_factory=dict[str, float])
+    """The value of one ``dollar``, ``euro``, ``sterling``..., each in the same currency; without it no money is exchanged."""
 
     @model_validator(mode="after")
     def _in_order(self) -> Settings:
@@ -46,5 +50,5 @@ module = rs.Module("genqa", requires=[rawio, nlp, verbaliser], settings=Settings
 found = module.signal("found", payload=Answer)
 """The documents have an answer that is probable enough to say."""
 
-before: rs.Slot[Before | None] = module.slot("before", None, type=Before)
-"""The last question with an answer: *and its capital?* refers to it."""
+thread: rs.Slot[tuple[Turn, ...]] = module.slot("thread", ())
+"""The latest questions with their answers, oldest first: *and its capital?* refers to them."""

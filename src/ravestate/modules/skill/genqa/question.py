@@ -1,69 +1,33 @@
-"""The question in an utterance, its words, and whether documents can answer it."""
+"""The question in an utterance: its words, its qualifiers, and whether documents can answer it. All from the parse."""
 
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
+from ravestate.language.entity import Entity
 from ravestate.modules._text import printable
+from ravestate.modules.meta.nlp import QuestionWord
+from ravestate.modules.meta.nlp.analysis import Analysis
+from ravestate.modules.meta.nlp.inquiry import question_of
+from ravestate.modules.meta.nlp.pipeline import pipeline
+from ravestate.modules.meta.nlp.tree import Tree, Word
 
-LONGEST = 2000
+from .lexicon import variants_of, words_of
+
+LONGEST = 600
 """The maximum length of an utterance in characters; a longer one is not a question about the world."""
+THE_TWO = frozenset(["i", "me", "my", "mine", "myself", "you", "your", "yours", "yourself", "u", "ur"])
+"""The pronouns for the user and the agent."""
+_OTHERS = frozenset(["it", "its", "they", "them", "their", "he", "him", "his", "she", "her"])
+WH = ("WP", "WP$", "WDT", "WRB")
+FINITE = ("VBZ", "VBP", "VBD", "MD")
+_NAMES = ("GPE", "LOC", "PERSON", "ORG", "FAC", "NORP", "WORK_OF_ART", "EVENT", "PRODUCT", "LANGUAGE")
 
-_FRONT = re.compile(
-    r"^(?:(?:so|and|but|well|ok|okay|oh|hey|hi|hello|hm+|um|uh|please|now|then|actually|by the way|tell me|excuse me|"
-    r"quick question|just curious|(?:i'?m|i am) curious|i was wondering|i wonder|i(?:'d| would) like to know|i want to know|"
-    r"(?:can|could|would|will) you (?:please )?(?:tell|explain to|remind) (?:me|us)|do you (?:happen to )?know|did you know|"
-    r"have you (?:any|got any|an) idea|any idea|let me know|what do you know about|what can you tell me about|"
-    r"tell me about|if|whether)\b[\s,:;!.-]*)+",
-    re.IGNORECASE,
-)
-_SENTENCE = re.compile(r"(?<=[.!?])\s+")
-_ASKS = re.compile(
-    r"(?:who|whom|whose|what|which|when|where|why|how|is|are|was|were|do|does|did|has|have|can|in which|in what|on which)"
-    r"(?:'s|'re|s)?\b",
-    re.IGNORECASE,
-)
-# "You" and "I" for people in general: "how do you make ice cream", "how often must I descale the machine".
-_ANYBODY = re.compile(
-    r"\b(?:how|where|when|why|what) (?:do|can|could|would|should) you (?=make|cook|bake|build|say|find|get\b|see|call)|"
-    r"\b(?:how(?: \w+)?|where) (?:can|could|must|should|do) i (?!live|look|feel|sound|know|work|like|come|seem|do\b|sleep|eat)|"
-    r"\b(?:when|if) you (?=mix|add|heat|cool|divide|multiply|put|cut|freeze|boil)|"
-    r"^(?:can|may|must|do) i (?=use|have to|need to|get|find|put|open|take|bring|park|pay)"
-)
-_PERSONAL = re.compile(r"\b(?:you|your|yours|yourself|u|ur|i|i'm|im|me|my|mine|myself|we both|between us)\b")
-_NOW = re.compile(
-    r"\b(?:today|tonight|tomorrow|yesterday|right now|at the moment|just now|this (?:morning|afternoon|evening|week|weekend|"
-    r"month)|(?:last|next) (?:night|week|weekend|month)|latest|news|breaking|happening|live score)\b|"
-    r"^(?:will|shall|is it going to|are we going to|is there going to)\b|"
-    r"^is it (?:still )?(?:\w+ing|cold|warm|hot|sunny|late|early|nice|dark|windy|cloudy|monday|friday|sunday|weekend)\b|"
-    r"^what(?:'s|s| is)? (?:the )?(?:time|date|day)(?: is it| it is)?\W*$|^(?:what|which) (?:time|day|date|month|year) is (?:it|this)|"
-    r"^(?:what|how)(?:'s|s| is) the weather(?: like)?(?: here| outside)?\W*$|\bwho (?:won|is winning|will win)\b"
-)
-_OPINION = re.compile(
-    r"\b(?:best|worst|nicest|better|worse|favou?rite|most beautiful|prettiest|coolest|ugliest|should)\b|"
-    r"\bmeaning of life\b"
-)
-# Words of questions that mean nothing for the search.
-_EMPTY_WORDS = """
-    you i a an the this that these those some any and or but if of in on at by to for from with as into about than then
-    is are was were be been being am do does did doing done has have had having can could will would shall should may might must
-    s re ve ll d t m it its he she they them his her their there here we us our
-    not no so too very really also just only ever exactly actually currently please again still yet now
-    say mean kind kinds type types sort thing things something anything someone somebody one ones give get got go goes going come comes
-    came make makes made like look looks
-"""
-# Words for the kind of answer: they help to find a passage, but the passage need not contain them.
-_KIND_WORDS = """
-    who whom whose what which when where why how many much old long far name names named call called tell know
-    before become became gain gained live lives believe there time year day place way happen happens cause causes average
-    total current national main major use used lie lies located situated
-"""
-_QUESTION_WORDS = frozenset(
-    ("who", "whom", "whose", "what", "which", "when", "where", "why", "how", "many", "much", "tell", "know")
-)
-_EMPTY = frozenset(_EMPTY_WORDS.split())
-_KINDS = frozenset(_KIND_WORDS.split())
+
+_ABOUT_DEEDS = (QuestionWord.REASON, QuestionWord.FORM)
+"""Kinds of questions that need more than a name."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,11 +40,80 @@ class Question:
     """The words for its subject, in order, each once."""
     kinds: tuple[str, ...] = ()
     """The words for the kind of answer."""
+    needs: tuple[tuple[str, ...], ...] = ()
+    """Its qualifiers: a passage must have a word of each."""
+    avoids: tuple[str, ...] = ()
+    """Words that a passage must not have: other ranks, the other sex."""
+    kind: QuestionWord | None = None
+    doubtful: bool = False
+    """Whether only a sure answer counts: the utterance may not be a question about the world."""
     declined: str = ""
     """The reason why documents cannot answer it; empty if they may."""
 
 
-def as_question(heard: str) -> Question:
+@dataclass(frozen=True, slots=True)
+class Parse:
+    """The parse of an utterance, and the words in it that ask."""
+
+    tree: Tree
+    entities: tuple[Entity, ...]
+    kind: QuestionWord | None
+    asked: tuple[Word, ...]
+    """The words of the question alone, without *can you tell me*."""
+
+    @property
+    def text(self) -> str:
+        """The question alone."""
+        text = self.tree.phrase(self.asked).strip(" ?!.,;:")
+        return f"{text}?" if text and self.kind is not None else text
+
+    @property
+    def is_finite(self) -> bool:
+        """Whether it has a finite verb."""
+        return any(word.tag in FINITE for word in self.asked)
+
+
+def parse(text: str) -> Parse:
+    """Parse a text with the pipeline of nlp."""
+    tree, entities = pipeline("").read(printable(text))
+    return parsed(tree, entities, question_of(tree))
+
+
+def parsed(tree: Tree, entities: Sequence[Entity], kind: QuestionWord | None) -> Parse:
+    """Return the parse with the words that ask: the first sentence with a question word or mark, else the last."""
+    sentences = [tree.subtree(word) for word in tree.words if word.head == word.index and word.pos != "PUNCT"]
+    asking = [s for s in sentences if any(word.tag in WH for word in s) or s[-1].text.endswith("?")]
+    asked = (asking or sentences[-1:] or [[]])[0]
+    root = next((word for word in asked if word.head == word.index), None)
+    if root is not None:
+        asked = _alone(tree, root, asked)
+    while asked and (asked[0].pos in ("PUNCT", "INTJ", "SPACE") or asked[0].low in ("so", "well", "but")):
+        asked = asked[1:]
+    return Parse(tree, tuple(entities), kind, tuple(asked))
+
+
+def _alone(tree: Tree, root: Word, asked: list[Word]) -> list[Word]:
+    """Return the words of the question inside a request: *can you tell me ...*, *do you know ...*, *name ...*."""
+    subject = next(iter(tree.children(root, "nsubj")), None)
+    if subject is not None and subject.low not in THE_TWO:
+        return asked
+    for child in tree.children(root, "ccomp", "advcl", "xcomp", "relcl", "csubj"):
+        inner = tree.subtree(child)
+        mark = inner[0]
+        if mark.low in ("if", "whether"):
+            return inner[1:]
+        if mark.tag in WH or (inner[1:] and mark.pos == "ADP" and inner[1].tag in WH):
+            return inner
+    if root.lemma not in words_of("asking"):
+        return asked
+    near = (root, *tree.children(root, "dobj", "dative"))
+    about = next((word for word in asked if word.low == "about" and tree.head(word) in near), None)
+    things = tree.children(about, "pobj") if about else tree.children(root, "dobj", "oprd", "attr", "ccomp")
+    thing = next((word for word in things if word.low not in THE_TWO and word.tag not in WH), None)
+    return asked if thing is None else tree.subtree(thing)
+
+
+def as_question(heard: str | Parse) -> Question:
     """Return the question in an utterance.
 
     Example:
@@ -89,51 +122,160 @@ def as_question(heard: str) -> Question:
         >>> as_question("What is your name?").declined
         'it is about the two who talk'
     """
-    if len(heard) > LONGEST:
-        return Question(heard[:LONGEST], declined="it is too long for a question")
-    text = " ".join(printable(heard).replace("’", "'").split())
-    sentences = [_FRONT.sub("", sentence) or sentence for sentence in _SENTENCE.split(text)]
-    asking = [s for s in sentences if _ASKS.match(s)] or [s for s in sentences if s.endswith("?")] or sentences
-    asked = asking[0]
-    folded = asked.lower()
-    said = dict.fromkeys(word for word in re.findall(r"[^\W_]+", asked) if word.lower() not in _EMPTY or word == "US")
-    words = tuple(word for word in said if word.lower() not in _KINDS)
-    kinds = tuple(word for word in said if word.lower() in _KINDS)
-    if not words:  # "What is time?" has no other words
-        words = tuple(word for word in kinds if word.lower() not in _QUESTION_WORDS)
-    if _PERSONAL.search(_ANYBODY.sub("how ", folded)):
-        return Question(asked, words, kinds, "it is about the two who talk")
-    if _NOW.search(folded):
-        return Question(asked, words, kinds, "it is about the moment, which documents do not know")
-    if _OPINION.search(folded):
-        return Question(asked, words, kinds, "it asks for an opinion")
-    if not words:
-        return Question(asked, words, kinds, "it has no word to look for")
-    return Question(asked, words, kinds)
+    if isinstance(heard, str):
+        if len(heard) > LONGEST:
+            return Question(heard[:LONGEST], declined="it is too long for a question")
+        heard = parse(heard)
+    said = [word for word in heard.asked if word.pos != "PUNCT"]
+    content = list(dict.fromkeys(part for word in said if _means(word) for part in _parts(word)))
+    words = tuple(word for word in content if word.lower() not in words_of("kinds"))
+    kinds = tuple(part for word in said for part in _parts(word) if part.lower() in words_of("kinds"))
+    words = words or tuple(word for word in content if word.lower() in words_of("kinds"))  # "What is time?"
+    reason, doubtful = _declined(heard, said), heard.kind is None
+    if not reason and content and all(word.lower() in words_of("moment") for word in content):
+        reason = "it is about the moment, which documents do not know"
+    named = {part for word in said if is_name(heard, word) for part in _parts(word)}
+    if not reason and words and heard.kind in _ABOUT_DEEDS and named.issuperset(words):
+        reason = "it asks nothing about a name"
+    if not reason and not words:
+        reason = "it has no word to look for"
+    if any(word.low in THE_TWO for word in said):
+        doubtful = True
+    needs, avoids = _qualifiers(heard)
+    return Question(heard.text, words, kinds, tuple(needs), tuple(sorted(avoids)), heard.kind, doubtful, reason)
 
 
-def is_vague(question: str) -> bool:
+def is_name(seen: Parse, word: Word) -> bool:
+    """Return whether a word is a part of a name."""
+    return word.pos == "PROPN" or any(e.label in _NAMES and e.start <= word.start < e.end for e in seen.entities)
+
+
+def _parts(word: Word) -> list[str]:
+    return re.findall(r"[^\W_]+", word.text)
+
+
+def _means(word: Word) -> bool:
+    if word.low in words_of("light") or word.tag in WH or word.low in THE_TWO:
+        return False
+    return word.pos not in ("AUX", "DET", "PRON", "ADP", "CCONJ", "SCONJ", "PART", "INTJ", "PUNCT", "SYM") or (
+        word.low in words_of("excluding")
+    )
+
+
+def _declined(heard: Parse, said: Sequence[Word]) -> str:
+    """Return the reason why documents cannot know."""
+    root = next((word for word in said if word.dep == "ROOT" or word.head == word.index), None)
+    modal = next((word for word in said if word.tag == "MD" and word.dep in ("aux", "ROOT")), None)
+    if any(word.low in THE_TWO and not _is_anybody(heard, word) for word in said):
+        return "it is about the two who talk"
+    if modal is not None and modal.lemma in ("will", "shall"):
+        return "it is about the future, which documents do not know"
+    if modal is not None and modal.low == "should" and heard.kind is QuestionWord.YES_NO:
+        return "it asks for an opinion"
+    if root is not None and root.tag == "VBG" and any(word.low == "it" for word in said):
+        return "it is about the moment, which documents do not know"
+    return ""
+
+
+def _is_anybody(heard: Parse, word: Word) -> bool:
+    """Return whether *you* or *I* stands for people in general: *how do you make ice cream*, *where must I pay*."""
+    verb = heard.tree.head(word)
+    if word.dep not in ("nsubj", "nsubjpass") or verb.pos not in ("VERB", "AUX") or word.low not in ("you", "i"):
+        return False
+    helpers = heard.tree.children(verb, "aux")
+    if any(helper.tag == "VBD" for helper in helpers) or verb.tag == "VBD":
+        return False
+    if verb.dep == "advcl":
+        return True
+    if heard.kind not in (QuestionWord.FORM, QuestionWord.PLACE, QuestionWord.TIME, QuestionWord.AMOUNT):
+        return any(helper.low in ("must", "may") for helper in helpers)
+    things = [other for other in heard.tree.subtree(verb) if other.pos in ("NOUN", "PROPN")]
+    return bool(things) or any(helper.tag == "MD" for helper in helpers)
+
+
+def _qualifiers(heard: Parse) -> tuple[list[tuple[str, ...]], list[str]]:
+    """Return the words that a passage needs, and those that it must not have."""
+    needs: list[tuple[str, ...]] = []
+    avoids: list[str] = []
+    tree, ranks = heard.tree, words_of("ranks")
+    named = {i for e in heard.entities if e.label in (*_NAMES, "DATE", "TIME") for i in range(e.start, e.end)}
+    decides = heard.kind is QuestionWord.YES_NO  # what is so may have another name: "The capital of Germany is Berlin."
+    asked_ranks = {word.low for word in heard.asked if word.low in ranks}
+    for word in heard.asked:
+        if word.dep == "neg" or word.low in ("no", "never"):
+            if not decides:
+                needs.append(("not", "no", "never", "none", "without"))
+        elif word.low in ("before", "after") and any(
+            other.tag not in ("CD", "WDT") for other in tree.children(word, "pobj")
+        ):
+            needs.append(tuple(sorted(words_of("order"))))
+        elif word.low in words_of("excluding"):
+            needs.append(tuple(sorted(words_of("excluding"))))
+        elif _is_superlative(tree, word) or word.low in ranks:
+            listed = ("five", "ten") if word.low in words_of("ranks") and _picks_largest(tree, word) else ()
+            needs.append((*variants_of(word.text), *listed))
+            picked = [other.text for other in _picked(tree, word) if other in heard.asked]
+            needs += [variants_of(other) for other in picked]
+            if not asked_ranks:
+                avoids += ranks - {"first", "next", "only", "last"}
+            if words_of("women").isdisjoint(map(str.lower, picked)):
+                avoids += words_of("women")
+            if not any(other.low in words_of("excluding") for other in heard.asked):
+                avoids += words_of("excluding")
+        elif decides and needs:
+            continue
+        elif any(c.isdigit() for c in word.text) or (_means(word) and (word.pos == "PROPN" or word.start in named)):
+            needs += [variants_of(part) for part in _parts(word) if part.lower() not in words_of("kinds")]
+    return list(dict.fromkeys(needs)), avoids
+
+
+def _is_superlative(tree: Tree, word: Word) -> bool:
+    """Return whether it is a superlative; *most people* without *the* is none."""
+    before = tree.before(word)
+    quantity = (
+        word.low in ("most", "least") and tree.head(word).pos == "NOUN" and (before is None or before.low != "the")
+    )
+    return word.tag in ("JJS", "RBS") and not quantity
+
+
+def _picks_largest(tree: Tree, rank: Word) -> bool:
+    """Return whether a superlative follows a rank: *third longest*; a list of the ten longest names it as well."""
+    after = tree.after(rank)
+    return after is not None and after.tag in ("JJS", "RBS")
+
+
+def _picked(tree: Tree, rank: Word) -> Iterator[Word]:
+    """Yield the content words of the phrase in which a rank picks one of many: *second longest river in Africa*."""
+    head = tree.head(rank)
+    if head.pos not in ("NOUN", "PROPN", "ADJ"):
+        return
+    if head.pos == "ADJ" and tree.head(head).pos in ("NOUN", "PROPN"):
+        head = tree.head(head)
+    for word in tree.subtree(head):
+        if _means(word) and word != rank and word.low not in words_of("kinds") | words_of("people") | words_of("ranks"):
+            yield word
+
+
+def is_vague(question: Question) -> bool:
     """Return whether a question is about an *it* or *they*, and says little else.
 
     Example:
-        >>> is_vague("Can they fly?"), is_vague("When did it start to rain?")
+        >>> is_vague(as_question("Can they fly?")), is_vague(as_question("When did it start to rain?"))
         (True, False)
     """
-    return _SOMETHING.search(question) is not None and len(as_question(question).words) < 2
+    return len(question.words) < 2 and not _OTHERS.isdisjoint(question.text.strip("?").lower().split())
 
 
-def asks_in_short(text: str) -> bool:
-    """Return whether a text may be a question without being a sentence.
-
-    Example:
-        >>> asks_in_short("capital of France"), asks_in_short("I am fond of France")
-        (True, False)
-    """
-    return _SHORT.fullmatch(text.strip()) is not None
-
-
-_SHORT = re.compile(
-    r"(?:and )?(?:the )?(?:(?!i\b|my\b|you\b)[\w-]+ ){1,3}of (?:the )?[\w-]+(?: [\w-]+){0,2}\W*|and of [\w-]+(?: [\w-]+){0,2}",
-    re.IGNORECASE,
-)
-_SOMETHING = re.compile(r"\b(?:it|they|them|he|she|him|her|his)\b", re.IGNORECASE)
+def not_asked(heard: Parse, analysis: Analysis) -> str:
+    """Return why an utterance does not ask for anything, from its parse and acts; empty if it may."""
+    if any(word.lemma == "mean" and word.head == word.index for word in heard.asked):  # "no, I meant ..."
+        return ""
+    if len(analysis.text) > LONGEST:
+        return "it is too long for a question"
+    if heard.kind is not None:
+        return ""
+    if any(match.score >= 0.5 for match in analysis.acts.values()):
+        return "it is small talk"
+    if heard.is_finite and not any(word.tag in WH for word in heard.asked):
+        return "it is not a question"
+    return ""

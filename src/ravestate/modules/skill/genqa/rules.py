@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 import contextlib
-from dataclasses import replace
 
 import ravestate as rs
 from ravestate.errors import DeclarationError, DeclarationErrors, PlatformError
 from ravestate.language.bundled import ModelMissing, warn_once
 from ravestate.language.heap import give_back
-from ravestate.modules import nlp, verbaliser
+from ravestate.modules import nlp, rawio, verbaliser
 
-from .answering import Answer, Answerer
-from .names import Settings, before, found, module
+from .following import answer_in
+from .names import Settings, found, module, thread
 from .places import answerer_of
-from .question import asks_in_short, is_vague
-from .referring import Before, completed, other_wordings
+from .question import not_asked, parsed
+from .thread import KEPT, REMEMBERED, overheard, refers
 from .wording import intent_of, wording_rule
 
 
@@ -44,50 +43,34 @@ async def choose_wording(ctx: rs.RuleContext) -> None:
             ) from error
 
 
-REMEMBERED = 120.0
-"""Seconds for which a later question may refer to this one."""
-
-
 # It runs for every utterance, question or not. A rule that waited for the signal of a question would hold each
 # statement for seconds, and `idle` would see no boredom meanwhile.
-@module.rule(when=nlp.text.changed & nlp.question.changed, reads=before, writes=before, emits=found)
+@module.rule(when=nlp.text.changed & nlp.analysis.changed, reads=(thread, rawio.output), writes=thread, emits=found)
 def find(ctx: rs.RuleContext) -> rs.Resign | None:
     """Search the documents."""
     settings: Settings = ctx.settings
-    short = ctx.payload(nlp.question.changed) is None
-    if short and not asks_in_short(ctx.payload(nlp.text.changed)):
-        return rs.Resign("it is not a question")
-    last = ctx[before]
-    if last is not None and ctx.now - last.at > REMEMBERED:
-        last = None
-    heard = completed(ctx.payload(nlp.text.changed), last)
-    if heard is None:
-        return rs.Resign("it refers to a question that nobody has asked")
+    analysis = ctx.payload(nlp.analysis.changed)
+    if analysis is None:
+        return rs.Resign("nothing was analysed")
+    heard = parsed(analysis.tree, analysis.entities, analysis.question)
+    if reason := not_asked(heard, analysis):
+        return rs.Resign(reason)
+    turns = tuple(turn for turn in ctx[thread] if ctx.now - turn.at <= REMEMBERED)
+    said, view = ctx[rawio.output], turns
+    if said and not (turns and turns[-1].answer in said) and any(refers(word, heard.asked) for word in heard.asked):
+        view = (*turns, overheard(said, ctx.now))
     try:
-        answer = best_answer(answerer_of(settings), heard, settings)
+        answer, turn = answer_in(answerer_of(settings), heard, view, settings, ctx.now)
     except ModelMissing as error:
         warn_once(ctx.log, error)
         return rs.Resign(str(error))
-    if not answer.text:
+    if turn is None:
         return rs.Resign(answer.reason)
-    if answer.confidence < (settings.sure if short else settings.unsure):
+    if answer.confidence < settings.unsure:
         return rs.Resign(f"the documents have only {answer.text!r}, with a confidence of {answer.confidence:.2f}")
-    ctx[before] = Before(answer.question.rstrip(" ?!."), answer.title, ctx.now)
+    ctx[thread] = (*turns, turn)[-KEPT:]
     ctx.emit(found, answer)
     return None
-
-
-def best_answer(answerer: Answerer, heard: str, settings: Settings) -> Answer:
-    """Return the best answer. A yes-or-no question may be decided by another question; an answer to a vague one is not sure."""
-    answer = answerer.answer(heard)
-    if answer.confidence < settings.unsure and not answer.reason:
-        for wording in other_wordings(answer.question):
-            other = answerer.answer(wording)
-            if other.confidence >= settings.sure:
-                return other
-    if is_vague(answer.question) and answer.confidence >= settings.sure:
-        return replace(answer, confidence=(settings.sure + settings.unsure) / 2)
-    return answer
 
 
 @module.rule(when=found, writes=verbaliser.intent)

@@ -41,6 +41,8 @@ _NUMBERS = frozenset(_NUMBER_WORDS.split())
 
 def intent_of(answer: Answer, text: str, settings: Settings) -> verbaliser.Intent:
     """Return the intent that says `text`, sure or with a doubt."""
+    if not answer.source:
+        return verbaliser.Intent("reckoned", {"answer": text}, package=__package__)
     name = "sure" if answer.confidence >= settings.sure else "unsure"
     return verbaliser.Intent(name, {"answer": text, "source": answer.source}, package=__package__)
 

@@ -1,0 +1,167 @@
+"""The answer to an utterance in a talk: the readings of it that the documents support best."""
+
+from __future__ import annotations
+
+import logging
+import math
+import re
+from collections.abc import Sequence
+from dataclasses import replace
+from datetime import datetime
+from functools import cache
+
+from ravestate.modules.meta.nlp import QuestionWord
+from ravestate.modules.meta.nlp.tree import Word
+
+from .answering import Answer, Answerer
+from .comparing import aged, begun, compared
+from .names import Settings
+from .question import Parse, Question, as_question, is_vague, parse
+from .reckoning import Unanswerable, dates_in, reckon
+from .thread import Reading, Turn, readings, turn_of
+
+_log = logging.getLogger("ravestate.genqa")
+COVERED = 0.8
+"""The minimum share of the question's words in a passage that the thread makes more likely."""
+VAGUE, AGAIN = -0.8, -3.0
+"""The logarithm of odds that other passages lose in a follow-up, and the last answer once more."""
+MOST = 8
+"""The maximum number of readings that are tried."""
+
+
+def answer_in(
+    answerer: Answerer, heard: Parse, thread: Sequence[Turn], settings: Settings, now: float
+) -> tuple[Answer, Turn | None]:
+    """Return the best supported answer to an utterance, and the turn to keep if there is one.
+
+    Args:
+        answerer: The documents.
+        heard: The utterance.
+        thread: The latest questions, oldest first.
+        settings: The confidence that an answer needs.
+        now: Seconds since the context began.
+    """
+    if (reckoned := _reckoned(heard, thread, settings)) is not None:
+        return reckoned, Turn(reckoned.question, reckoned.text.rpartition(" is ")[2], "", now)
+
+    def ask(question: str) -> Answer:
+        return answerer.answer(as_question(question))
+
+    if (result := compared(heard, thread, ask) or aged(heard, thread, ask)) is not None:
+        return result, turn_of(heard, result, now)
+    tried = readings(heard, thread, answerer.titled)
+    if not tried:
+        return Answer(heard.text, reason="it refers to a question that nobody has asked"), None
+    best: tuple[Answer, Reading, Parse] | None = None
+    reason = ""
+    for reading in tried[:MOST]:
+        seen = heard if reading.text == heard.text else replace(parse(reading.text), kind=heard.kind)
+        question = as_question(seen)
+        if heard.kind is None:
+            question = replace(question, doubtful=True)
+        titles: tuple[str, ...] = ()
+        if reading.about:
+            titles = tuple(dict.fromkeys((thread[-1].title, reading.about)))
+            words = (*question.words, *as_question(reading.about).words)
+            question = replace(question, text=f"{reading.about}: {question.text}", words=words)
+        answer = _decided(answerer, question, settings, titles)
+        reason = reason or answer.reason
+        said = {turn.answer for turn in thread} if any(word.low == "else" for word in heard.asked) else ()
+        if not answer.text or answer.text in said:
+            continue
+        prior = reading.prior
+        if reading.text != heard.text or reading.about:
+            covered = answer.candidates[0].covered if answer.candidates else 1.0
+            prior += 0.0 if covered >= COVERED else AGAIN if answer.text == thread[-1].answer else VAGUE
+            prior = min(prior, VAGUE) if reading.about and covered < COVERED else prior
+        answer = replace(answer, confidence=_shifted(answer.confidence, prior))
+        if best is None or answer.confidence > best[0].confidence:
+            best = answer, reading, seen
+        if best[0].confidence >= settings.sure:
+            break
+    if best is None:
+        return Answer(heard.text, reason=reason), None
+    answer, reading, seen = best
+    return answer, turn_of(seen, answer, now, reading.sexes)
+
+
+def _reckoned(heard: Parse, thread: Sequence[Turn], settings: Settings) -> Answer | None:
+    """Return the result of a sum; None if the utterance is none."""
+    told, today = [turn.answer for turn in thread], datetime.now().astimezone().date()
+    text = heard.text
+    try:
+        result = reckon(text, told, today, settings.rates)
+        if not result and thread and not thread[-1].title and not heard.is_finite:
+            text = _again(text, thread[-1].question)
+            result = reckon(text, told[:-1], today, settings.rates) if text else ""
+    except Unanswerable as error:
+        result = str(error)
+    except ImportError as error:
+        _warn(str(error))
+        return None
+    return Answer(text, result, confidence=1.0) if result else None
+
+
+@cache
+def _warn(error: str) -> None:
+    """Say once that a library is missing."""
+    _log.warning("sums, units and dates are not worked out (%s): pip install 'ravestate[genqa]'", error)
+
+
+def _again(text: str, before: str) -> str:
+    """Return the sum before with another number or date: *and of 200?*; empty if the text has none."""
+    dates, old = dates_in(text), dates_in(before)
+    if dates and old:
+        return before.lower().replace(old[-1].shown, dates[-1].shown)
+    numbers = re.findall(r"\d[\d.,]*", text)
+    return re.sub(r"\d[\d.,]*(?!.*\d)", numbers[0], before) if len(numbers) == 1 else ""
+
+
+def _decided(answerer: Answerer, question: Question, settings: Settings, titles: Sequence[str]) -> Answer:
+    """Return the answer; another question may decide one of yes or no, and a vague one has no sure answer."""
+    if question.kind is QuestionWord.YES_NO and not question.declined and (other := other_wording(question.text)):
+        decided = answerer.answer(other, titles)
+        if decided.confidence >= settings.sure:
+            return decided
+    answer = answerer.answer(question, titles)
+    if answer.confidence < settings.unsure and (
+        thing := re.match(r"how old (?:is|are|was) (.+)\?", question.text, re.IGNORECASE)
+    ):
+        answer = begun(thing[1], lambda text: answerer.answer(text, titles)) or answer
+    if question.doubtful and answer.confidence < settings.sure:
+        return replace(answer, confidence=0.0)
+    if is_vague(question) and answer.confidence >= settings.sure:
+        return replace(answer, confidence=(settings.sure + settings.unsure) / 2)
+    return answer
+
+
+def other_wording(question: str) -> str:
+    """Return a question whose answer decides a yes-or-no question; empty if there is none.
+
+    Example:
+        >>> other_wording("Is Paris the capital of Germany?")
+        'what is the capital of Germany?'
+    """
+    tree = parse(question).tree
+    words = [word for word in tree.words if word.pos != "PUNCT"]
+    if not words or words[0].lemma != "be":
+        return ""
+
+    def text(some: Sequence[Word]) -> str:
+        return tree.phrase(some)
+
+    place = next((word for word in words if word.low == "in"), None)
+    for word in words[2:]:  # the subject before *the ... of*
+        if word.low == "the" and any(other.low == "of" for other in words[word.index :]):
+            return f"what is {text(words[word.index :])}?"
+    if place is not None and 1 < place.index < len(words) - 1:
+        subject = [word for word in words[1 : place.index] if word.low not in ("situated", "located")]
+        return f"where is {text(subject)}?"
+    return ""
+
+
+def _shifted(confidence: float, prior: float) -> float:
+    """Return a probability, moved by a logarithm of odds."""
+    if not 0.0 < confidence < 1.0:
+        return confidence
+    return 1 / (1 + math.exp(-(math.log(confidence / (1 - confidence)) + prior)))

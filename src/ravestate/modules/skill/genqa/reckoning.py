@@ -1,0 +1,365 @@
+"""Sums, units and dates, worked out by simpleeval, pint and dateutil; words such as *that* refer to the thread."""
+
+from __future__ import annotations
+
+import ast
+import math
+import operator
+import re
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from datetime import date, datetime
+from functools import cache
+from typing import Any
+
+from .lexicon import lexicon
+
+LONGEST = 200
+"""Characters of a sum."""
+DIGITS = 30
+"""The maximum number of digits of a result."""
+_MONEY = "money:"
+_TOKEN = re.compile(r"\d[\d,]*(?:\.\d+)?|[^\W\d_]+|[^\w\s]")
+_MONTHS = "jan|feb|mar|apr|may|jun|jul|aug|sep|oct|nov|dec"
+_DATE = re.compile(
+    rf"\b(?:\d{{1,2}}(?:st|nd|rd|th)? (?:of )?(?:{_MONTHS})[a-z]*\.?,?(?: \d{{4}})?|\d{{4}}-\d{{1,2}}-\d{{1,2}}|"
+    rf"\d{{1,2}}[./]\d{{1,2}}[./]\d{{4}}|(?:{_MONTHS})[a-z]*\.? \d{{1,2}}(?:st|nd|rd|th)?\b,?(?: \d{{4}})?|"
+    rf"(?:{_MONTHS})[a-z]*\.? \d{{4}}|(?<![\d.,])(?:1\d{{3}}|20\d\d)(?![\d,%]))\b"
+)
+
+
+_DEFAULTS = (datetime(2000, 1, 1), datetime(2004, 3, 3))  # noqa: DTZ001
+
+
+class Unanswerable(Exception):
+    """A sum without a result; the message says why."""
+
+
+@dataclass(frozen=True, slots=True)
+class Quantity:
+    """A number with its unit, in pint's name; empty for none."""
+
+    value: float
+    unit: str
+    word: str
+    """The unit as written."""
+
+    def beside(self, other: Quantity) -> tuple[float, float] | None:
+        """Return both values in this unit; None if they measure different things."""
+        if self.unit == other.unit:
+            return self.value, other.value
+        if not _alike(self.unit, other.unit):
+            return None
+        return self.value, float(_registry().Quantity(other.value, other.unit).to(self.unit).magnitude)
+
+
+@dataclass(frozen=True, slots=True)
+class Dated:
+    """A date."""
+
+    day: date
+    exact: bool
+    """Whether day and month are known."""
+    shown: str
+    """As written."""
+    has_year: bool = True
+
+    def __str__(self) -> str:
+        return f"{self.day.day} {self.day:%B %Y}" if self.exact else str(self.day.year)
+
+
+def words_for(name: str) -> frozenset[str]:
+    """Return a list of words from ``reckoning.yaml``."""
+    return frozenset(str(lexicon("reckoning.yaml")[name]).split())
+
+
+def reckon(text: str, told: Sequence[str], today: date, rates: Mapping[str, float] | None = None) -> str:
+    """Return the result of a sum in words; empty if the text is none.
+
+    Args:
+        text: The utterance.
+        told: The latest answers, oldest first, for *that*.
+        today: The date, for *how long ago*.
+        rates: The value of one unit of each currency, in any common unit.
+
+    Raises:
+        Unanswerable: It is a sum without a result.
+
+    Example:
+        >>> reckon("what is 17 percent of 80", (), date(2026, 1, 1))
+        'That is 13.6.'
+        >>> reckon("how many days between 3 May and 1 June 2024", (), date(2026, 1, 1))
+        'From 3 May 2024 to 1 June 2024 it is 29 days.'
+    """
+    if len(text) > LONGEST:
+        return ""
+    spoken = _in_digits(text.strip(" ?!."))
+    return _dates(spoken, told, today) or _sum(spoken, told, rates or {})
+
+
+def measured(text: str, after: Sequence[str] = ()) -> list[Quantity]:
+    """Return the numbers of a text; those with a unit before those without.
+
+    Args:
+        text: The text.
+        after: Earlier texts, whose numbers follow.
+    """
+    found: list[Quantity] = []
+    tokens = [*_TOKEN.findall(_in_digits(text)), "", "", ""]
+    for place, token in enumerate(tokens):
+        if token[:1].isdigit():
+            number = float(token.replace(",", ""))
+            power, word = (2, tokens[place + 2]) if tokens[place + 1] == "square" else (1, tokens[place + 1])
+            money = _currencies().get(tokens[place - 1] if place else "") or _currencies().get(word, "")
+            unit = money if money and ("cost" in text or word not in _units()) else _units().get(word, "")
+            unit = f"{unit}**2" if unit and power > 1 else unit
+            found.append(Quantity(int(number) if number == int(number) else number, unit, word if unit else ""))
+    found.sort(key=lambda quantity: not quantity.unit)
+    return found + (measured(after[-1]) if after else [])
+
+
+def of_both(one: str, other: str, work_out: Callable[[float, float], float]) -> str:
+    """Return the result for the first two numbers of two texts that measure the same; empty if there are none."""
+    pairs = ((left, left.beside(right)) for left in measured(one) for right in measured(other))
+    found = next(((left, values) for left, values in pairs if values is not None), None)
+    return "" if found is None else f"{_number(work_out(*found[1]))} {found[0].word}".strip() + "."
+
+
+# ------------------------------------------------------------------------------------- sums and units
+
+
+def _in_digits(text: str) -> str:
+    """Return a text in lower case with its numbers in digits."""
+    from text_to_num import alpha2digit  # pyright: ignore[reportMissingTypeStubs,reportUnknownVariableType]
+
+    digits = str(alpha2digit(text.lower(), "en", 0.0)).replace(" a 1", " 1")  # pyright: ignore[reportUnknownArgumentType]
+    scaled = r"(\d[\d,.]*) (10{3}|10{6}|10{9})\b"  # 1.5 million
+    return re.sub(scaled, lambda found: f"{float(found[1].replace(',', '')) * int(found[2]):.15g}", digits)
+
+
+def _sum(spoken: str, told: Sequence[str], rates: Mapping[str, float]) -> str:
+    text, words = f" {spoken} ", lexicon("reckoning.yaml")
+    for pattern, instead in words["verbs"].items():
+        text = re.sub(rf"(?<= ){pattern}(?= )", instead, text)
+    for phrase, sign in (*words["joined"].items(), *words["operators"].items()):
+        text = text.replace(f" {phrase} " if phrase[0].isalpha() else phrase, f" {sign} ")
+    known = measured(told[-1], told[:-1][-1:]) if told else []
+    tokens = _TOKEN.findall(re.sub(r"(?<=\d)\s*x\s*(?=\d)", "*", text))
+    parts: list[str] = []
+    units: list[str] = []
+    target = word = power = ""
+    for place, token in enumerate(tokens):
+        before = next((t for t in reversed(tokens[:place]) if t not in ("square", "cubic", "degrees", "degree")), "")
+        leading = before in ("in", "to", "into", "as", "many")
+        unit = _unit(token, [*units, *(quantity.unit for quantity in known)])
+        if token[0].isdigit():
+            parts += ["+"] if parts and parts[-1].startswith("*u") else []  # 5 feet 10 inches
+            parts.append(token.replace(",", ""))
+        elif token in ("square", "cubic") and place + 1 < len(tokens) and tokens[place + 1] in _units():
+            power = "**2" if token == "square" else "**3"
+        elif unit and (before[0:1].isdigit() or leading or (len(token) > 1 and token != "second")):
+            if before[:1].isdigit() or (before in ("a", "an", "per") and target != unit):
+                parts.append(f"{'' if before[:1].isdigit() else '1'}*u{len(units)}")
+                units.append(unit + power)
+            elif target:
+                return ""
+            else:
+                target, word = unit + power, f"square {token}" if power else token
+            power = ""
+        elif token in _FUNCTIONS or token in "+-*/%()":
+            parts.append(token)
+        elif token in words_for("that"):
+            parts.append("that")
+        elif token not in ".,'?" and token not in words_for("framing"):
+            return ""
+    signs = any(part in "+-*/%" or part in _FUNCTIONS for part in parts)
+    numbers = any(part[0].isdigit() for part in parts)
+    if not (target or signs) or not (parts or known):
+        return ""
+    if "that" in parts and numbers and not signs:
+        parts.remove("that")
+    elif (not numbers or (known and parts[0] in "+*/-" and not units)) and "that" not in parts:
+        parts.insert(0, "that")
+    if "that" in parts:
+        fitting = [quantity for quantity in known if not target or _alike(quantity.unit, target)]
+        if not fitting:
+            return ""
+        units.append(fitting[0].unit)
+        value = f"({fitting[0].value!r}*u{len(units) - 1})"
+        parts = [part for place, part in enumerate(parts) if part != "that" or "that" not in parts[:place]]
+        parts = [value if part == "that" else part for part in parts]
+    result = _result("".join(parts), units, target, word, rates)
+    return f"That is {result}." if result else ""
+
+
+def _result(source: str, units: Sequence[str], target: str, word: str, rates: Mapping[str, float]) -> str:
+    """Return the value of an expression in its target unit."""
+    money = {unit.removeprefix(_MONEY) for unit in (*units, target) if unit.startswith(_MONEY)}
+    if len(money) > 1 and not money <= rates.keys():
+        raise Unanswerable("I know no exchange rates, so I can't work that out.")
+    goal = target or next((unit for unit in units if unit), "")
+    try:
+        value = _evaluated(
+            re.sub(r"(sqrt|cbrt)(-?\d[\d.]*)", r"\1(\2)", source), [_in_pint(unit, rates) for unit in units]
+        )
+        if not goal:
+            return _number(value)
+        unit = _in_pint(goal, rates)
+        value = (value / unit).to("") if money else value.to(unit)
+        return f"{_number(value.magnitude)} {lexicon('reckoning.yaml')['shown'].get(word, word) or goal.removeprefix(_MONEY) + 's'}"
+    except ZeroDivisionError:
+        raise Unanswerable("Nothing can be divided by zero.") from None
+    except OverflowError:
+        raise Unanswerable("That number is too large for me.") from None
+    except ValueError:
+        raise Unanswerable("A negative number has no real root.") from None
+    except Exception as error:  # of simpleeval and pint
+        if type(error).__name__ != "DimensionalityError":
+            return ""
+        raise Unanswerable("These measure different things, so I can't turn one into the other.") from None
+
+
+def _evaluated(source: str, units: Sequence[Any]) -> Any:
+    from simpleeval import SimpleEval  # pyright: ignore[reportMissingTypeStubs]
+
+    names = {f"u{place}": unit for place, unit in enumerate(units)}
+    if (heat := re.fullmatch(r"\(?(-?[\d.]+)\*(u\d)\)?", source)) and not names[heat[2]]._is_multiplicative:
+        return _registry().Quantity(float(heat[1]), names[heat[2]].units)  # 20 degrees, not 20 times one degree
+    return SimpleEval(operators=_OPERATORS, functions=_FUNCTIONS, names=names).eval(source)  # pyright: ignore[reportUnknownMemberType,reportUnknownVariableType]
+
+
+def _power(base: Any, exponent: Any) -> Any:
+    if isinstance(base, int | float) and base and abs(exponent) * abs(math.log10(abs(base))) > DIGITS:
+        raise OverflowError
+    return base**exponent
+
+
+def _divided(one: Any, other: Any) -> Any:
+    return one / other
+
+
+_FUNCTIONS: dict[str, Callable[..., Any]] = {"sqrt": math.sqrt, "cbrt": math.cbrt, "abs": abs}
+_OPERATORS: dict[type, Callable[..., Any]] = {
+    ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Pow: _power, ast.Mod: operator.mod,
+    ast.Div: _divided, ast.USub: operator.neg, ast.UAdd: operator.pos,
+}  # fmt: skip
+
+
+@cache
+def _registry() -> Any:
+    import pint
+
+    make: Any = pint.UnitRegistry
+    registry: Any = make(autoconvert_offset_to_baseunit=True)
+    registry.define("money = [money]")
+    return registry
+
+
+def _in_pint(unit: str, rates: Mapping[str, float]) -> Any:
+    """Return one of a unit."""
+    if unit.startswith(_MONEY):
+        return rates.get(unit.removeprefix(_MONEY), 1.0) * _registry().money
+    return _registry().Quantity(1, unit) if unit else 1
+
+
+def _alike(one: str, other: str) -> bool:
+    if one.startswith(_MONEY) or other.startswith(_MONEY):
+        return one.startswith(_MONEY) and other.startswith(_MONEY)
+    return bool(one and other) and bool(_registry().Unit(one).is_compatible_with(_registry().Unit(other)))
+
+
+@cache
+def _units() -> dict[str, str]:
+    table: dict[str, str] = lexicon("reckoning.yaml")["units"]
+    return {word: name for name, words in table.items() for word in (name, *words.split())}
+
+
+@cache
+def _currencies() -> dict[str, str]:
+    table: dict[str, str] = lexicon("reckoning.yaml")["currencies"]
+    return {word: _MONEY + name for name, words in table.items() for word in (name, *words.split())}
+
+
+def _unit(word: str, others: Sequence[str]) -> str:
+    """Return the unit of a word; *pounds* are money beside money."""
+    money = any(unit.startswith(_MONEY) for unit in others)
+    return _currencies()[word] if word in _currencies() and (money or word not in _units()) else _units().get(word, "")
+
+
+def _number(value: Any) -> str:
+    """Return a number in digits, rounded to what matters."""
+    if not math.isfinite(value) or abs(value) >= 10**DIGITS:
+        raise OverflowError
+    rounded = value if isinstance(value, int) else round(value, 3) if abs(value) >= 1 else float(f"{value:.3g}")
+    return f"{int(rounded):,}" if rounded == int(rounded) else f"{rounded:,}"
+
+
+# ---------------------------------------------------------------------------------------------- dates
+
+
+def dates_in(text: str) -> list[Dated]:
+    """Return the dates of a text, in order."""
+    from dateutil.parser import ParserError, parse
+
+    found: list[Dated] = []
+    for match in _DATE.finditer(text.lower()):
+        try:  # parts that are missing come from the default
+            one, other = (parse(match[0], default=default, dayfirst=True) for default in _DEFAULTS)
+        except (ParserError, OverflowError, ValueError):
+            continue
+        exact = one.day == other.day and one.month == other.month
+        found.append(Dated(one.date(), exact, match[0], one.year == other.year))
+    return found
+
+
+def _dates(spoken: str, told: Sequence[str], today: date) -> str:
+    dates = dates_in(spoken)
+    words = set(re.findall(r"[a-z]+", spoken))
+    months = {word for word in words if word[:3] in _MONTHS.split("|")}
+    if words - months - words_for("framing") - words_for("dating"):
+        return ""
+    unit = next((name for name in ("day", "week", "month", "year") if words & {name, f"{name}s"}), "")
+    weekday = "weekday" in words or ("day" in words and bool(words & {"what", "which"}))
+    refers = bool(words & {"that", "this", "them", "was", "did"} or (words & {"it", "old"} and not weekday))
+    if not dates and refers and told and not (weekday and "today" in words):
+        dates = [day for text in told[-2:] for day in dates_in(text)[:2]][-1 if weekday or "ago" in words else -2 :]
+    if not dates or ("old" in words and len(dates) < 2):
+        return ""
+    year = next((each.day.year for each in reversed(dates) if each.has_year), today.year)
+    dates = [each if each.has_year else replace(each, day=each.day.replace(year=year)) for each in dates]
+    if weekday and dates[-1].exact:
+        return f"{dates[-1]} {'was' if dates[-1].day < today else 'is'} a {dates[-1].day:%A}."
+    shift = next((q for q in measured(_DATE.sub("", spoken)) if q.unit in ("day", "week", "month", "year")), None)
+    if shift is not None and len(dates) == 1 and dates[0].exact and words & words_for("shifting"):
+        return _moved(dates[0], shift, back=bool(words & {"before", "earlier"}))
+    if len(dates) == 1 and words & {"ago", "until", "since", "till"}:
+        dates.append(Dated(today, dates[0].exact, ""))
+    if len(dates) < 2 or not (unit or words & {"old", "long", "ago", "between", "time"}):
+        return ""
+    return apart(dates[0], dates[1], unit or ("year" if "old" in words else ""))
+
+
+def apart(one: Dated, other: Dated, unit: str = "year") -> str:
+    """Return the time between two dates in words; `unit`: day, week, month or year."""
+    from dateutil.relativedelta import relativedelta
+
+    first, last = sorted((one, other), key=lambda each: each.day)
+    exact, days = first.exact and last.exact, (last.day - first.day).days
+    unit = unit or ("day" if exact and days < 100 else "year")
+    if not exact and unit != "year":
+        raise Unanswerable("I only know the years of that, not the days.")
+    gone = relativedelta(last.day, first.day)
+    years = gone.years if exact else last.day.year - first.day.year
+    count = {"day": days, "week": days // 7, "month": gone.years * 12 + gone.months, "year": years}[unit]
+    rest = f" and {days % 7} days" if unit == "week" and days % 7 else ""
+    return f"From {first} to {last} it is {count:,} {unit}{'' if count == 1 else 's'}{rest}."
+
+
+def _moved(start: Dated, by: Quantity, *, back: bool) -> str:
+    from dateutil.relativedelta import relativedelta
+
+    parts: dict[str, Any] = {f"{by.unit}s": int(-by.value if back else by.value)}
+    try:
+        return f"That is {replace(start, day=start.day + relativedelta(**parts))}."
+    except (OverflowError, ValueError):
+        raise Unanswerable("That is beyond the calendar.") from None

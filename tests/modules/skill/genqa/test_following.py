@@ -1,0 +1,111 @@
+"""An answer in a talk: qualifiers are met, things are compared, and readings compete."""
+
+from collections.abc import Iterator
+
+import pytest
+
+from ravestate.modules.skill.genqa import Answerer, Settings, Turn
+from ravestate.modules.skill.genqa.document import Document
+from ravestate.modules.skill.genqa.following import answer_in, other_wording
+from ravestate.modules.skill.genqa.index import Index, IndexedFile
+from ravestate.modules.skill.genqa.passages import passages_of
+from ravestate.modules.skill.genqa.question import parse
+
+TEXTS = {
+    "The Halcyon": "The Halcyon is a ship. The Halcyon is 120 metres long. The Halcyon was built in 1902. "
+    "The captain of the Halcyon is Olga Brand.",
+    "The Petrel": "The Petrel is a boat. The Petrel is 40 feet long. The Petrel was built in 1955.",
+    "Lake Orm": "Lake Orm is 80 metres deep. The first woman who swam across Lake Orm was Ida Falk. "
+    "Outside Norland, the deepest lake is Lake Sill. Lake Orm is not salty.",
+    "Ida Falk": "Ida Falk was born on 3 May 1900. Ida Falk died on 9 June 1985.",
+}  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def answerer(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Answerer]:
+    path = tmp_path_factory.mktemp("following") / "index.sqlite"
+    with Index(path) as index:
+        documents = [Document(title, "notes", list(passages_of(text))) for title, text in TEXTS.items()]
+        index.put(IndexedFile("/notes.txt", 1, 1, "0"), documents)
+    answerer = Answerer(path, collection=False)
+    yield answerer
+    answerer.close()
+
+
+def ask(answerer: Answerer, *said: str) -> str:
+    """Return the last reply; empty for silence."""
+    thread: list[Turn] = []
+    text = ""
+    for heard in said:
+        answer, turn = answer_in(answerer, parse(heard), thread, Settings(), 5.0 * len(thread))
+        text = answer.text if turn is not None and answer.confidence >= Settings().unsure else ""
+        if text and turn is not None:
+            thread.append(turn)
+    return text
+
+
+@pytest.mark.parametrize(
+    "question",
+    [
+        "Who was the second woman who swam across Lake Orm?",
+        "Who was the first man who swam across Lake Orm?",
+        "Who was the captain of the Halcyon in 1950?",
+        "Who was the captain of the Halcyon before Olga Brand?",
+        "What is the deepest lake in Norland?",
+        "How many people live in Narnia?",
+    ],
+)
+def test_a_qualifier_that_no_passage_meets_means_silence(answerer: Answerer, question: str) -> None:
+    assert ask(answerer, question) == ""
+
+
+@pytest.mark.parametrize(
+    ("question", "answer"),
+    [
+        ("Who was the first woman who swam across Lake Orm?", "Ida Falk"),
+        ("What is the deepest lake outside Norland?", "Lake Sill"),
+        ("captain of the halcyon", "Olga Brand"),
+    ],
+)
+def test_a_qualifier_that_a_passage_meets_is_no_hindrance(answerer: Answerer, question: str, answer: str) -> None:
+    assert answer in ask(answerer, question)
+
+
+@pytest.mark.parametrize(
+    ("said", "begins"),
+    [
+        (["Which is longer, the Halcyon or the Petrel?"], "The Halcyon."),
+        (["which is shorter, the Halcyon or the Petrel?"], "The Petrel."),
+        (["which is older, the Halcyon or the Petrel?"], "The Halcyon."),
+        (["How long is the Halcyon?", "How long is the Petrel?", "which one is longer?"], "The Halcyon."),
+        (["How long is the Halcyon?", "How long is the Petrel?", "how much longer?"], "107.808 metres."),
+        (["How long is the Halcyon?", "is it longer than the Petrel?"], "Yes."),
+        (["How old was Ida Falk when she died?"], "From 3 May 1900 to 9 June 1985 it is 85 years."),
+    ],
+)
+def test_numbers_with_units_and_dates_are_compared(answerer: Answerer, said: list[str], begins: str) -> None:
+    assert ask(answerer, *said).startswith(begins)
+
+
+@pytest.mark.parametrize(
+    ("said", "answer"),
+    [
+        (["How long is the Halcyon?", "how much is that in feet?"], "That is 393.701 feet."),
+        (["what is 12 times 12", "plus 6", "and half of that"], "That is 75."),
+        (["what is 15 percent of 80", "and of 200?"], "That is 30."),
+        (["when was Ida Falk born", "and when did she die", "how many years is that"], "it is 85 years."),
+        (["100 euros in dollars"], "no exchange rates"),
+    ],
+)
+def test_a_sum_may_refer_to_the_thread(answerer: Answerer, said: list[str], answer: str) -> None:
+    assert answer in ask(answerer, *said)
+
+
+def test_what_else_is_not_answered_with_the_same_again(answerer: Answerer) -> None:
+    assert ask(answerer, "How deep is Lake Orm?", "how deep else is it?") == ""
+
+
+def test_another_question_decides_one_of_yes_or_no() -> None:
+    assert other_wording("is Peru in Africa") == "where is Peru?"
+    assert other_wording("Is Paris the capital of Germany?") == "what is the capital of Germany?"
+    assert other_wording("who is in Africa") == ""

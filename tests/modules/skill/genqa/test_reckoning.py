@@ -1,0 +1,124 @@
+"""Sums, units and dates are worked out, safely."""
+
+from datetime import date
+
+import pytest
+
+from ravestate.modules.skill.genqa.reckoning import LONGEST, Unanswerable, dates_in, measured, reckon
+
+TODAY = date(2026, 6, 1)
+
+
+@pytest.mark.parametrize(
+    ("text", "result"),
+    [
+        ("what is 17 percent of 80", "13.6"),
+        ("seventeen percent of eighty", "13.6"),
+        ("12 times 12", "144"),
+        ("what is 2 plus 2 times 3?", "8"),
+        ("(3+4)*2", "14"),
+        ("square root of 144", "12"),
+        ("what is 1.5 million divided by 3", "500,000"),
+        ("add 17 and 25", "42"),
+        ("-5 plus 3", "-2"),
+        ("5 feet in cm", "152.4 cm"),
+        ("how many cm are 5 feet", "152.4 cm"),
+        ("5 feet 10 inches in cm", "177.8 cm"),
+        ("how many seconds are in an hour", "3,600 seconds"),
+        ("what is 20 degrees celsius in fahrenheit", "68 fahrenheit"),
+        ("60 mph in km/h", "96.561 km/h"),
+        ("what date is 90 days after 1 March 2024", "30 May 2024"),
+    ],
+)
+def test_a_sum_is_worked_out(text: str, result: str) -> None:
+    assert reckon(text, (), TODAY) == f"That is {result}."
+
+
+@pytest.mark.parametrize(
+    ("text", "result"),
+    [
+        ("how many days between 3 May and 1 June 2024", "From 3 May 2024 to 1 June 2024 it is 29 days."),
+        ("how many years are between 1914 and 1918", "From 1914 to 1918 it is 4 years."),
+        ("what weekday was 9 November 1989", "9 November 1989 was a Thursday."),
+        ("how long ago was 1989", "From 1989 to 2026 it is 37 years."),
+        ("how many days until 24 june", "From 1 June 2026 to 24 June 2026 it is 23 days."),
+    ],
+)
+def test_dates_are_counted(text: str, result: str) -> None:
+    assert reckon(text, (), TODAY) == result
+
+
+@pytest.mark.parametrize(
+    ("text", "why"),
+    [
+        ("5 kg in metres", "measure different things"),
+        ("10**10**10", "too large"),
+        ("9999999 to the power of 99999", "too large"),
+        ("7 divided by 0", "zero"),
+        ("square root of -4", "no real root"),
+        ("100 euros in dollars", "no exchange rates"),
+        ("1 january 9999 plus 10 years", ""),
+    ],
+)
+def test_nonsense_gets_a_reason(text: str, why: str) -> None:
+    if why:
+        with pytest.raises(Unanswerable, match=why):
+            reckon(text, (), TODAY)
+    else:
+        assert reckon(text, (), TODAY) == ""
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "what is the capital of Peru", "how many people live in Peru", "I am 5 feet tall", "call me at 555 1234",
+        "what is 5 plus apples", "__import__('os').system('ls')", "what happened in 1989", "1989", "what is 7", "",
+        "how many legs do 5 spiders have", "18 plus that", "what day is it", "1 + " * 10_000, "we won 3 - 1",
+        "how many days of rain were there between May 2020 and June 2021",
+    ],
+)  # fmt: skip
+def test_other_texts_are_no_sums(text: str) -> None:
+    assert reckon(text, (), TODAY) == ""
+
+
+@pytest.mark.parametrize(
+    ("text", "told", "result"),
+    [
+        ("18 plus that", ["144."], "That is 162."),
+        ("how much is that in feet", ["Mount Kesh is 4,210 metres high."], "That is 13,812.336 feet."),
+        ("in pounds?", ["The lamp weighs 3 kilograms."], "That is 6.614 pounds."),
+        ("what weekday was that", ["She sank on 14 June 1891."], "14 June 1891 was a Sunday."),
+        ("how many years is that", ["born on 12 March 1856", "died on 2 October 1929"],
+         "From 12 March 1856 to 2 October 1929 it is 73 years."),
+        ("how old was he", ["born in 1849", "died in 1903"], "From 1849 to 1903 it is 54 years."),
+        ("what is that", ["The Elve is 412 kilometres long."], ""),
+        ("in what year?", ["The lamp weighs 3 kilograms."], ""),
+    ],
+)  # fmt: skip
+def test_that_is_a_number_or_a_date_of_the_last_answers(text: str, told: list[str], result: str) -> None:
+    assert reckon(text, told, TODAY) == result
+
+
+def test_days_are_not_counted_from_years_alone() -> None:
+    with pytest.raises(Unanswerable, match="only know the years"):
+        reckon("how many days is that", ["born in 1849", "died in 1903"], TODAY)
+
+
+def test_money_is_exchanged_at_given_rates() -> None:
+    assert reckon("100 euros in dollars", (), TODAY, {"euro": 1.0, "dollar": 0.8}) == "That is 125 dollars."
+
+
+def test_numbers_with_units_come_first() -> None:
+    assert [(q.value, q.unit) for q in measured("In 1902 the mountain, 4,210 metres high, cost 9 euros.")] == [
+        (4210, "metre"), (9, "money:euro"), (1902, ""),
+    ]  # fmt: skip
+
+
+def test_dates_know_their_precision() -> None:
+    assert [(each.exact, each.has_year, str(each)) for each in dates_in("from 3 May to June 2024, or 1989")] == [
+        (True, False, "3 May 2000"), (False, True, "2024"), (False, True, "1989"),
+    ]  # fmt: skip
+
+
+def test_a_long_text_is_no_sum() -> None:
+    assert reckon("1+" * LONGEST + "1", (), TODAY) == ""

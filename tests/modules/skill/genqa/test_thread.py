@@ -1,0 +1,87 @@
+"""Follow-ups are completed from the thread. The set ``thread_rows`` measures how well."""
+
+import pytest
+
+from ravestate.modules.skill.genqa.answering import Answer
+from ravestate.modules.skill.genqa.question import parse
+from ravestate.modules.skill.genqa.thread import LONGEST, Turn, overheard, readings, turn_of
+
+KESH = ("How high is Mount Kesh?", "Mount Kesh is 4,210 metres high.", "Mount Kesh")
+OLIN = ("How high is Mount Olin?", "Mount Olin is 3,870 metres high.", "Mount Olin")
+HUSBAND = ("Who was the husband of Clara Venn?", "The husband of Clara Venn was the painter Hugo Aster.", "Clara Venn")
+BRIDGES = ("What are the bridges of Tarm?", "The bridges of Tarm are the Mill Bridge and the Salt Bridge.", "Tarm")
+
+
+def talk(*said: tuple[str, str, str]) -> list[Turn]:
+    return [turn_of(parse(question), Answer(question, text, "s", title), 0.0) for question, text, title in said]
+
+
+@pytest.mark.parametrize(
+    ("said", "follow", "meant"),
+    [
+        ([KESH], "who first climbed it?", "who first climbed Mount Kesh?"),
+        ([HUSBAND], "when was he born?", "when was Hugo Aster born?"),
+        ([HUSBAND], "when was she born?", "when was Clara Venn born?"),
+        ([KESH], "and its glacier?", "Mount Kesh's glacier?"),
+        ([KESH], "and Mount Olin?", "How high is Mount Olin?"),
+        ([KESH], "no, I meant Mount Olin", "How high is Mount Olin?"),
+        ([KESH], "and the glacier?", "the glacier of Mount Kesh?"),
+        ([("Who is the mayor of Tarm?", "It is Greta Holm.", "Tarm")], "and of Lissel?", "Who is the mayor of Lissel?"),
+        ([("Where did the Marlow sink?", "She sank.", "The Marlow")], "and when?", "when did the Marlow sink?"),
+        ([("What is the highest mountain?", "It is Kesh.", "Kesh")], "and the second highest?",
+         "What is the second highest mountain?"),
+        ([KESH, OLIN], "who climbed the former first?", "who climbed Mount Kesh first?"),
+        ([KESH, ("Who climbed Mount Olin?", "Feld.", "Mount Olin")], "and the other one?", "Who climbed Mount Kesh?"),
+        ([BRIDGES], "when was the second one built?", "when was the Salt Bridge built?"),
+    ],
+)  # fmt: skip
+def test_a_follow_up_has_the_reading_that_is_meant(said: list[tuple[str, str, str]], follow: str, meant: str) -> None:
+    assert meant.lower() in [reading.text.lower() for reading in readings(parse(follow), talk(*said))]
+
+
+@pytest.mark.parametrize("follow", ["when was he born?", "who was his wife?"])
+def test_a_person_in_the_answer_is_meant_first(follow: str) -> None:
+    assert "Hugo Aster" in readings(parse(follow), talk(HUSBAND))[0].text
+
+
+@pytest.mark.parametrize("heard", ["And its capital?", "which one is bigger?", "and when?", "how high is it?"])
+def test_without_a_thread_a_reference_means_nothing(heard: str) -> None:
+    assert readings(parse(heard), ()) == []
+
+
+@pytest.mark.parametrize(
+    "heard", ["What is the capital of France?", "When did it start to rain?", "how do plants make their food?"]
+)
+def test_a_complete_question_stays(heard: str) -> None:
+    assert readings(parse(heard), ())[0].text == heard
+
+
+@pytest.mark.parametrize("heard", ["", "?", "there " * LONGEST])
+def test_any_text_has_readings(heard: str) -> None:
+    assert len(readings(parse(heard), talk(KESH))) <= 20
+
+
+def test_a_question_without_a_name_is_about_the_subject_in_view_first() -> None:
+    first, *_ = readings(
+        parse("who was on board?"), talk(("When did the Marlow sink?", "The Marlow sank.", "The Marlow"))
+    )
+    assert first.about == "The Marlow"
+
+
+def test_names_count_in_any_case_if_a_document_is_about_them() -> None:
+    turns = talk(("who was the captain of the marlow", "Her captain was Jonas Hale.", "The Marlow"))
+    titles = {"the ostara": "The Ostara"}
+    first, *_ = readings(parse("and the ostara?"), turns, lambda name: titles.get(name.lower(), ""))
+    assert first.text == "who was the captain of the ostara?"
+
+
+def test_what_the_agent_said_gives_names_as_well() -> None:
+    said = overheard("I live in Hannover.", 0.0)
+    assert "how many people live in Hannover?" in [
+        r.text for r in readings(parse("how many people live there?"), [said])
+    ]
+
+
+def test_the_subject_of_a_question_that_only_asks_for_it_is_meant_first() -> None:
+    turns = talk(("who is bertha", "Bertha is a giant tortoise in Willowbrook Zoo.", "Bertha"))
+    assert readings(parse("when did she come to the zoo?"), turns)[0].text == "when did Bertha come to the zoo?"
