@@ -71,7 +71,7 @@ class Model:
 
 
 def talk(model: Model, **settings: Any) -> Simulation:
-    sim = simulate(wildtalk, watcher, settings={"wildtalk": {"examples": (), **settings}}, seed=1)
+    sim = simulate(wildtalk, watcher, settings={"wildtalk": {"examples": (), "gate": False, **settings}}, seed=1)
     sim.__enter__()
     sim.put(wildtalk.model, model)
     return sim
@@ -130,7 +130,7 @@ def test_a_new_utterance_interrupts_it() -> None:
 
 def test_an_interrupted_answer_comes_before_the_answer_to_the_interruption() -> None:
     model = Model("Once", " upon", " a", " time")
-    with simulate(wildtalk, stopper, settings={"wildtalk": {"examples": ()}}) as sim:
+    with simulate(wildtalk, stopper, settings={"wildtalk": {"examples": (), "gate": False}}) as sim:
         sim.put(wildtalk.model, model)
         sim.say("Tell me something.")
         sim.advance(1.0)

@@ -8,16 +8,17 @@ from contextlib import aclosing
 import ravestate as rs
 from ravestate.errors import PlatformError
 from ravestate.language.bundled import ModelMissing, warn_once
-from ravestate.modules import interloc, rawio
+from ravestate.modules import idle, interloc, nlp, rawio
 
 from .backend import Backend, Message, Role
 from .facts import asks_for_fact
 from .history import History
 from .listening import ListeningBackend
 from .llama import LlamaBackend, bundled_model, checked_model
-from .names import Settings, history, model, module, trouble
+from .names import Settings, clock, history, listening, model, module, notes, trouble
 from .openai import OpenAIBackend
 from .progress import ProgressBar
+from .small_talk import gate_for, heard_in, listen, listener, notes_for, remark
 from .transformers import TransformersBackend
 from .utterance import Utterance
 
@@ -70,21 +71,26 @@ async def note(ctx: rs.RuleContext) -> None:
 
 
 @module.rule(
-    when=rawio.input.changed,
-    reads=(model, interloc.agent),
-    writes=(rawio.output, rawio.speaking, history, trouble),
+    when=nlp.analysis.changed | rawio.input.changed,  # the input alone, where nlp cannot analyse it
+    reads=(model, interloc.agent, interloc.users, interloc.facts, notes, clock),
+    writes=(rawio.output, rawio.speaking, history, trouble, listening),
     emits=rawio.piece,
     until=rawio.input.changed | rs.shutdown,  # a model that is still loading would delay the end
 )
 async def chat(ctx: rs.RuleContext) -> rs.Resign | None:
     """Answer with small talk, piece by piece; a new utterance interrupts it."""
     settings: Settings = ctx.settings
-    heard, backend = ctx.payload(rawio.input.changed), ctx[model]
-    if not heard.strip():
+    seen = ctx.payload(nlp.analysis.changed)
+    text, backend = ctx.payload(rawio.input.changed) if seen is None else seen.text, ctx[model]
+    if not text.strip():
         return rs.Resign("nothing was said")
     if backend is None and not ctx[trouble]:
         return rs.Resign("there is no model")
-    if not settings.facts and asks_for_fact(heard):
+    heard = heard_in(ctx, text, seen)
+    if isinstance(backend, ListeningBackend) or listener().performs(heard, ctx[listening]):
+        ctx[rawio.output] = await listen(ctx, heard)
+        return None
+    if not settings.facts and await asyncio.to_thread(asks_for_fact, text):
         ctx[rawio.output] = settings.no_facts
         return None
     if backend is None:
@@ -92,26 +98,31 @@ async def chat(ctx: rs.RuleContext) -> rs.Resign | None:
         return None
 
     past = History(turns=settings.history_turns, characters=settings.history_characters)
-    newest = Message("user", heard[:LONGEST])
+    newest = Message("user", text[:LONGEST])
     for message in ctx[history].values():
         past.add(message)
     if list(ctx[history].values())[-1:] != [newest]:  # `hear` may run later
         past.add(newest)
     name = settings.name or ctx[interloc.agent]
-    told = past.prompt(settings.persona, name, settings.examples)
+    told = past.prompt(settings.persona, name, settings.examples, notes=notes_for(ctx, heard))
     if told[-1].role != "user":
         return rs.Resign("nothing was said but control characters, or marks of a template")
     utterance = Utterance(name, sentences=settings.sentences)
+    gate = gate_for(ctx, name, text) if settings.gate else None
     shown = ""
 
-    def show() -> None:
+    async def show() -> bool:
+        """Say what may be said by now; return False once a sentence was refused."""
         nonlocal shown
-        if not utterance.worth_saying() or utterance.text == shown:
-            return
-        if not shown:
-            ctx[rawio.speaking] = True
-        ctx.emit(rawio.piece, utterance.text[len(shown) :])
-        shown = utterance.text
+        sayable, refused = utterance.text, False
+        if gate is not None:
+            sayable, refused = await asyncio.to_thread(gate.admit, utterance.text, last=utterance.complete)
+        if utterance.worth_saying() and sayable != shown:
+            if not shown:
+                ctx[rawio.speaking] = True
+            ctx.emit(rawio.piece, sayable[len(shown) :])
+            shown = sayable
+        return not refused
 
     answer = backend.stream(
         told,
@@ -125,14 +136,14 @@ async def chat(ctx: rs.RuleContext) -> rs.Resign | None:
         async with aclosing(answer) as pieces:
             async for piece in pieces:
                 utterance.feed(piece)
-                show()
-                if utterance.complete:
+                if not await show() or utterance.complete:
                     break
         utterance.finish()
         if not utterance.worth_saying():
             return rs.Resign("the model said nothing")
-        show()
-        ctx[rawio.output] = utterance.text
+        if not await show():
+            ctx.log.debug("small talk left out a sentence: %s", gate and gate.reason)
+        ctx[rawio.output] = shown or await listen(ctx, heard)
         ctx[trouble] = ""
         return None
     except PlatformError as error:
@@ -147,6 +158,16 @@ async def chat(ctx: rs.RuleContext) -> rs.Resign | None:
     finally:
         if shown:
             ctx[rawio.speaking] = False
+
+
+@module.rule(when=idle.bored, reads=history, writes=(rawio.output, listening), weight=1.5)
+async def come_back(ctx: rs.RuleContext) -> rs.Resign | None:
+    """Come back to what was said, in a silence, before other modules begin something new."""
+    said = remark(ctx)
+    if said is None:
+        return rs.Resign("there is nothing to come back to")
+    ctx[rawio.output] = said
+    return None
 
 
 def tell(ctx: rs.RuleContext, error: PlatformError) -> None:

@@ -1,0 +1,95 @@
+"""The listening skill, the gate and the prompt within the rules of the module."""
+
+from __future__ import annotations
+
+import asyncio
+from dataclasses import replace
+from functools import cache
+
+import ravestate as rs
+from ravestate.modules import interloc, nlp
+from ravestate.modules.meta.nlp.pipeline import pipeline
+
+from .gate import Gate
+from .listening import Heard, Listener
+from .names import clock, history, listening, notes
+
+LATELY = 12
+"""The agent's last answers that are not said again."""
+MENTIONED = 4
+"""The last utterances that an answer may refer to."""
+
+_TONES = {
+    "sad": "The user is sad. Be gentle and brief.",
+    "angry": "The user is angry. Stay calm, and take them seriously.",
+    "tired": "The user is tired. Be brief.",
+}
+"""Advice for the model, by the tone of the talk."""
+
+
+@cache
+def listener() -> Listener:
+    """Return the listening skill, one for all contexts."""
+    return Listener()
+
+
+def heard_in(ctx: rs.RuleContext, text: str, seen: nlp.Analysis | None) -> Heard:
+    """Return the utterance as the skill takes it."""
+    users = [item for item in ctx[interloc.users].values() if isinstance(item, str)]
+    return Heard(text, seen, users[0] if len(users) == 1 else "", ctx.now)
+
+
+async def listen(ctx: rs.RuleContext, heard: Heard) -> str:
+    """Return the answer of the listening skill, and remember it."""
+    answer = await asyncio.to_thread(listener().answer, heard, ctx[listening], ctx.random)
+    ctx[listening] = answer.state
+    return answer.text
+
+
+def remark(ctx: rs.RuleContext) -> str | None:
+    """Return a remark about an unfinished matter, or about what was said last; None if there is nothing.
+
+    If another module has answered since, that was another subject, and only old matters are taken up.
+    """
+    state = ctx[listening]
+    old = [matter for matter in state.matters if ctx.now - matter.since >= ctx.settings.come_back_after]
+    if old:
+        ctx[listening] = replace(state, matters=tuple(one for one in state.matters if one is not old[0]))
+        return old[0].text
+    answers = [message.text for message in ctx[history].values() if message.role == "assistant"]
+    if not state.said or answers[-1:] != [state.said[-1]]:
+        return None
+    answer = listener().pick_up(state, ctx.random)
+    if answer is None:
+        return None
+    ctx[listening] = answer.state
+    return answer.text
+
+
+def gate_for(ctx: rs.RuleContext, name: str, heard: str) -> Gate:
+    """Return the check of a generated answer."""
+    messages = list(ctx[history].values())
+    said = [message.text for message in messages if message.role == "assistant"]
+    return Gate(
+        name,
+        heard,
+        said=said[-LATELY:],
+        before=[message.text for message in messages[-MENTIONED:]],
+        known={topic: tuple(values) for topic, values in ctx[interloc.facts].items()},
+        pipeline=pipeline(""),
+    )
+
+
+def notes_for(ctx: rs.RuleContext, heard: Heard) -> list[str]:
+    """Return what the model should know besides the conversation: the time, the user, the notes of other modules."""
+    now = ctx[clock]()
+    found = [f"It is {now:%A}, {now:%H:%M}."]
+    if heard.user and "name" not in ctx[interloc.facts]:
+        found.append(f"The user's name is {heard.user}.")
+    known = [f"{topic}: {', '.join(values)}" for topic, values in ctx[interloc.facts].items() if values]
+    if known:
+        found.append(f"What you know about the user: {'; '.join(known)}.")
+    state = ctx[listening]
+    if state.tone in _TONES:
+        found.append(_TONES[state.tone])
+    return [*found, *ctx[notes].values()]
