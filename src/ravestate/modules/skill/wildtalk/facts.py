@@ -26,4 +26,4 @@ def asks_for_fact(text: str) -> bool:
         matcher.load()
     except PlatformError:
         return False
-    return any(matcher.match_all(sentences(text[:2000])))
+    return any(matcher.match_all([one for one in sentences(text[:2000]) if len(one.split()) > 1]))

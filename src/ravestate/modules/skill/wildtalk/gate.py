@@ -166,7 +166,7 @@ class Gate:
 
     def _meaning(self, sentence: str) -> str:
         try:
-            matcher = _persona()
+            matcher = persona_matcher()
             matcher.load()
             match = matcher.match(sentence)
             if match is not None and match.score >= SURE:
@@ -189,7 +189,7 @@ class Gate:
 
 
 @cache
-def _persona() -> Matcher:
+def persona_matcher() -> Matcher:
     """Return the matcher of sentences that are out of character."""
     examples = read_examples(files(__package__ or "") / "gate.yaml")
     return Matcher(examples.classes, examples.none)

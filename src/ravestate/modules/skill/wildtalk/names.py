@@ -14,7 +14,7 @@ from ravestate.modules import idle, interloc, nlp, rawio
 
 from .backend import Backend, Message
 from .history import EXAMPLES, PERSONA
-from .listening.state import State
+from .listening.state import Overheard, State
 
 Seconds = Annotated[float, Field(gt=0)]
 
@@ -87,6 +87,9 @@ trouble: rs.Slot[str] = module.slot("trouble", "")
 
 listening: rs.Slot[State] = module.slot("listening", State(), type=State)
 """What the listening skill remembers of the talk: the last phrases, the tone, unfinished matters, opinions, a game."""
+
+overheard: rs.Slot[tuple[Overheard, ...]] = module.slot("overheard", ())
+"""The tone and the persons of the last utterances, whichever module answered them."""
 
 notes: rs.Collection[str] = module.collection("notes", input=True)
 """What other modules know of the user and the situation: short sentences for the prompt, such as ``The user lives in Rome.``"""

@@ -8,6 +8,7 @@ from contextlib import aclosing
 import ravestate as rs
 from ravestate.errors import PlatformError
 from ravestate.language.bundled import ModelMissing, warn_once
+from ravestate.language.heap import give_back
 from ravestate.modules import idle, interloc, nlp, rawio
 
 from .backend import Backend, Message, Role
@@ -15,10 +16,10 @@ from .facts import asks_for_fact
 from .history import History
 from .listening import ListeningBackend
 from .llama import LlamaBackend, bundled_model, checked_model
-from .names import Settings, clock, history, listening, model, module, notes, trouble
+from .names import Settings, clock, history, listening, model, module, notes, overheard, trouble
 from .openai import OpenAIBackend
 from .progress import ProgressBar
-from .small_talk import gate_for, heard_in, listen, listener, notes_for, remark
+from .small_talk import gate_for, heard_in, learn_all, listen, listener, notes_for, remark, traces
 from .transformers import TransformersBackend
 from .utterance import Utterance
 
@@ -47,6 +48,18 @@ async def choose_model(ctx: rs.RuleContext) -> None:
         tell(ctx, error)
 
 
+@module.rule(when=rs.startup, background=True)
+def learn(ctx: rs.RuleContext) -> None:
+    """Learn the examples of small talk in the background; until then only the examples themselves are recognised."""
+    try:
+        learn_all()
+        give_back()
+    except ModelMissing as error:
+        warn_once(ctx.log, error)
+    except PlatformError as error:
+        ctx.log.error("%s", error)
+
+
 @module.rule(when=rs.shutdown, reads=model)
 async def let_go(ctx: rs.RuleContext) -> None:
     """Close the backend."""
@@ -70,9 +83,19 @@ async def note(ctx: rs.RuleContext) -> None:
         remember(ctx, "assistant", said)
 
 
+@module.rule(when=nlp.analysis.changed.max_age(None).detached(), reads=listening, writes=overheard, background=True)
+def overhear(ctx: rs.RuleContext) -> rs.Resign | None:
+    """Notice the tone and the persons of an utterance, whichever module answers it."""
+    seen = ctx.payload(nlp.analysis.changed)
+    if seen is None:
+        return rs.Resign("nothing was analysed")
+    ctx[overheard] = traces(ctx, seen)
+    return None
+
+
 @module.rule(
     when=nlp.analysis.changed | rawio.input.changed,  # the input alone, where nlp cannot analyse it
-    reads=(model, interloc.agent, interloc.users, interloc.facts, notes, clock),
+    reads=(model, interloc.agent, interloc.users, interloc.facts, notes, clock, overheard),
     writes=(rawio.output, rawio.speaking, history, trouble, listening),
     emits=rawio.piece,
     until=rawio.input.changed | rs.shutdown,  # a model that is still loading would delay the end
@@ -87,7 +110,8 @@ async def chat(ctx: rs.RuleContext) -> rs.Resign | None:
     if backend is None and not ctx[trouble]:
         return rs.Resign("there is no model")
     heard = heard_in(ctx, text, seen)
-    if isinstance(backend, ListeningBackend) or listener().performs(heard, ctx[listening]):
+    skill = await asyncio.to_thread(listener)  # the first call reads the phrases
+    if isinstance(backend, ListeningBackend) or skill.performs(heard, ctx[listening]):
         ctx[rawio.output] = await listen(ctx, heard)
         return None
     if not settings.facts and await asyncio.to_thread(asks_for_fact, text):

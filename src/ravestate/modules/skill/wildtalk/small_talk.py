@@ -10,9 +10,11 @@ import ravestate as rs
 from ravestate.modules import interloc, nlp
 from ravestate.modules.meta.nlp.pipeline import pipeline
 
-from .gate import Gate
-from .listening import Heard, Listener
-from .names import clock, history, listening, notes
+from .facts import facts_matcher
+from .gate import Gate, persona_matcher
+from .listening import Heard, Listener, Overheard, State
+from .listening.state import Pending
+from .names import clock, history, listening, notes, overheard
 
 LATELY = 12
 """The agent's last answers that are not said again."""
@@ -33,6 +35,17 @@ def listener() -> Listener:
     return Listener()
 
 
+def learn_all() -> None:
+    """Learn all examples of small talk.
+
+    Raises:
+        PlatformError: The sentence model is missing or broken.
+    """
+    listener().load()
+    facts_matcher().load()
+    persona_matcher().load()
+
+
 def heard_in(ctx: rs.RuleContext, text: str, seen: nlp.Analysis | None) -> Heard:
     """Return the utterance as the skill takes it."""
     users = [item for item in ctx[interloc.users].values() if isinstance(item, str)]
@@ -41,9 +54,34 @@ def heard_in(ctx: rs.RuleContext, text: str, seen: nlp.Analysis | None) -> Heard
 
 async def listen(ctx: rs.RuleContext, heard: Heard) -> str:
     """Return the answer of the listening skill, and remember it."""
-    answer = await asyncio.to_thread(listener().answer, heard, ctx[listening], ctx.random)
+    state = up_to_date(ctx, heard.text)
+    answer = await asyncio.to_thread(listener().answer, heard, state, ctx.random)
     ctx[listening] = answer.state
     return answer.text
+
+
+def up_to_date(ctx: rs.RuleContext, text: str) -> State:
+    """Return the state of the skill, with what it missed while other modules answered.
+
+    Args:
+        ctx: The context of the rule.
+        text: The utterance to be answered; its own traces do not count yet.
+    """
+    state = ctx[listening]
+    for one in ctx[overheard]:
+        if one.text not in (text, state.before):
+            state = replace(state.toned(one.tone, one.lasts), being=one.being or state.being, before=one.text)
+    answers = [message.text for message in ctx[history].values() if message.role == "assistant"]
+    words = [answer for answer in answers if any(map(str.isalpha, answer))]
+    if words and words[-1:] != list(state.said[-1:]):  # another module has answered since
+        asked = Pending(words[-1]) if words[-1].endswith("?") else None
+        state = replace(state, pending=asked, moment="", game=None)
+    return state
+
+
+def traces(ctx: rs.RuleContext, seen: nlp.Analysis) -> tuple[Overheard, ...]:
+    """Return the last two utterances, the newest last, with what they leave behind whichever module answers."""
+    return (*ctx[overheard][-1:], listener().overhear(seen, ctx[listening].being))
 
 
 def remark(ctx: rs.RuleContext) -> str | None:

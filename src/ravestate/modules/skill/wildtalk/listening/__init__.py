@@ -4,6 +4,6 @@ from __future__ import annotations
 
 from .backend import ListeningBackend
 from .listener import Answer, Heard, Listener
-from .state import State
+from .state import Overheard, State
 
-__all__ = ["Answer", "Heard", "Listener", "ListeningBackend", "State"]
+__all__ = ["Answer", "Heard", "Listener", "ListeningBackend", "Overheard", "State"]

@@ -45,6 +45,20 @@ class Games:
             return text, replace(state, game=Game("animal", question), show=kind)
         return chance.choice(self._shows["offer"]), replace(state, game=Game("choice"))
 
+    def named(self, text: str) -> str:
+        """Return the performance that a short text names: *word chain*, *a riddle please*."""
+        words = re.findall(r"[a-z]+", text.lower()) or [""]
+        said = f" {' '.join(words)} "
+        names = self._shows["names"].items()
+        return next(
+            (
+                kind
+                for kind, listed in names
+                if len(words) <= 3 and words[0] != "no" and any(f" {one} " in said for one in listed)
+            ),
+            "",
+        )
+
     def knocks(self, text: str) -> bool:
         """Return whether the user begins a knock-knock joke."""
         return " ".join(re.findall(r"[a-z]+", text.lower())) in self._shows["knock"]["call"]

@@ -23,12 +23,14 @@ from ravestate.modules.meta.nlp.question_word import QuestionWord
 from .games import Games
 from .material import Line, Material, Moment, material, roles_in
 from .roles import Roles, fragment, has_verb, roles_of
-from .state import Matter, Pending, State
+from .state import LASTING, Being, Matter, Overheard, Pending, State
 from .tongue import is_nonsense, is_number, tongue_of
 from .turning import turned
 
 SURE = 0.5
 """The confidence in a moment from which it decides."""
+SURE_OF_FEW = 0.7
+"""The same for an utterance of one or two words."""
 FINER = 0.2
 """The advantage of a moment over a feeling or an act, which are broader."""
 SUBJECT = 0.45
@@ -39,6 +41,10 @@ ASKED = 0.8
 """The confidence in a request for a performance from which it is met."""
 SHORT = 4
 """The words of a short answer."""
+ENDINGS = ("stop", "quiet")
+"""Acts that are only taken for sure ones."""
+SILENCE = "silence"
+"""The moment of a remark that ends a silence."""
 SHOWS = {"joke": "joke", "song": "song", "story": "story", "play": "play"}
 """What the agent begins after a request, by the request's act."""
 _YESNO = frozenset(("contradiction",))
@@ -73,6 +79,7 @@ class _Source:
     groups: Sequence[Sequence[Line]]
     name: str = ""
     tone: str = ""
+    lasts: int = LASTING
     matter: str = ""
     roles: Mapping[str, str] | None = None
     stance: Mapping[str, str] | None = None
@@ -111,9 +118,15 @@ class Listener:
         said = self._say(heard, state, chance, *moment)
         return replace(said, state=replace(said.state, before=heard.text))
 
+    def overhear(self, seen: Analysis, focus: Being | None) -> Overheard:
+        """Return what an utterance leaves behind: the tone, and the being that it mentions after `focus`."""
+        feeling, sentence = self._feeling(seen, "")
+        tone, lasts = (feeling.tone, feeling.lasts) if feeling is not None else ("", LASTING)
+        return Overheard(seen.text, roles_of(seen, sentence, focus, self._phrases).being, tone, lasts)
+
     def pick_up(self, state: State, chance: random.Random) -> Answer | None:
         """Return a remark about what was said last, to end a silence; None if there is nothing to come back to."""
-        if not state.clause and state.tone != "sad":
+        if state.moment == SILENCE or not (state.clause or state.tone == "sad"):
             return None
         roles = Roles().having(clause=state.clause)
         moment = self._phrases.plain["silence"]
@@ -121,14 +134,17 @@ class Listener:
         line = self._choose(groups, roles, state, chance)
         if line is None:
             return None
-        return self._finish(line, roles, replace(state, clause=""))
+        return self._finish(line, roles, replace(state, clause="", moment=SILENCE))
 
     # ---------------------------------------------------------------------------------- performances
 
     def _request(self, heard: Heard) -> str:
         """Return the performance that the user asks for."""
-        if heard.seen is None:
+        if heard.seen is None or heard.seen.yesno.no:
             return ""
+        named = self._games.named(heard.text)
+        if named:
+            return named
         acts = heard.seen.acts
         found = [act for act in SHOWS if act in acts and acts[act].score >= ASKED]
         return SHOWS[max(found, key=lambda act: acts[act].score)] if found else ""
@@ -148,9 +164,6 @@ class Listener:
                 return played
         if seen is not None and state.pending is not None and state.pending.start and seen.yesno.yes:
             return games.start(state.pending.start, state, chance)
-        words = heard.text.lower().replace("?", " ").replace(".", " ").split()
-        if len(words) <= SHORT and "riddle" in " ".join(words):
-            return games.start("riddle", state, chance)
         request = self._request(heard)
         if request:
             return games.start(request, state, chance)
@@ -175,7 +188,9 @@ class Listener:
             line = self._choose(source.groups, filled, state, chance)
             if line is None:
                 continue
-            after = replace(state.toned(source.tone), being=roles.being or state.being, moment=source.name)
+            after = replace(
+                state.toned(source.tone, source.lasts), being=roles.being or state.being, moment=source.name
+            )
             if told:
                 after = replace(after, clause=told)
             if source.stance:
@@ -229,9 +244,15 @@ class Listener:
         verb = has_verb(seen)
         if state.pending is not None:
             yield from self._answered(
-                state, seen, len(words), verb, strong=feeling is not None or score >= SURE, subject=moment is not None
+                state,
+                seen,
+                len(words),
+                verb,
+                felt=feeling is not None,
+                strong=score >= SURE,
+                subject=moment is not None,
             )
-        elif len(words) <= 2 and not verb and (seen.yesno.yes or seen.yesno.no) and not seen.acts.keys() - _YESNO:
+        elif len(words) <= 3 and (seen.yesno.yes or seen.yesno.no) and not seen.acts.keys() - _YESNO:
             yield _Source(plain["yes" if seen.yesno.yes else "no"].lines(tone, "say"))
         ranked: list[tuple[float, Moment]] = []
         if moment is not None and moment.name in phrases.moments and score >= SURE:
@@ -239,18 +260,23 @@ class Listener:
         if feeling is not None:
             ranked.append((seen.feelings[feeling.name].score, feeling))
         ranked += [(act.score, phrases.acts[act.name]) for act in seen.acts.values() if act.name in phrases.acts]
+        ranked = [pair for pair in ranked if pair[1].name not in ENDINGS or pair[0] >= ASKED]
         ranked = [pair for pair in ranked if pair[0] >= FELT]
         for _, best in sorted(ranked, key=lambda pair: -pair[0]):
             yield self._of(best, state, roles, seen)
         called = self._called(roles)
-        if called and state.being is not None:
-            being = Roles(being=state.being).values
-            yield _Source(plain["named"].lines(tone, "say"), roles={**being, "called": called})
+        if called:
+            yield _Source(plain["named"].lines(tone, "say"), roles={"called": called})
+        told = roles.statement
+        if tone == "sad" and told is not None and told.verb == "be" and told.object.head.isdigit():
+            yield _Source(plain["aged"].lines(tone))
         if seen.question is not None:
             yield from self._question(seen, state, roles, chance)
         if verb and seen.question is None:
             yield from self._statement(seen, state, roles, chance, moment)
-        if not verb and roles.values.get("answer") and len(words) <= SHORT:
+        if not verb and seen.question is None and moment is not None and moment.name in phrases.topics and tone != "sad":
+            yield _Source(moment.lines("say"), moment.name)
+        if not verb and roles.values.get("answer") and len(words) <= SHORT + 2:
             yield _Source(plain["fragment"].lines(tone, "say"))
         if not verb and len(words) <= 1:
             yield _Source(plain["hm"].lines(tone, "say"))
@@ -269,25 +295,28 @@ class Listener:
             yield _Source(plain["hm"].lines("say"))
 
     def _answered(
-        self, state: State, seen: Analysis, size: int, verb: bool, *, strong: bool, subject: bool
+        self, state: State, seen: Analysis, size: int, verb: bool, *, felt: bool, strong: bool, subject: bool
     ) -> Iterator[_Source]:
         """Yield the answers to a short answer to the agent's question."""
         pending, plain, tone = state.pending, self._phrases.plain, state.tone
         assert pending is not None
         yesno = seen.yesno
         kind = "yes" if yesno.yes else "no" if yesno.no else "unsure" if yesno.unsure else ""
-        if seen.question is not None or (strong and (verb or not kind)) or size > 2 * SHORT:
+        if seen.question is not None or size > 2 * SHORT:
             return
-        if kind:
-            if "acknowledgement" in seen.acts and "yes" not in pending.then:
-                return
-            closed = "yes" in pending.then or "no" in pending.then
-            yield _Source([_bare(pending.then[one]) for one in (kind, "any") if closed and one in pending.then])
+        if kind in pending.then and not felt:
+            yield _Source([_bare(pending.then[kind])])
+        if felt or strong:
+            return
+        if kind and (pending.closed or kind == "unsure"):
+            if kind != "unsure" and "any" in pending.then:
+                yield _Source([_bare(pending.then["any"])])
             yield _Source(plain[kind].lines(tone, "say"))
-        elif not verb and size <= SHORT and not seen.acts and not (subject and size > 2):
+        elif not kind and size <= SHORT and not seen.acts and not (subject and size > 2) and not _of_others(seen):
             if "any" in pending.then:
                 yield _Source([_bare(pending.then["any"])])
-            yield _Source(plain["answer"].lines(tone, "say"))
+            if not verb:
+                yield _Source(plain["answer"].lines(tone, "say"))
 
     def _of(self, moment: Moment, state: State, roles: Roles, seen: Analysis) -> _Source:
         """Return the source of a moment or feeling: the groups that fit, the most specific first."""
@@ -304,7 +333,7 @@ class Listener:
                 groups.append("self")
             groups.append("future" if statement.plan else "past" if _is_past(statement.verb, seen) else "present")
         matter = moment.matter
-        return _Source(moment.lines(*groups, "say", "again"), moment.name, moment.tone, matter)
+        return _Source(moment.lines(*groups, "say", "again"), moment.name, moment.tone, moment.lasts, matter)
 
     def _question(self, seen: Analysis, state: State, roles: Roles, chance: random.Random) -> Iterator[_Source]:
         """Yield the answers to a question that no other module has answered."""
@@ -314,8 +343,9 @@ class Listener:
             yield _Source(plain["choice"].lines("say"), roles={"first": choice[0], "second": choice[1]})
         asked = next((one for one in seen.statements if one.question), None)
         subject = asked.subject_person if asked is not None else ""
-        if asked is not None and subject == "you" and asked.verb in plain["opinion"].words:
-            thing = roles_of(seen, "", None, self._phrases).values.get("thing", "") or self._about(seen, asked.phrases)
+        opinion = asked is not None and subject == "you" and asked.verb in plain["opinion"].words
+        if opinion or (asked is not None and asked.subject.of("you") and self._about(seen)):
+            thing = self._about(seen) or roles_of(seen, "", None, self._phrases).values.get("thing", "")
             if thing:
                 yield self._opinion(thing, state, chance, known=roles.being is not None or bool(seen.entities))
         if any(word.low in ("would", "could", "if", "imagine") for word in seen.tree.words) and seen.about_agent:
@@ -328,10 +358,11 @@ class Listener:
             yield _Source(plain["why"].lines("say"))
         yield _Source(plain["you" if seen.about_agent else "fact"].lines("say"))
 
-    def _about(self, seen: Analysis, listed: Sequence[object]) -> str:
+    @staticmethod
+    def _about(seen: Analysis) -> str:
         """Return the noun of *what do you think of jazz*."""
         for word in seen.tree.words:
-            if word.dep == "pobj" and seen.tree.head(word).low in ("of", "about"):
+            if word.dep == "pobj" and seen.tree.head(word).low in ("of", "about", "on"):
                 return turned(seen.tree, [part for part in seen.tree.subtree(word) if part.dep != "punct"])
         return ""
 
@@ -350,10 +381,17 @@ class Listener:
         """Yield the answers to a statement: about its verb, its subject, or anything told."""
         phrases, tone, statement = self._phrases, state.tone, roles.statement
         plain = phrases.plain["statement"]
-        if tone in ("sad", "angry", "tired"):
+        if tone == "sad" or (tone in ("angry", "tired") and chance.random() < 0.5):
             yield _Source(plain.lines(tone))
         if statement is None:
             return
+        if statement.plan or statement.conditional:
+            yield _Source(plain.lines("plan"))
+        if statement.past and statement.subject_person == "I" and "used" in _words_of(seen):
+            yield _Source(plain.lines("used"))
+        living = roles.being is not None or "they" in roles.values
+        if statement.subject_person == "other" and living and not statement.subject.of("you"):
+            yield _Source(plain.lines("being", "other") if statement.subject.head else plain.lines("other", "being"))
         sources: list[_Source] = []
         name = f"not {statement.verb}" if statement.negated else statement.verb
         verb = next((one for one in phrases.verbs.values() if name in one.words), None)
@@ -371,7 +409,7 @@ class Listener:
         yield from sources
         if state.pending is not None and "any" in state.pending.then:
             yield _Source([_bare(state.pending.then["any"])])
-        yield _Source(plain.lines(*(["being"] if roles.being is not None else []), tone, "say"))
+        yield _Source(plain.lines(tone, "say"))
 
     # ---------------------------------------------------------------------------------- what it means
 
@@ -383,6 +421,8 @@ class Listener:
                 if match is not None:
                     found = self._phrases.moments.get(match.name)
                     if found is None and match.score < SUBJECT:
+                        continue
+                    if found is not None and len(match.text.split()) <= 2 and match.score < SURE_OF_FEW:
                         continue
                     weight = match.score if found is not None else match.score / 2  # a topic is less telling
                     if weight > score:
@@ -412,6 +452,16 @@ class Listener:
 def _bare(texts: Sequence[str]) -> list[Line]:
     """Return finished texts as lines; any braces left in them belong to the user's words."""
     return [Line(text, frozenset()) for text in texts if "{" not in text]
+
+
+def _words_of(seen: Analysis) -> set[str]:
+    """Return the words of an utterance in lower case."""
+    return {word.low for word in seen.tree.words}
+
+
+def _of_others(seen: Analysis) -> bool:
+    """Return whether it tells something about somebody else: no answer to a question about the user."""
+    return any(word.low in ("he", "she", "they", "we") for word in seen.tree.words)
 
 
 def _is_past(verb: str, seen: Analysis) -> bool:

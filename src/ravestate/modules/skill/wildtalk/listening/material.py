@@ -14,9 +14,11 @@ from ravestate.language.examples import bundled
 from ravestate.language.matcher import Matcher
 from ravestate.yaml_text import compose_yaml
 
+from .state import LASTING
+
 ROLE = re.compile(r"\{(\w+)\}")
 AGREEING = frozenset(("are", "were", "have", "do"))
-_NOT_GROUPS = frozenset(("examples", "nouns", "verbs", "tone", "matter"))
+_NOT_GROUPS = frozenset(("examples", "nouns", "verbs", "tone", "matter", "lasts"))
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,6 +48,8 @@ class Moment:
     tone: str = ""
     matter: str = ""
     """A question for later."""
+    lasts: int = LASTING
+    """The turns for which its tone lasts."""
     examples: tuple[str, ...] = ()
     words: frozenset[str] = frozenset()
     """The nouns or verbs that are typical of it."""
@@ -102,7 +106,8 @@ def _moments(name: str) -> dict[str, Moment]:
         groups = {group: _lines(lines, key) for group, lines in value.items() if group not in _NOT_GROUPS}
         words = frozenset((*value.get("nouns", ()), *value.get("verbs", ())))
         examples = tuple(value.get("examples", ()))
-        found[key] = Moment(key, groups, value.get("tone", ""), value.get("matter", ""), examples, words)
+        lasts = int(value.get("lasts", LASTING))
+        found[key] = Moment(key, groups, value.get("tone", ""), value.get("matter", ""), lasts, examples, words)
     return found
 
 

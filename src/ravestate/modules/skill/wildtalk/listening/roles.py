@@ -48,7 +48,6 @@ class Roles:
             value = self._agreed(low, parts, place) if low in AGREEING else known[low]
             parts[place] = value[:1].upper() + value[1:] if role[0].isupper() else value
         filled = "".join(parts)
-        filled = re.sub(r"([.!?])\.(?=\s|$)", r"\1", filled)  # "Mr. Fox."
         return filled[:1].upper() + filled[1:]
 
     def _agreed(self, verb: str, parts: list[str], place: int) -> str:
@@ -86,6 +85,11 @@ def roles_of(seen: Analysis, sentence: str, focus: Being | None, material: Mater
         )
         roles = replace(roles, being=being).having(who=being.text, they=they, them=them, their=their)
         roles = roles.having(**dict.fromkeys(AGREEING, "yes"))
+    elif genders or pronouns & {"it", "its"}:
+        they, them, their = _THEY[next(iter(genders))] if genders else _IT
+        roles = roles.having(they=they, them=them, their=their)
+        if genders:
+            roles = roles.having(**dict.fromkeys(AGREEING, "yes"))
     if statement is not None and not statement.question:
         root = _root(seen.tree, statement)
         said = "" if root is None else clause(seen.tree, root)
@@ -101,7 +105,7 @@ def fragment(seen: Analysis) -> str:
     while words and words[0].low in ("and", "but", "so", "or", "maybe", "just", "yes", "no", "well"):
         words = words[1:]
     text = turned_text(word.text for word in words)
-    return text if words and len(text) <= LONGEST and len(words) <= 5 and _REPEATABLE.fullmatch(text) else ""
+    return text if words and len(text) <= LONGEST and len(words) <= 6 and _REPEATABLE.fullmatch(text) else ""
 
 
 def has_verb(seen: Analysis) -> bool:
@@ -163,7 +167,8 @@ def _being(seen: Analysis, material: Material) -> Being | None:
         for phrase in (statement.subject, statement.object, *statement.phrases):
             for part in _owners(phrase):
                 if part.head in material.beings and (part.owner is not None or part.names or part is phrase):
-                    return _as_being(seen.tree, part, *material.beings[part.head])
+                    mine = statement.subject_person == "I" and part is not statement.subject
+                    return _as_being(seen.tree, part, *material.beings[part.head], mine=mine)
     people = [entity.text for entity in seen.entities if entity.label == "PERSON"]
     return Being(people[0], "person") if people else None
 
@@ -175,11 +180,11 @@ def _owners(phrase: Phrase) -> Iterator[Phrase]:
         yield from _owners(phrase.owner)
 
 
-def _as_being(tree: Tree, phrase: Phrase, kind: str, gender: str) -> Being:
+def _as_being(tree: Tree, phrase: Phrase, kind: str, gender: str, *, mine: bool) -> Being:
     plural = any(word.tag in ("NNS", "NNPS") and word.lemma.lower() == phrase.head for word in tree.words)
     if phrase.names and kind == "pet":
         return Being(phrase.name, kind, gender)
     words = phrase.text.split()
     owned = phrase.owner is not None
-    text = turned_text(words) if owned else f"the {phrase.head}"
+    text = turned_text(words) if owned else f"your {phrase.head}" if mine and kind == "pet" else f"the {phrase.head}"
     return Being(text, kind, gender, plural or (phrase.amount or 1) > 1)

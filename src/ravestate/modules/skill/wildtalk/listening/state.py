@@ -9,8 +9,11 @@ RECENT = 24
 """The last phrases, of which none is said again."""
 MATTERS = 8
 """The number of unfinished matters that are kept."""
-LASTING = {"sad": 5, "angry": 3, "tired": 3, "glad": 2}
+LASTING = 2
 """The number of turns for which a tone lasts."""
+
+
+_OPEN = frozenset(("who", "what", "what's", "when", "where", "why", "which", "how", "whose", "or"))
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,6 +39,12 @@ class Pending:
     start: str = ""
     """The joke, riddle... that a *yes* begins."""
 
+    @property
+    def closed(self) -> bool:
+        """Whether it can be answered with yes or no."""
+        words = self.text.replace(",", " ").split(". ")[-1].split("! ")[-1].split("? ")[-1].lower().split()
+        return not any(word in _OPEN for word in words[:3])
+
 
 @dataclass(frozen=True, slots=True)
 class Matter:
@@ -45,6 +54,16 @@ class Matter:
     """The question: ``How is your mother today?``"""
     since: float
     """Seconds on the context's clock."""
+
+
+@dataclass(frozen=True, slots=True)
+class Overheard:
+    """What an utterance leaves behind, also if another module answers it."""
+
+    text: str
+    being: Being | None = None
+    tone: str = ""
+    lasts: int = LASTING
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,10 +106,10 @@ class State:
     show: str = ""
     """The kind of the last of them."""
 
-    def toned(self, tone: str) -> State:
+    def toned(self, tone: str, lasts: int = LASTING) -> State:
         """Return the state after an utterance with this tone, or one without."""
         if tone:
-            return replace(self, tone=tone, turns=LASTING.get(tone, 0))
+            return replace(self, tone=tone, turns=max(lasts, self.turns - 1) if tone == self.tone else lasts)
         left = max(0, self.turns - 1)
         return replace(self, tone=self.tone if left else "", turns=left)
 

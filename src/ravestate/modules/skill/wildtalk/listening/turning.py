@@ -31,7 +31,7 @@ def turned_text(words: Iterable[str]) -> str:
 def clause(tree: Tree, root: Word) -> str:
     """Return the clause of a verb from the agent's view; empty if it has no subject, or is long."""
     words = _kept(tree, root)
-    if not any(word.dep in (*_SUBJECTS, "expl") and word.head == root.index for word in words):
+    if not any(child.dep in (*_SUBJECTS, "expl") for child in tree.children(root)):
         return ""
     if len(words) > LONGEST:  # a shorter form: without the phrases after the object
         extra = {
@@ -59,6 +59,13 @@ def _kept(tree: Tree, root: Word) -> list[Word]:
         if child.dep in _LEFT_OUT or long or particle:
             left_out.update(word.index for word in tree.subtree(child))
     kept = [word for word in tree.subtree(root) if word.index not in left_out]
+    subjects = [word for word in kept if word.dep in _SUBJECTS and word.head == root.index]
+    if subjects and subjects[-1].tag == "PRP":  # "my mother she is ill"
+        before = [
+            child for child in tree.children(root) if child.index < subjects[-1].index and child.tag in ("NN", "NNP")
+        ]
+        if before:
+            return [word for word in kept if word is not subjects[-1]]
     for word in list(kept):  # relative clauses, and what is in brackets
         if word.dep in ("relcl", "appos", "punct", "advcl"):
             gone = {part.index for part in tree.subtree(word)}
