@@ -3,6 +3,7 @@
 import asyncio
 from collections.abc import AsyncGenerator, Sequence
 from contextlib import suppress
+from datetime import UTC, datetime
 from typing import Any
 
 import pytest
@@ -70,10 +71,15 @@ class Model:
         self.log.append("close")
 
 
+def noon() -> datetime:
+    return datetime(2026, 5, 4, 12, 0, tzinfo=UTC)
+
+
 def talk(model: Model, **settings: Any) -> Simulation:
     sim = simulate(wildtalk, watcher, settings={"wildtalk": {"examples": (), "gate": False, **settings}}, seed=1)
     sim.__enter__()
     sim.put(wildtalk.model, model)
+    sim.put(wildtalk.clock, noon)
     return sim
 
 
@@ -101,7 +107,7 @@ def test_the_model_is_told_who_it_is_and_what_was_said() -> None:
     sim.__exit__(None, None, None)
     told = [(m.role, m.text) for m in model.asked[1]]
     assert told == [
-        ("system", "Be Rosie."), ("user", "Q"), ("assistant", "A"),
+        ("system", "Be Rosie.\nIt is Monday, 12:00."), ("user", "Q"), ("assistant", "A"),
         ("user", "One"), ("assistant", "Fine."), ("user", "Two"),
     ]  # fmt: skip
     options = model.options[0]

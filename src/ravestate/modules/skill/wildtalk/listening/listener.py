@@ -82,6 +82,8 @@ class _Source:
     lasts: int = LASTING
     matter: str = ""
     roles: Mapping[str, str] | None = None
+    weak: bool = False
+    """Whether it fits nearly everything: then something else is said rather than a third question in a row."""
     stance: Mapping[str, str] | None = None
     """The opinion that it expresses, by its subject."""
 
@@ -183,7 +185,8 @@ class Listener:
         if seen is not None:
             roles = roles.having(answer=fragment(seen))
         told = roles.values.get("clause", "")
-        for source in self._sources(heard, state, roles, chance, moment, score, feeling):
+        sources = self._sources(heard, state, roles, chance, moment, score, feeling)
+        for source in self._without_third_questions(sources, state):
             filled = replace(roles, values={**roles.values, **(source.roles or {})})
             line = self._choose(source.groups, filled, state, chance)
             if line is None:
@@ -200,6 +203,19 @@ class Listener:
             return self._finish(line, filled, after)
         return Answer("Mhm.", state.toned(""))  # all phrases were said lately
 
+    @staticmethod
+    def _without_third_questions(sources: Iterator[_Source], state: State) -> Iterator[_Source]:
+        """Yield the sources; after two questions the weak ones come without theirs first."""
+        asked = len(state.said) > 1 and all(text.endswith("?") for text in state.said[-2:])
+        later: list[_Source] = []
+        for source in sources:
+            if asked and source.weak:
+                later.append(source)
+                told = [[line for line in lines if not line.asks] for lines in source.groups]
+                source = replace(source, groups=told)
+            yield source
+        yield from later
+
     def _finish(self, line: Line, roles: Roles, state: State) -> Answer:
         text = roles.fill(line.text)
         then = {name: tuple(map(roles.fill, texts)) for name, texts in line.then.items()}
@@ -210,14 +226,11 @@ class Listener:
         self, groups: Sequence[Sequence[Line]], roles: Roles, state: State, chance: random.Random
     ) -> Line | None:
         """Return a line of the first group that has one: with known roles, and not said lately."""
-        asked = len(state.said) > 1 and all(text.endswith("?") for text in state.said[-2:])
         for lines in groups:
             fit = [line for line in lines if line.roles <= roles.values.keys() and line.text not in state.recent]
             fit = [line for line in fit if roles.fill(line.text) not in state.said]
             if not fit:
                 continue
-            if asked:  # not three questions in a row, if there is something else to say
-                fit = [line for line in fit if not line.asks] or fit
             most = max(min(len(line.roles), 1) for line in fit)
             return chance.choice([line for line in fit if min(len(line.roles), 1) == most])
         return None
@@ -273,24 +286,25 @@ class Listener:
         if seen.question is not None:
             yield from self._question(seen, state, roles, chance)
         if verb and seen.question is None:
-            yield from self._statement(seen, state, roles, chance, moment)
+            for source in self._statement(seen, state, roles, chance, moment):
+                yield replace(source, weak=True)
         if not verb and seen.question is None and moment is not None and moment.name in phrases.topics and tone != "sad":
             yield _Source(moment.lines("say"), moment.name)
         if not verb and roles.values.get("answer") and len(words) <= SHORT + 2:
-            yield _Source(plain["fragment"].lines(tone, "say"))
+            yield _Source(plain["fragment"].lines(tone, "say"), weak=True)
         if not verb and len(words) <= 1:
-            yield _Source(plain["hm"].lines(tone, "say"))
-        yield _Source(plain["generic"].lines(tone, "say"))
+            yield _Source(plain["hm"].lines(tone, "say"), weak=True)
+        yield _Source(plain["generic"].lines(tone, "say"), weak=True)
 
     def _strange(self, heard: Heard, seen: Analysis | None) -> Iterator[_Source]:
         plain = self._phrases.plain
         if is_number(heard.text):
             yield _Source(plain["number"].lines("say"))
-        if is_nonsense(heard.text):
-            yield _Source(plain["nonsense"].lines("say"))
         tongue = tongue_of(heard.text, self._phrases.tongues)
         if tongue:
             yield _Source(plain["tongue"].lines(tongue, "say"))
+        if is_nonsense(heard.text):
+            yield _Source(plain["nonsense"].lines("say"))
         if not any(map(str.isalnum, heard.text)):
             yield _Source(plain["hm"].lines("say"))
 
