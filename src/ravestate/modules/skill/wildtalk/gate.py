@@ -22,7 +22,7 @@ FAR, NEAR, UNRELATED = 0.45, 0.56, -10.9
 
 Calibrated on 25 fitting and 10 misplaced answers to small talk: all of the first pass, 9 of the others fail.
 """
-SURE = 0.75
+SURE = 0.85
 """The confidence from which a sentence counts as one out of character."""
 TELLING = 3
 """The words of an utterance from which an answer can be compared with it."""

@@ -95,7 +95,7 @@ def overhear(ctx: rs.RuleContext) -> rs.Resign | None:
 
 @module.rule(
     when=nlp.analysis.changed | rawio.input.changed,  # the input alone, where nlp cannot analyse it
-    reads=(model, interloc.agent, interloc.users, interloc.facts, notes, clock, overheard),
+    reads=(model, nlp.analysis, nlp.text, interloc.agent, interloc.users, interloc.facts, notes, clock, overheard),
     writes=(rawio.output, rawio.speaking, history, trouble, listening),
     emits=rawio.piece,
     until=rawio.input.changed | rs.shutdown,  # a model that is still loading would delay the end
@@ -107,6 +107,8 @@ async def chat(ctx: rs.RuleContext) -> rs.Resign | None:
     text, backend = ctx.payload(rawio.input.changed) if seen is None else seen.text, ctx[model]
     if not text.strip():
         return rs.Resign("nothing was said")
+    if seen is None and ctx[nlp.analysis] is not None and ctx[nlp.text] == text:
+        return rs.Resign("this rule has resigned from the analysed utterance")
     if backend is None and not ctx[trouble]:
         return rs.Resign("there is no model")
     heard = heard_in(ctx, text, seen)
@@ -164,7 +166,10 @@ async def chat(ctx: rs.RuleContext) -> rs.Resign | None:
                     break
         utterance.finish()
         if not utterance.worth_saying():
-            return rs.Resign("the model said nothing")
+            if gate is None:
+                return rs.Resign("the model said nothing")
+            ctx[rawio.output] = await listen(ctx, heard)
+            return None
         if not await show():
             ctx.log.debug("small talk left out a sentence: %s", gate and gate.reason)
         ctx[rawio.output] = shown or await listen(ctx, heard)

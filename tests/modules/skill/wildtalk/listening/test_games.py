@@ -53,7 +53,16 @@ def test_a_riddle_can_be_given_up(talk: Any) -> None:
 def test_word_chain_goes_by_the_last_letter(talk: Any) -> None:
     first = talk.say("word chain").rstrip(".").split()[-1]
     words = {"a": "arm", "d": "duck", "e": "earth", "g": "glove", "h": "horn", "k": "king", "l": "leg", "m": "milk"}
-    words |= {"n": "neck", "o": "oven", "p": "pot", "r": "rain", "s": "snail", "t": "trunk", "w": "wing", "x": "xylophone"}
+    words |= {
+        "n": "neck",
+        "o": "oven",
+        "p": "pot",
+        "r": "rain",
+        "s": "snail",
+        "t": "trunk",
+        "w": "wing",
+        "x": "xylophone",
+    }
     words |= {"y": "yard", "f": "frog", "c": "cat", "i": "iron", "u": "urn"}
     own = words[first[-1]]
     answer = talk.say(own).rstrip(".!").split()[-1].lower()

@@ -30,4 +30,4 @@ def test_a_clause_is_turned(text: str, turned: str) -> None:
 
 
 def test_words_without_a_parse_are_turned() -> None:
-    assert turned_text("my brother and me".split()) == "your brother and you"
+    assert turned_text(["my", "brother", "and", "me"]) == "your brother and you"

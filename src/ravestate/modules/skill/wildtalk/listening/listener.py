@@ -19,6 +19,7 @@ from dataclasses import dataclass, replace
 
 from ravestate.modules.meta.nlp.analysis import Analysis
 from ravestate.modules.meta.nlp.question_word import QuestionWord
+from ravestate.modules.meta.nlp.statement import Statement
 
 from .games import Games
 from .material import Line, Material, Moment, material, roles_in
@@ -31,12 +32,14 @@ SURE = 0.5
 """The confidence in a moment from which it decides."""
 SURE_OF_FEW = 0.7
 """The same for an utterance of one or two words."""
-FINER = 0.2
+FINER = 0.1
 """The advantage of a moment over a feeling or an act, which are broader."""
 SUBJECT = 0.45
 """The confidence in a subject from which it decides."""
-FELT = 0.6
-"""The confidence in a feeling or an act from which it decides."""
+FELT = 0.5
+"""The confidence in a feeling from which it decides."""
+MEANT = 0.6
+"""The confidence in an act from which it decides."""
 ASKED = 0.8
 """The confidence in a request for a performance from which it is met."""
 SHORT = 4
@@ -47,6 +50,7 @@ SILENCE = "silence"
 """The moment of a remark that ends a silence."""
 SHOWS = {"joke": "joke", "song": "song", "story": "story", "play": "play"}
 """What the agent begins after a request, by the request's act."""
+_THIRD = frozenset(("he", "she", "they"))
 _YESNO = frozenset(("contradiction",))
 """The act that a mere *no* resembles."""
 _SAD = frozenset(("grief", "illness", "sadness", "loneliness", "worry", "failure", "anger", "tiredness"))
@@ -272,7 +276,11 @@ class Listener:
             ranked.append((score + FINER, moment))
         if feeling is not None:
             ranked.append((seen.feelings[feeling.name].score, feeling))
-        ranked += [(act.score, phrases.acts[act.name]) for act in seen.acts.values() if act.name in phrases.acts]
+        ranked += [
+            (act.score, phrases.acts[act.name])
+            for act in seen.acts.values()
+            if act.name in phrases.acts and act.score >= MEANT
+        ]
         ranked = [pair for pair in ranked if pair[1].name not in ENDINGS or pair[0] >= ASKED]
         ranked = [pair for pair in ranked if pair[0] >= FELT]
         for _, best in sorted(ranked, key=lambda pair: -pair[0]):
@@ -288,7 +296,13 @@ class Listener:
         if verb and seen.question is None:
             for source in self._statement(seen, state, roles, chance, moment):
                 yield replace(source, weak=True)
-        if not verb and seen.question is None and moment is not None and moment.name in phrases.topics and tone != "sad":
+        if (
+            not verb
+            and seen.question is None
+            and moment is not None
+            and moment.name in phrases.topics
+            and tone != "sad"
+        ):
             yield _Source(moment.lines("say"), moment.name)
         if not verb and roles.values.get("answer") and len(words) <= SHORT + 2:
             yield _Source(plain["fragment"].lines(tone, "say"), weak=True)
@@ -403,8 +417,7 @@ class Listener:
             yield _Source(plain.lines("plan"))
         if statement.past and statement.subject_person == "I" and "used" in _words_of(seen):
             yield _Source(plain.lines("used"))
-        living = roles.being is not None or "they" in roles.values
-        if statement.subject_person == "other" and living and not statement.subject.of("you"):
+        if self._is_living(statement) and "they" in roles.values:
             yield _Source(plain.lines("being", "other") if statement.subject.head else plain.lines("other", "being"))
         sources: list[_Source] = []
         name = f"not {statement.verb}" if statement.negated else statement.verb
@@ -454,6 +467,13 @@ class Listener:
         best = max(matches, key=lambda match: (match.name in _SAD, match.score))
         return self._phrases.feelings[best.name], best.text
 
+    def _is_living(self, statement: Statement) -> bool:
+        """Return whether a statement is about somebody other than the user and the agent."""
+        subject = statement.subject
+        if subject.of("you") or subject.person != "other":
+            return False
+        return subject.head in self._phrases.beings or bool(subject.names) or subject.text.lower() in _THIRD
+
     @staticmethod
     def _called(roles: Roles) -> str:
         """Return the name in *his name is Rex*."""
@@ -475,7 +495,7 @@ def _words_of(seen: Analysis) -> set[str]:
 
 def _of_others(seen: Analysis) -> bool:
     """Return whether it tells something about somebody else: no answer to a question about the user."""
-    return any(word.low in ("he", "she", "they", "we") for word in seen.tree.words)
+    return any(word.low in (*_THIRD, "we") for word in seen.tree.words)
 
 
 def _is_past(verb: str, seen: Analysis) -> bool:
