@@ -17,9 +17,11 @@ import random
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
+from ravestate.language.matcher import Match
 from ravestate.modules.meta.nlp.analysis import Analysis
 from ravestate.modules.meta.nlp.question_word import QuestionWord
 from ravestate.modules.meta.nlp.statement import Statement
+from ravestate.modules.skill.wildtalk.facts import facts_matcher
 
 from .games import Games
 from .material import Line, Material, Moment, material, roles_in
@@ -32,12 +34,18 @@ SURE = 0.5
 """The confidence in a moment from which it decides."""
 SURE_OF_FEW = 0.7
 """The same for an utterance of one or two words."""
+FEW_WORDS = 3
+"""The words of a sentence that resembles many others."""
 FINER = 0.1
 """The advantage of a moment over a feeling or an act, which are broader."""
 SUBJECT = 0.45
 """The confidence in a subject from which it decides."""
-FELT = 0.5
-"""The confidence in a feeling from which it decides."""
+FELT, GLAD = 0.5, 0.65
+"""The confidence in a sad feeling from which it decides, and in another one."""
+TURNED = 0.8
+"""The confidence from which a glad feeling ends a sad tone."""
+FEW = 0.75
+"""The confidence in a feeling or an act for an utterance of one to three words."""
 MEANT = 0.6
 """The confidence in an act from which it decides."""
 ASKED = 0.8
@@ -126,7 +134,7 @@ class Listener:
 
     def overhear(self, seen: Analysis, focus: Being | None) -> Overheard:
         """Return what an utterance leaves behind: the tone, and the being that it mentions after `focus`."""
-        feeling, sentence = self._feeling(seen, "")
+        feeling, sentence = self._feeling(seen, "", "")
         tone, lasts = (feeling.tone, feeling.lasts) if feeling is not None else ("", LASTING)
         return Overheard(seen.text, roles_of(seen, sentence, focus, self._phrases).being, tone, lasts)
 
@@ -183,7 +191,7 @@ class Listener:
         self, heard: Heard, state: State, chance: random.Random, moment: Moment | None, sentence: str, score: float
     ) -> Answer:
         seen = heard.seen
-        feeling, sentence = self._feeling(seen, sentence)
+        feeling, sentence = self._feeling(seen, sentence, state.tone)
         roles = Roles() if seen is None else roles_of(seen, sentence, state.being, self._phrases)
         roles = roles.having(user=heard.user, before=state.before.strip().rstrip(".!?")[:80])
         if seen is not None:
@@ -259,6 +267,9 @@ class Listener:
             return
         words = [word for word in seen.tree.words if word.pos != "PUNCT"]
         verb = has_verb(seen)
+        called = self._called(roles)
+        if called:
+            yield _Source(plain["named"].lines(tone, "say"), roles={"called": called})
         if state.pending is not None:
             yield from self._answered(
                 state,
@@ -279,15 +290,14 @@ class Listener:
         ranked += [
             (act.score, phrases.acts[act.name])
             for act in seen.acts.values()
-            if act.name in phrases.acts and act.score >= MEANT
+            if act.name in phrases.acts and act.score >= (FEW if len(act.text.split()) <= FEW_WORDS else MEANT)
         ]
+        if seen.question is not None:
+            ranked = [pair for pair in ranked if pair[1].name != "greeting"]
         ranked = [pair for pair in ranked if pair[1].name not in ENDINGS or pair[0] >= ASKED]
         ranked = [pair for pair in ranked if pair[0] >= FELT]
         for _, best in sorted(ranked, key=lambda pair: -pair[0]):
             yield self._of(best, state, roles, seen)
-        called = self._called(roles)
-        if called:
-            yield _Source(plain["named"].lines(tone, "say"), roles={"called": called})
         told = roles.statement
         if tone == "sad" and told is not None and told.verb == "be" and told.object.head.isdigit():
             yield _Source(plain["aged"].lines(tone))
@@ -353,9 +363,11 @@ class Listener:
             groups.append("again")
         if state.tone:
             groups.append(state.tone)
+        statement = roles.statement
+        if statement is not None and self._is_living(statement):
+            groups.append("theirs")
         if roles.being is not None:
             groups.append(roles.being.kind)
-        statement = roles.statement
         if statement is not None:
             if roles.being is None and statement.subject_person == "I":
                 groups.append("self")
@@ -366,6 +378,8 @@ class Listener:
     def _question(self, seen: Analysis, state: State, roles: Roles, chance: random.Random) -> Iterator[_Source]:
         """Yield the answers to a question that no other module has answered."""
         plain = self._phrases.plain
+        if facts_matcher().loaded and any(facts_matcher().match_all(seen.sentences)):
+            yield _Source(plain["fact"].lines("say"))
         choice = _choice(seen)
         if choice:
             yield _Source(plain["choice"].lines("say"), roles={"first": choice[0], "second": choice[1]})
@@ -409,7 +423,10 @@ class Listener:
         """Yield the answers to a statement: about its verb, its subject, or anything told."""
         phrases, tone, statement = self._phrases, state.tone, roles.statement
         plain = phrases.plain["statement"]
-        if tone == "sad" or (tone in ("angry", "tired") and chance.random() < 0.5):
+        living = statement is not None and self._is_living(statement)
+        if statement is not None and tone == "sad" and living and _is_past(statement.verb, seen):
+            yield _Source(plain.lines("memory"))
+        if tone == "sad" or (tone in ("angry", "tired") and (living or chance.random() < 0.5)):
             yield _Source(plain.lines(tone))
         if statement is None:
             return
@@ -417,12 +434,12 @@ class Listener:
             yield _Source(plain.lines("plan"))
         if statement.past and statement.subject_person == "I" and "used" in _words_of(seen):
             yield _Source(plain.lines("used"))
-        if self._is_living(statement) and "they" in roles.values:
+        if living and "they" in roles.values:
             yield _Source(plain.lines("being", "other") if statement.subject.head else plain.lines("other", "being"))
         sources: list[_Source] = []
         name = f"not {statement.verb}" if statement.negated else statement.verb
         verb = next((one for one in phrases.verbs.values() if name in one.words), None)
-        if verb is not None and statement.subject_person == "I":
+        if verb is not None and statement.subject_person == "I" and statement.object.person != "you":
             tense = "past" if _is_past(statement.verb, seen) else "say"
             sources.append(_Source(verb.lines(tense, "say")))
         topic = moment if moment is not None and moment.name in phrases.topics else None
@@ -456,12 +473,12 @@ class Listener:
                         best, sentence, score = found or self._phrases.topics[match.name], match.text, weight
         return best, sentence, score
 
-    def _feeling(self, seen: Analysis | None, sentence: str) -> tuple[Moment | None, str]:
+    def _feeling(self, seen: Analysis | None, sentence: str, tone: str) -> tuple[Moment | None, str]:
         """Return the strongest feeling, sad ones first, with its sentence."""
-        if seen is None or not seen.feelings:
-            return None, sentence
-        matches = [match for match in seen.feelings.values() if match.name in self._phrases.feelings]
-        matches = [match for match in matches if match.score >= FELT]
+        known = (
+            [] if seen is None else [match for match in seen.feelings.values() if match.name in self._phrases.feelings]
+        )
+        matches = [match for match in known if match.score >= _least(match, tone)]
         if not matches:
             return None, sentence
         best = max(matches, key=lambda match: (match.name in _SAD, match.score))
@@ -481,6 +498,12 @@ class Listener:
         if statement is None or statement.question or statement.subject.head != "name" or statement.subject.of("I"):
             return ""
         return statement.object.text
+
+
+def _least(match: Match, tone: str) -> float:
+    """Return the confidence from which a feeling decides."""
+    least = FELT if match.name in _SAD else TURNED if tone == "sad" else GLAD
+    return max(least, FEW) if len(match.text.split()) <= FEW_WORDS else least
 
 
 def _bare(texts: Sequence[str]) -> list[Line]:

@@ -60,11 +60,9 @@ def _kept(tree: Tree, root: Word) -> list[Word]:
             left_out.update(word.index for word in tree.subtree(child))
     kept = [word for word in tree.subtree(root) if word.index not in left_out]
     subjects = [word for word in kept if word.dep in _SUBJECTS and word.head == root.index]
-    if subjects and subjects[-1].tag == "PRP":  # "my mother she is ill"
-        before = [
-            child for child in tree.children(root) if child.index < subjects[-1].index and child.tag in ("NN", "NNP")
-        ]
-        if before:
+    if subjects and subjects[-1].low in ("he", "she", "it", "they"):  # "my mother she is ill"
+        before = tree.before(subjects[-1])
+        if before is not None and (before.tag == "NNP" or tree.children(before, "poss")) and before.head == root.index:
             return [word for word in kept if word is not subjects[-1]]
     for word in list(kept):  # relative clauses, and what is in brackets
         if word.dep in ("relcl", "appos", "punct", "advcl"):
