@@ -15,4 +15,4 @@ users: rs.Collection[Any] = module.collection("users", input=True)
 """The users present: a key that the platform chooses, and the user's name, or None while it is unknown."""
 
 facts: rs.Collection[tuple[str, ...]] = module.collection("facts", input=True)
-"""What is known of the user: values by topic, such as ``home`` or ``sister``. A module that learns them writes them."""
+"""Known facts about the user: values by topic, such as ``home`` or ``sister``. A module that learns them writes them."""

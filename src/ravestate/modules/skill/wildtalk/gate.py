@@ -59,7 +59,7 @@ class Gate:
             heard: The utterance to be answered.
             said: The agent's last answers; none is to be repeated.
             before: The last utterances of both, which an answer may also refer to.
-            known: What is known of the user: values by topic, such as ``home`` or ``name``.
+            known: Facts about the user: values by topic, such as ``home`` or ``name``.
             pipeline: The parser; without a loaded one, claims about the user are not checked.
         """
         self._name = name

@@ -94,13 +94,13 @@ trouble: rs.Slot[str] = module.slot("trouble", "")
 """The reason why the model does not answer; empty while it does. The log has it once."""
 
 listening: rs.Slot[State] = module.slot("listening", State(), type=State)
-"""What the listening skill remembers of the talk: the last phrases, the tone, unfinished matters, opinions, a game."""
+"""The memory of the listening skill: the last phrases, the tone, unfinished matters, opinions, a game."""
 
 overheard: rs.Slot[tuple[Overheard, ...]] = module.slot("overheard", ())
 """The tone and the persons of the last utterances, whichever module answered them."""
 
 notes: rs.Collection[str] = module.collection("notes", input=True)
-"""What other modules know of the user and the situation: short sentences for the prompt, such as ``The user lives in Rome.``"""
+"""Notes of other modules about the user and the situation: short sentences for the prompt, such as ``The user lives in Rome.``"""
 
 
 def machine_clock() -> datetime:

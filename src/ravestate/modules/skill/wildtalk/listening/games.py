@@ -13,7 +13,7 @@ from ravestate.modules.meta.nlp.analysis import Analysis
 from .state import Game, State
 
 TOLD = {"joke": "jokes", "song": "songs", "story": "stories"}
-"""What is simply told, by the name of the user's request."""
+"""The lists of performances without a game, by the user's request."""
 LONGEST = 6
 """The words of an utterance that may belong to a game."""
 

@@ -57,7 +57,7 @@ ENDINGS = ("stop", "quiet")
 SILENCE = "silence"
 """The moment of a remark that ends a silence."""
 SHOWS = {"joke": "joke", "song": "song", "story": "story", "play": "play"}
-"""What the agent begins after a request, by the request's act."""
+"""Performances by the act that requests them."""
 _THIRD = frozenset(("he", "she", "they"))
 _YESNO = frozenset(("contradiction",))
 """The act that a mere *no* resembles."""
@@ -66,7 +66,7 @@ _SAD = frozenset(("grief", "illness", "sadness", "loneliness", "worry", "failure
 
 @dataclass(frozen=True, slots=True)
 class Heard:
-    """What the user said."""
+    """An utterance of the user."""
 
     text: str
     seen: Analysis | None = None

@@ -1,4 +1,4 @@
-"""What the listener remembers of a talk."""
+"""The memory of the listener in a conversation."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ class Matter:
 
 @dataclass(frozen=True, slots=True)
 class Overheard:
-    """What an utterance leaves behind, also if another module answers it."""
+    """The traces of an utterance, also if another module answers it."""
 
     text: str
     being: Being | None = None
