@@ -16,11 +16,17 @@ def facts_matcher() -> Matcher:
     return Matcher(examples.classes, examples.none)
 
 
-def asks_for_fact(text: str) -> bool:
+def asks_for_fact(text: str, *, question: bool = True) -> bool:
     """Guess whether `text` asks for a fact: "Who wrote Hamlet?", not "Who are you?".
 
     Modules that know better have rules that come before small talk. Without the sentence model the guess is no.
+
+    Args:
+        text: The utterance.
+        question: Whether the parse finds a question in it; a statement asks for nothing.
     """
+    if not (question or text.rstrip().endswith("?")):
+        return False
     matcher = facts_matcher()
     try:
         matcher.load()

@@ -134,7 +134,8 @@ async def chat(ctx: rs.RuleContext) -> rs.Resign | None:
     if isinstance(backend, ListeningBackend) or skill.performs(heard, ctx[listening]):
         ctx[rawio.output] = await listen(ctx, heard)
         return None
-    if not settings.facts and await asyncio.to_thread(asks_for_fact, text):
+    asked = seen is not None and seen.question is not None
+    if not settings.facts and await asyncio.to_thread(asks_for_fact, text, question=asked):
         ctx[rawio.output] = settings.no_facts
         return None
     if backend is None:
