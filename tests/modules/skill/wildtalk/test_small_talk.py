@@ -1,6 +1,7 @@
 """The listening skill and the gate in a running agent, in virtual time."""
 
 from collections.abc import AsyncGenerator, Iterator, Sequence
+from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -10,6 +11,7 @@ from ravestate.language.matcher import bundled_matcher
 from ravestate.modules import idle, interloc, rawio, wildtalk
 from ravestate.modules.skill.wildtalk.backend import Message, Progress
 from ravestate.modules.skill.wildtalk.listening import ListeningBackend
+from ravestate.modules.skill.wildtalk.listening.state import Game
 from ravestate.modules.skill.wildtalk.small_talk import learn_all
 from ravestate.testing import Simulation, simulate
 
@@ -94,6 +96,23 @@ def test_it_asks_about_an_unfinished_matter_after_a_while(sim: Simulation) -> No
     assert len(sim.said) == 2
     sim.advance(700.0)
     assert sim.said[2:] == ["How is your mother today?"]
+
+
+def test_a_move_in_a_game_is_no_matter_for_other_modules(sim: Simulation) -> None:
+    sim.say("word chain")
+    word = sim.said[0].rstrip(".").split()[-1]
+    assert not sim.read(wildtalk.listening).game.used[1:]
+    sim.put(wildtalk.listening, replace(sim.read(wildtalk.listening), game=Game("chain", "bow", ("bow",))))
+    sim.say("weather")
+    assert word
+    assert "Sunny" not in sim.said[-1]
+    assert sim.read(wildtalk.listening).game.used[:2] == ("bow", "weather")
+
+
+def test_a_long_remark_during_a_game_reaches_other_modules(sim: Simulation) -> None:
+    sim.say("tell me a riddle")
+    sim.say("by the way, I would rather hear what the weather is going to be like tomorrow")
+    assert sim.said[-1].startswith("Sunny")
 
 
 def test_a_yes_to_another_modules_question_is_no_answer_to_its_own(sim: Simulation) -> None:

@@ -22,7 +22,7 @@ from .names import OLLAMA, Settings, chosen, clock, history, listening, model, m
 from .openai import OpenAIBackend
 from .pending import PendingBackend
 from .progress import ProgressBar
-from .small_talk import gate_for, heard_in, learn_all, listen, listener, notes_for, remark, traces
+from .small_talk import follow_up, gate_for, heard_in, is_open, learn_all, listen, listener, notes_for, remark, traces
 from .transformers import TransformersBackend
 from .utterance import Utterance
 
@@ -206,6 +206,22 @@ async def chat(ctx: rs.RuleContext) -> rs.Resign | None:
     finally:
         if shown:
             ctx[rawio.speaking] = False
+
+
+@module.rule(
+    when=nlp.analysis.changed & listening.holds(is_open),
+    reads=(interloc.users, overheard, history),
+    writes=(rawio.output, listening),
+    weight=8.0,  # outranks modules that would take a move in a game for a question
+)
+async def go_on(ctx: rs.RuleContext) -> rs.Resign | None:
+    """Go on with a game, or with what the listening skill has asked."""
+    seen = ctx.payload(nlp.analysis.changed)
+    said = "" if seen is None else await follow_up(ctx, heard_in(ctx, seen.text, seen))
+    if not said:
+        return rs.Resign("it is neither a move in a game nor a short answer")
+    ctx[rawio.output] = said
+    return None
 
 
 @module.rule(when=idle.bored, reads=history, writes=(rawio.output, listening), weight=1.5)

@@ -60,6 +60,17 @@ async def listen(ctx: rs.RuleContext, heard: Heard) -> str:
     return answer.text
 
 
+def is_open(state: State) -> bool:
+    """Return whether the skill waits for the user: for a move in a game, or for an answer."""
+    return state.game is not None or state.pending is not None
+
+
+async def follow_up(ctx: rs.RuleContext, heard: Heard) -> str:
+    """Return the skill's answer to a move or a short answer; an empty string if the utterance is neither."""
+    skill = await asyncio.to_thread(listener)
+    return await listen(ctx, heard) if skill.continues(heard, up_to_date(ctx, heard.text)) else ""
+
+
 def up_to_date(ctx: rs.RuleContext, text: str) -> State:
     """Return the state of the skill, with what it missed while other modules answered.
 

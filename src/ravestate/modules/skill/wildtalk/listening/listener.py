@@ -40,7 +40,7 @@ FINER = 0.1
 """The advantage of a moment over a feeling or an act, which are broader."""
 SUBJECT = 0.45
 """The confidence in a subject from which it decides."""
-FELT, GLAD = 0.5, 0.65
+FELT, GLAD = 0.55, 0.65
 """The confidence in a sad feeling from which it decides, and in another one."""
 TURNED = 0.8
 """The confidence from which a glad feeling ends a sad tone."""
@@ -119,6 +119,23 @@ class Listener:
     def performs(self, heard: Heard, state: State) -> bool:
         """Return whether the utterance asks for a performance, or belongs to one: no language model should answer it."""
         return state.game is not None or self._request(heard) != "" or self._games.knocks(heard.text)
+
+    def continues(self, heard: Heard, state: State) -> bool:
+        """Return whether the utterance belongs to a game, or is a short answer to the skill's own question.
+
+        Such words mean something else to other modules: *tomato* is a move in word chain, and no question about vegetables.
+        """
+        seen = heard.seen
+        if seen is None or not heard.text.strip():
+            return False
+        if state.game is not None:
+            leaves = "stop" in seen.acts or "farewell" in seen.acts
+            return leaves or self._games.play(heard.text, seen, state, random.Random(0)) is not None
+        if state.pending is None or not (state.pending.then or state.pending.start) or seen.question is not None:
+            return False
+        known = seen.yesno.yes or seen.yesno.no
+        short = len(heard.text.split()) < SHORT and not has_verb(seen) and not (seen.acts.keys() - _YESNO)
+        return short or bool(known and len(heard.text.split()) <= SHORT and state.pending.closed)
 
     def answer(self, heard: Heard, state: State, chance: random.Random) -> Answer:
         """Return the answer. Takes about a millisecond if the utterance has been encoded before."""
@@ -206,7 +223,7 @@ class Listener:
             after = replace(
                 state.toned(source.tone, source.lasts), being=roles.being or state.being, moment=source.name
             )
-            if told:
+            if told and roles.statement is not None and not roles.statement.negated:
                 after = replace(after, clause=told)
             if source.stance:
                 after = replace(after, stances={**state.stances, **source.stance})
@@ -378,8 +395,6 @@ class Listener:
     def _question(self, seen: Analysis, state: State, roles: Roles, chance: random.Random) -> Iterator[_Source]:
         """Yield the answers to a question that no other module has answered."""
         plain = self._phrases.plain
-        if facts_matcher().loaded and any(facts_matcher().match_all(seen.sentences)):
-            yield _Source(plain["fact"].lines("say"))
         choice = _choice(seen)
         if choice:
             yield _Source(plain["choice"].lines("say"), roles={"first": choice[0], "second": choice[1]})
@@ -390,6 +405,8 @@ class Listener:
             thing = self._about(seen) or roles_of(seen, "", None, self._phrases).values.get("thing", "")
             if thing:
                 yield self._opinion(thing, state, chance, known=roles.being is not None or bool(seen.entities))
+        if facts_matcher().loaded and any(facts_matcher().match_all(seen.sentences)):
+            yield _Source(plain["fact"].lines("say"))
         if any(word.low in ("would", "could", "if", "imagine") for word in seen.tree.words) and seen.about_agent:
             yield _Source(plain["hypothetical"].lines("say"))
         if seen.about_agent and subject in ("you", ""):
@@ -451,7 +468,7 @@ class Listener:
         if len(sources) == 2 and chance.random() < 0.4:
             sources.reverse()
         yield from sources
-        if state.pending is not None and "any" in state.pending.then:
+        if state.pending is not None and "any" in state.pending.then and not statement.subject.head:
             yield _Source([_bare(state.pending.then["any"])])
         yield _Source(plain.lines(tone, "say"))
 

@@ -102,9 +102,9 @@ def roles_of(seen: Analysis, sentence: str, focus: Being | None, material: Mater
 def fragment(seen: Analysis) -> str:
     """Return a short answer without a verb, from the agent's view; empty for anything else."""
     words = [word for word in seen.tree.words if word.pos not in ("PUNCT", "INTJ", "SPACE", "SYM")]
-    while words and words[0].low in ("and", "but", "so", "or", "maybe", "just", "yes", "no", "well"):
+    while words and words[0].low in ("and", "but", "so", "or", "just", "well"):
         words = words[1:]
-    text = turned_text(word.text for word in words)
+    text = turned(seen.tree, words)
     return text if words and len(text) <= LONGEST and len(words) <= 6 and _REPEATABLE.fullmatch(text) else ""
 
 
