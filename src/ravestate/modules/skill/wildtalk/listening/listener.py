@@ -471,8 +471,11 @@ class Listener:
         heads = {statement.object.head, statement.subject.head, *(phrase.head for phrase in statement.phrases)}
         named = next((one for one in phrases.topics.values() if heads & one.words), None)
         about = named or topic
-        if about is not None:
-            sources.append(_Source(about.lines("say"), about.name))
+        if about is not None and not statement.negated:
+            lines = about.lines("say")
+            if living:  # the others are about the user
+                lines = [[line for line in group if line.roles & {"who", "they", "them"}] for group in lines]
+            sources.append(_Source(lines, about.name))
         if len(sources) == 2 and chance.random() < 0.4:
             sources.reverse()
         yield from sources

@@ -17,6 +17,7 @@ _TURNED = {
 }  # fmt: skip
 _SUBJECTS = ("nsubj", "nsubjpass")
 _LEFT_OUT = frozenset(("advcl", "conj", "cc", "punct", "intj", "parataxis", "preconj", "mark", "dep", "meta"))
+_PHRASES = ("prep", "npadvmod", "advmod")
 _SHORT = re.compile(r"\b(do|does|did|is|are|was|were|have|has|had|would|could|should) not\b")
 _PARTICLES = frozenset(
     ("so", "well", "then", "also", "just", "really", "actually", "anyway", "too", "now", "and", "but")
@@ -33,11 +34,12 @@ def clause(tree: Tree, root: Word) -> str:
     words = _kept(tree, root)
     if not any(child.dep in (*_SUBJECTS, "expl") for child in tree.children(root)):
         return ""
-    if len(words) > LONGEST:  # a shorter form: without the phrases after the object
-        extra = {
-            part.index for child in tree.children(root, "prep", "npadvmod", "advmod") for part in tree.subtree(child)
-        }
-        words = [word for word in words if word.index not in extra]
+    while len(words) > LONGEST:  # a shorter form: without the last phrase
+        last = next((word for word in reversed(words) if word.dep in _PHRASES and word.index > root.index), None)
+        if last is None:
+            return ""
+        gone = {part.index for part in tree.subtree(last)}
+        words = [word for word in words if word.index not in gone]
     return turned(tree, words) if 2 <= len(words) <= LONGEST else ""
 
 
