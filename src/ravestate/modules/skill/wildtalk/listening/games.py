@@ -45,8 +45,8 @@ class Games:
             return text, replace(state, game=Game("animal", question), show=kind)
         return chance.choice(self._shows["offer"]), replace(state, game=Game("choice"))
 
-    def named(self, text: str) -> str:
-        """Return the performance that a short text names: *word chain*, *a riddle please*."""
+    def named(self, text: str, *, most: int = 3) -> str:
+        """Return the performance that a text of at most so many words names: *word chain*, *a riddle please*."""
         words = re.findall(r"[a-z]+", text.lower()) or [""]
         said = f" {' '.join(words)} "
         names = self._shows["names"].items()
@@ -54,7 +54,7 @@ class Games:
             (
                 kind
                 for kind, listed in names
-                if len(words) <= 3 and words[0] != "no" and any(f" {one} " in said for one in listed)
+                if len(words) <= most and words[0] != "no" and any(f" {one} " in said for one in listed)
             ),
             "",
         )

@@ -30,7 +30,7 @@ from .state import LASTING, Being, Matter, Overheard, Pending, State
 from .tongue import is_nonsense, is_number, tongue_of
 from .turning import turned
 
-SURE = 0.5
+SURE = 0.6
 """The confidence in a moment from which it decides."""
 SURE_OF_FEW = 0.7
 """The same for an utterance of one or two words."""
@@ -40,7 +40,7 @@ FINER = 0.1
 """The advantage of a moment over a feeling or an act, which are broader."""
 SUBJECT = 0.45
 """The confidence in a subject from which it decides."""
-FELT, GLAD = 0.55, 0.65
+FELT, GLAD = 0.55, 0.7
 """The confidence in a sad feeling from which it decides, and in another one."""
 TURNED = 0.8
 """The confidence from which a glad feeling ends a sad tone, and from which news count as astonishing."""
@@ -173,7 +173,7 @@ class Listener:
         """Return the performance that the user asks for."""
         if heard.seen is None or heard.seen.yesno.no:
             return ""
-        named = self._games.named(heard.text)
+        named = self._games.named(heard.text, most=6 if heard.seen.question is not None else 3)
         if named:
             return named
         acts = heard.seen.acts
@@ -453,8 +453,12 @@ class Listener:
             yield _Source(plain.lines(tone))
         if statement is None:
             return
-        if statement.plan or statement.conditional:
+        if statement.subject_person == "you":
+            yield _Source(plain.lines("about_me"))
+        if statement.plan and statement.subject_person == "I":
             yield _Source(plain.lines("plan"))
+        if statement.conditional:
+            yield _Source(plain.lines("imagined"))
         if statement.past and statement.subject_person == "I" and "used" in _words_of(seen):
             yield _Source(plain.lines("used"))
         if living and "they" in roles.values:

@@ -214,5 +214,6 @@ def _as_being(tree: Tree, phrase: Phrase, kind: str, gender: str, *, mine: bool)
         return Being(phrase.name, kind, gender)
     words = phrase.text.split()
     owned = phrase.owner is not None
-    text = turned_text(words) if owned else f"your {phrase.head}" if mine and kind == "pet" else f"the {phrase.head}"
+    noun = next((word.low for word in tree.words if word.lemma.lower() == phrase.head), phrase.head)
+    text = turned_text(words) if owned else f"your {noun}" if mine and kind == "pet" else f"the {noun}"
     return Being(text, kind, gender, plural or (phrase.amount or 1) > 1)
