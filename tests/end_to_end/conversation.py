@@ -62,6 +62,7 @@ class Conversation:
             "idle": {"bored_after": 5.0},
             "ontology": {"path": folder / "memory.lbug"},
             "genqa": {"index": folder / "documents.sqlite"},
+            "wildtalk": {"gate": False},  # its model always says the same
         }
         for name, values in (settings or {}).items():
             chosen[name] = {**chosen.get(name, {}), **values}

@@ -33,7 +33,8 @@ def module(name: str = "skill", seconds: float = 0.0, **declared: Any) -> rs.Mod
 
 
 def calm(*modules: Any, **settings: Any) -> Simulation:
-    return simulate(emotion, *modules, settings={"emotion": {**CALM, **settings}})
+    more = {"wildtalk": {"gate": False}} if wildtalk in modules else {}  # its pieces are no sentences
+    return simulate(emotion, *modules, settings={"emotion": {**CALM, **settings}, **more})
 
 
 def felt(sim: Simulation) -> list[str]:

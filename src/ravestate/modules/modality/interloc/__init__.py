@@ -2,6 +2,6 @@
 
 from __future__ import annotations
 
-from .names import agent, module, users
+from .names import agent, facts, module, users
 
-__all__ = ["agent", "module", "users"]
+__all__ = ["agent", "facts", "module", "users"]

@@ -13,3 +13,6 @@ agent: rs.Slot[str] = module.slot("agent", "Ravestate", type=str, input=True)
 
 users: rs.Collection[Any] = module.collection("users", input=True)
 """Key that the platform chooses for a present user → the user's name, or None while it is unknown."""
+
+facts: rs.Collection[tuple[str, ...]] = module.collection("facts", input=True)
+"""Known facts about the user: values by topic, such as ``home`` or ``sister``. A module that learns them writes them."""

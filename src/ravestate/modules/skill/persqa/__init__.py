@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from . import publishing as publishing
 from . import rules as rules
 from .names import Settings, facts, module, reply, talk, who
 from .talk import Question, Talk

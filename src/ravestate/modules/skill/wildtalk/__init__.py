@@ -1,9 +1,9 @@
-"""Small talk by a language model, where no other module has an answer."""
+"""Small talk where no other module has an answer: by a language model, or by listening."""
 
 from __future__ import annotations
 
 from . import rules as rules
 from .backend import Backend, Message
-from .names import Settings, history, model, module, trouble
+from .names import Settings, clock, history, listening, model, module, notes, trouble
 
-__all__ = ["Backend", "Message", "Settings", "history", "model", "module", "trouble"]
+__all__ = ["Backend", "Message", "Settings", "clock", "history", "listening", "model", "module", "notes", "trouble"]

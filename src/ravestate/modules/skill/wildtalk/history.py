@@ -28,6 +28,9 @@ _MARKERS = re.compile(
 )
 _CUT = "…"
 
+NOTES = 1000
+"""Characters of notes in a prompt."""
+
 
 class History:
     """The last turns of one conversation, within a budget.
@@ -83,9 +86,11 @@ class History:
         persona: str = PERSONA,
         name: str = "Ravestate",
         examples: Iterable[tuple[str, str]] = (),
+        notes: Iterable[str] = (),
     ) -> tuple[Message, ...]:
-        """Return the prompt: the persona, the examples, and the history, oldest first.
+        """Return the prompt: the persona with the notes, the examples, and the history, oldest first.
 
+        `notes` are sentences about the user and the situation; the first `NOTES` characters of them are kept.
         User and agent take turns strictly, and the user begins: several templates demand that.
         """
         left = self._characters
@@ -104,7 +109,13 @@ class History:
         shown: list[Message] = []
         for utterance, answer in examples:
             shown += Message("user", utterance), Message("assistant", answer)
-        return (Message("system", persona.replace("{name}", name)), *shown, *kept)
+        system = persona.replace("{name}", name)
+        left = NOTES
+        for note in map(self._clean, notes):
+            if len(note) <= left:
+                left -= len(note)
+                system += f"\n{note}"
+        return (Message("system", system), *shown, *kept)
 
     def _clean(self, text: str) -> str:
         # A user may paste a book: anything far beyond the budget is dropped at once.

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from datetime import datetime
 from pathlib import Path
 from typing import Annotated, Literal
 
 from pydantic import ConfigDict, Field, SecretStr
 
 import ravestate as rs
-from ravestate.modules import interloc, rawio
+from ravestate.modules import idle, interloc, nlp, rawio
 
 from .backend import Backend, Message
 from .history import EXAMPLES, PERSONA
+from .listening.state import Overheard, State
 
 Seconds = Annotated[float, Field(gt=0)]
 
@@ -57,6 +60,8 @@ class Settings(rs.Settings):
     """Whether the model may answer questions about facts, which small models make up."""
     no_facts: str = "I don't know that, I'm afraid."
     """Otherwise, the answer to a question about facts."""
+    gate: bool = True
+    """Whether each generated sentence is checked before it is spoken; the listening skill replaces an unfit answer."""
     no_model: str = "I cannot think just now."
     """The answer when the model cannot be loaded, or fails before its first word."""
 
@@ -66,13 +71,15 @@ class Settings(rs.Settings):
     """The longest answer, in sentences."""
     temperature: Annotated[float, Field(ge=0, le=2)] = 0.5
     """The randomness: 0 always takes the likeliest word, 1 is the model's own distribution."""
+    come_back_after: Annotated[float, Field(ge=0)] = 600.0
+    """Seconds after which the agent asks, in a silence, about unfinished matters (*How is your mother?*)."""
     history_turns: Annotated[int, Field(ge=1)] = 6
     """The number of turns in the prompt."""
     history_characters: Annotated[int, Field(ge=100)] = 4000
     """The number of characters of these turns; four make about a token."""
 
 
-module = rs.Module("wildtalk", requires=[rawio, interloc], settings=Settings)
+module = rs.Module("wildtalk", requires=[rawio, idle, interloc, nlp], settings=Settings)
 
 history: rs.Collection[Message] = module.collection("history")
 """The last messages of all speakers, oldest first; the keys begin with the time."""
@@ -85,3 +92,21 @@ chosen: rs.Signal[object] = module.signal("chosen", payload=object)
 
 trouble: rs.Slot[str] = module.slot("trouble", "")
 """The reason why the model does not answer; empty while it does. The log has it once."""
+
+listening: rs.Slot[State] = module.slot("listening", State(), type=State)
+"""The memory of the listening skill: the last phrases, the tone, unfinished matters, opinions, a game."""
+
+overheard: rs.Slot[tuple[Overheard, ...]] = module.slot("overheard", ())
+"""The tone and the persons of the last utterances, whichever module answered them."""
+
+notes: rs.Collection[str] = module.collection("notes", input=True)
+"""Notes of other modules about the user and the situation: short sentences for the prompt, such as ``The user lives in Rome.``"""
+
+
+def machine_clock() -> datetime:
+    """Return the current moment in the machine's time zone."""
+    return datetime.now().astimezone()
+
+
+clock: rs.Slot[Callable[[], datetime]] = module.slot("clock", machine_clock, input=True)
+"""The clock, by default the machine's. The prompt names the day and the time."""

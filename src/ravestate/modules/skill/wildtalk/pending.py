@@ -26,6 +26,13 @@ class PendingBackend:
             self._chosen.set_exception(fault or PlatformError("wildtalk: the agent ended before it had a model"))
             self._chosen.exception()  # otherwise asyncio complains if no call waits
 
+    async def settled(self) -> Backend | None:
+        """Return the chosen backend as soon as there is one; None if there is none."""
+        try:
+            return await asyncio.shield(self._chosen)
+        except PlatformError:
+            return None
+
     async def load(self, progress: Progress | None = None) -> None:
         """See `Backend.load`."""
         await (await asyncio.shield(self._chosen)).load(progress)

@@ -8,7 +8,9 @@ from typing import cast
 
 import ravestate as rs
 from ravestate.errors import PlatformError
-from ravestate.modules import interloc, rawio
+from ravestate.language.bundled import ModelMissing, warn_once
+from ravestate.language.heap import give_back
+from ravestate.modules import idle, interloc, nlp, rawio
 
 from .backend import Backend, Message, Role
 from .choosing import choose
@@ -16,10 +18,11 @@ from .facts import asks_for_fact
 from .history import History
 from .listening import ListeningBackend
 from .llama import LlamaBackend, checked_model
-from .names import OLLAMA, Settings, chosen, history, model, module, trouble
+from .names import OLLAMA, Settings, chosen, clock, history, listening, model, module, notes, overheard, trouble
 from .openai import OpenAIBackend
 from .pending import PendingBackend
 from .progress import ProgressBar
+from .small_talk import follow_up, gate_for, heard_in, is_open, learn_all, listen, listener, notes_for, remark, traces
 from .transformers import TransformersBackend
 from .utterance import Utterance
 
@@ -61,6 +64,18 @@ async def use(ctx: rs.RuleContext) -> rs.Resign | None:
     return None
 
 
+@module.rule(when=rs.startup, background=True)
+def learn(ctx: rs.RuleContext) -> None:
+    """Learn the examples of small talk in the background; until then only the examples themselves are recognised."""
+    try:
+        learn_all()
+        give_back()
+    except ModelMissing as error:
+        warn_once(ctx.log, error)
+    except PlatformError as error:
+        ctx.log.error("%s", error)
+
+
 @module.rule(when=rs.shutdown, reads=model)
 async def let_go(ctx: rs.RuleContext) -> None:
     """Close the backend."""
@@ -84,22 +99,43 @@ async def note(ctx: rs.RuleContext) -> None:
         remember(ctx, "assistant", said)
 
 
+@module.rule(when=nlp.analysis.changed.max_age(None).detached(), reads=listening, writes=overheard, background=True)
+def overhear(ctx: rs.RuleContext) -> rs.Resign | None:
+    """Notice the tone and the persons of an utterance, whichever module answers it."""
+    seen = ctx.payload(nlp.analysis.changed)
+    if seen is None:
+        return rs.Resign("nothing was analysed")
+    ctx[overheard] = traces(ctx, seen)
+    return None
+
+
 @module.rule(
-    when=rawio.input.changed,
-    reads=(model, interloc.agent),
-    writes=(rawio.output, rawio.speaking, history, trouble),
+    when=nlp.analysis.changed | rawio.input.changed,  # the input alone, where nlp cannot analyse it
+    reads=(model, nlp.analysis, nlp.text, interloc.agent, interloc.users, interloc.facts, notes, clock, overheard),
+    writes=(rawio.output, rawio.speaking, history, trouble, listening),
     emits=rawio.piece,
     until=rawio.input.changed | rs.shutdown,  # a model that is still loading would delay the end
 )
 async def chat(ctx: rs.RuleContext) -> rs.Resign | None:
     """Answer with small talk, piece by piece; a new utterance interrupts it."""
     settings: Settings = ctx.settings
-    heard, backend = ctx.payload(rawio.input.changed), ctx[model]
-    if not heard.strip():
+    seen = ctx.payload(nlp.analysis.changed)
+    text, backend = ctx.payload(rawio.input.changed) if seen is None else seen.text, ctx[model]
+    if not text.strip():
         return rs.Resign("nothing was said")
+    if seen is None and ctx[nlp.analysis] is not None and ctx[nlp.text] == text:
+        return rs.Resign("this rule has resigned from the analysed utterance")
     if backend is None and not ctx[trouble]:
         return rs.Resign("there is no model")
-    if not settings.facts and asks_for_fact(heard):
+    if isinstance(backend, PendingBackend):
+        backend = await backend.settled()
+    heard = heard_in(ctx, text, seen)
+    skill = await asyncio.to_thread(listener)  # the first call reads the phrases
+    if isinstance(backend, ListeningBackend) or skill.performs(heard, ctx[listening]):
+        ctx[rawio.output] = await listen(ctx, heard)
+        return None
+    asked = seen is not None and seen.question is not None
+    if not settings.facts and await asyncio.to_thread(asks_for_fact, text, question=asked):
         ctx[rawio.output] = settings.no_facts
         return None
     if backend is None:
@@ -107,26 +143,31 @@ async def chat(ctx: rs.RuleContext) -> rs.Resign | None:
         return None
 
     past = History(turns=settings.history_turns, characters=settings.history_characters)
-    newest = Message("user", heard[:LONGEST])
+    newest = Message("user", text[:LONGEST])
     for message in ctx[history].values():
         past.add(message)
     if list(ctx[history].values())[-1:] != [newest]:  # `hear` may run later
         past.add(newest)
     name = settings.name or ctx[interloc.agent]
-    told = past.prompt(settings.persona, name, settings.examples)
+    told = past.prompt(settings.persona, name, settings.examples, notes=notes_for(ctx, heard))
     if told[-1].role != "user":
         return rs.Resign("nothing was said but control characters, or marks of a template")
     utterance = Utterance(name, sentences=settings.sentences)
+    gate = gate_for(ctx, name, text) if settings.gate else None
     shown = ""
 
-    def show() -> None:
+    async def show() -> bool:
+        """Say what may be said by now; return False once a sentence was refused."""
         nonlocal shown
-        if not utterance.worth_saying() or utterance.text == shown:
-            return
-        if not shown:
-            ctx[rawio.speaking] = True
-        ctx.emit(rawio.piece, utterance.text[len(shown) :])
-        shown = utterance.text
+        sayable, refused = utterance.text, False
+        if gate is not None:
+            sayable, refused = await asyncio.to_thread(gate.admit, utterance.text, last=utterance.complete)
+        if utterance.worth_saying() and sayable != shown:
+            if not shown:
+                ctx[rawio.speaking] = True
+            ctx.emit(rawio.piece, sayable[len(shown) :])
+            shown = sayable
+        return not refused
 
     answer = backend.stream(
         told,
@@ -140,14 +181,17 @@ async def chat(ctx: rs.RuleContext) -> rs.Resign | None:
         async with aclosing(answer) as pieces:
             async for piece in pieces:
                 utterance.feed(piece)
-                show()
-                if utterance.complete:
+                if not await show() or utterance.complete:
                     break
         utterance.finish()
         if not utterance.worth_saying():
-            return rs.Resign("the model said nothing")
-        show()
-        ctx[rawio.output] = utterance.text
+            if gate is None:
+                return rs.Resign("the model said nothing")
+            ctx[rawio.output] = await listen(ctx, heard)
+            return None
+        if not await show():
+            ctx.log.debug("small talk left out a sentence: %s", gate and gate.reason)
+        ctx[rawio.output] = shown or await listen(ctx, heard)
         ctx[trouble] = ""
         return None
     except PlatformError as error:
@@ -162,6 +206,32 @@ async def chat(ctx: rs.RuleContext) -> rs.Resign | None:
     finally:
         if shown:
             ctx[rawio.speaking] = False
+
+
+@module.rule(
+    when=nlp.analysis.changed & listening.holds(is_open),
+    reads=(interloc.users, overheard, history),
+    writes=(rawio.output, listening),
+    weight=8.0,  # outranks modules that would take a move in a game for a question
+)
+async def go_on(ctx: rs.RuleContext) -> rs.Resign | None:
+    """Go on with a game, or with what the listening skill has asked."""
+    seen = ctx.payload(nlp.analysis.changed)
+    said = "" if seen is None else await follow_up(ctx, heard_in(ctx, seen.text, seen))
+    if not said:
+        return rs.Resign("it is neither a move in a game nor a short answer")
+    ctx[rawio.output] = said
+    return None
+
+
+@module.rule(when=idle.bored, reads=history, writes=(rawio.output, listening), weight=1.5)
+async def come_back(ctx: rs.RuleContext) -> rs.Resign | None:
+    """Come back to what was said, in a silence, before other modules begin something new."""
+    said = remark(ctx)
+    if said is None:
+        return rs.Resign("there is nothing to come back to")
+    ctx[rawio.output] = said
+    return None
 
 
 def tell(ctx: rs.RuleContext, error: PlatformError) -> None:

@@ -1,0 +1,9 @@
+"""The listening skill: small talk without a language model, from authored phrases that fit what was said."""
+
+from __future__ import annotations
+
+from .backend import ListeningBackend
+from .listener import Answer, Heard, Listener
+from .state import Overheard, State
+
+__all__ = ["Answer", "Heard", "Listener", "ListeningBackend", "Overheard", "State"]

@@ -1,0 +1,35 @@
+"""The listening skill in the place of a language model."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import AsyncGenerator, Sequence
+
+from ravestate.modules.skill.wildtalk.backend import Message, Progress
+
+from .listener import Heard, Listener
+from .state import State
+
+
+class ListeningBackend:
+    """A backend that generates nothing. The module answers with the listening skill where it finds this backend."""
+
+    async def load(self, progress: Progress | None = None) -> None:
+        """Do nothing: there is no model to load."""
+
+    async def stream(
+        self,
+        messages: Sequence[Message],
+        *,
+        max_tokens: int = 96,
+        temperature: float = 0.7,
+        seed: int | None = None,
+        stop: Sequence[str] = (),
+    ) -> AsyncGenerator[str, None]:
+        """Yield a listener's phrase, for callers that have no analysis. Only `messages` and `seed` matter."""
+        said = tuple(message.text for message in messages if message.role == "assistant")
+        state = State(recent=said[-24:], said=said[-24:])
+        yield Listener().answer(Heard(messages[-1].text), state, random.Random(seed)).text
+
+    async def close(self) -> None:
+        """Do nothing: there is no model to close."""

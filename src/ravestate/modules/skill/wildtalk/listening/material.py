@@ -1,0 +1,135 @@
+"""The authored phrases of the listening skill, read from its YAML files."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cache, cached_property
+from importlib.resources import files
+from typing import Any
+
+from ravestate.errors import DeclarationError
+from ravestate.language.examples import bundled
+from ravestate.language.matcher import Matcher
+from ravestate.yaml_text import compose_yaml
+
+from .state import LASTING
+
+ROLE = re.compile(r"\{(\w+)\}")
+AGREEING = frozenset(("are", "were", "have", "do"))
+_NOT_GROUPS = frozenset(("examples", "nouns", "verbs", "tone", "matter", "lasts"))
+
+
+@dataclass(frozen=True, slots=True)
+class Line:
+    """A phrase with roles in braces."""
+
+    text: str
+    roles: frozenset[str]
+    """The roles that must be known, in lower case."""
+    then: Mapping[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
+    """Answers to the user's answer, by ``yes``, ``no`` and ``any``."""
+    start: str = ""
+    """The joke, riddle... that a *yes* begins."""
+
+    @property
+    def asks(self) -> bool:
+        """Whether it ends with a question."""
+        return self.text.endswith("?")
+
+
+@dataclass(frozen=True, slots=True)
+class Moment:
+    """A situation in a talk, and the phrases for it in groups."""
+
+    name: str
+    groups: Mapping[str, tuple[Line, ...]]
+    tone: str = ""
+    matter: str = ""
+    """A question for later."""
+    lasts: int = LASTING
+    """The turns for which its tone lasts."""
+    examples: tuple[str, ...] = ()
+    words: frozenset[str] = frozenset()
+    """The nouns or verbs that are typical of it."""
+
+    def lines(self, *groups: str) -> list[Sequence[Line]]:
+        """Return its groups of these names, as far as it has them."""
+        return [self.groups[name] for name in groups if name in self.groups]
+
+
+class Material:
+    """All phrases. Made once for all contexts; the matcher learns at its first use."""
+
+    def __init__(self) -> None:
+        self.feelings = _moments("feelings")
+        self.acts = {**self.feelings, **_moments("acts")}
+        self.moments = _moments("moments")
+        self.none = self.moments.pop("none").examples
+        """Sentences that belong to none of the moments and topics."""
+        self.topics = _moments("topics")
+        self.verbs = _moments("verbs")
+        self.plain = _moments("plain")
+        self.shows: Mapping[str, Any] = _read("shows")
+        self.tongues: Mapping[str, frozenset[str]] = {
+            name: frozenset(words) for name, words in _read("tongues").items()
+        }
+        self.beings = {
+            noun: (kind, gender)
+            for kind, genders in _read("beings").items()
+            for gender, nouns in genders.items()
+            for noun in nouns
+        }
+
+    @cached_property
+    def matcher(self) -> Matcher:
+        """The matcher of moments and topics."""
+        examples = {one.name: one.examples for one in (*self.moments.values(), *self.topics.values())}
+        return Matcher(examples, (*self.none, *bundled("none").none), least=0.45)
+
+
+@cache
+def material() -> Material:
+    """Return the phrases."""
+    return Material()
+
+
+def roles_in(text: str) -> frozenset[str]:
+    """Return the roles of a phrase."""
+    return frozenset(role.lower() for role in ROLE.findall(text))
+
+
+def _moments(name: str) -> dict[str, Moment]:
+    found: dict[str, Moment] = {}
+    for key, value in _read(name).items():
+        groups = {group: _lines(lines, key) for group, lines in value.items() if group not in _NOT_GROUPS}
+        words = frozenset((*value.get("nouns", ()), *value.get("verbs", ())))
+        examples = tuple(value.get("examples", ()))
+        lasts = int(value.get("lasts", LASTING))
+        found[key] = Moment(key, groups, value.get("tone", ""), value.get("matter", ""), lasts, examples, words)
+    return found
+
+
+def _lines(listed: Any, key: str) -> tuple[Line, ...]:
+    found: list[Line] = []
+    for one in listed:
+        value: Mapping[str, Any] = {"say": one} if isinstance(one, str) else one
+        if "say" not in value:
+            raise DeclarationError(f"listening: a phrase of {key!r} lacks its text: {value!r}")
+        text = str(value["say"])
+        then = {name: tuple(value[name]) for name in ("yes", "no", "any") if name in value}
+        found.append(Line(text, roles_in(text), then, value.get("start", "")))
+    return tuple(found)
+
+
+def _read(name: str) -> dict[str, Any]:
+    file = files(__package__ or "") / f"{name}.yaml"
+    return _plain(compose_yaml(file.read_text(encoding="utf-8"), file.name))
+
+
+def _plain(node: Any) -> Any:
+    """Return the value of a YAML node; every scalar stays text, also *yes* and *no*."""
+    if node.id == "mapping":
+        return {_plain(key): _plain(value) for key, value in node.value}
+    return [_plain(one) for one in node.value] if node.id == "sequence" else node.value

@@ -1,0 +1,50 @@
+"""Utterances that are no English: other languages, nonsense, numbers."""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from collections.abc import Mapping
+
+_WORD = re.compile(r"[^\W\d_]+")
+_MASHED = re.compile(
+    r"(.)\1{3}|[^aeiouyäöüáéíóúàèêâ]{6}|(?:qwe|wer|asd|sdf|dfg|fgh|ghj|hjk|jkl|zxc|xcv|cvb|yxc)\w*", re.IGNORECASE
+)
+_NO_VOWEL = re.compile(r"[^aeiouy]{4,}")
+
+
+def tongue_of(text: str, tongues: Mapping[str, frozenset[str]]) -> str:
+    """Return the language of a text that is not English, ``?`` for an unknown one; empty for English.
+
+    Example:
+        >>> tongue_of("ich bin heute müde", {"de": frozenset(("ich", "bin", "heute"))})
+        'de'
+    """
+    words = [word.lower() for word in _WORD.findall(text)]
+    if not words:
+        return ""
+    foreign = sum(not unicodedata.name(letter, "LATIN").startswith("LATIN") for word in words for letter in word)
+    if foreign > sum(map(len, words)) / 2:
+        return "?"
+    counts = {name: sum(word in known for word in words) for name, known in tongues.items()}
+    best = max(counts, key=lambda name: counts[name], default="")
+    needed = 1 if len(words) == 1 and len(words[0]) > 3 else max(2, 0.5 * len(words))
+    return best if best and counts[best] >= needed else ""
+
+
+def is_nonsense(text: str) -> bool:
+    """Return whether a text looks like a keyboard that was hit at random.
+
+    Example:
+        >>> is_nonsense("asdfgh jkl"), is_nonsense("hello there")
+        (True, False)
+    """
+    words = _WORD.findall(text)
+    letters = sum(map(len, words))
+    mashed = [word for word in words if len(word) > 3 and (_MASHED.search(word) or _NO_VOWEL.fullmatch(word.lower()))]
+    return bool(words) and sum(map(len, mashed)) > letters / 2
+
+
+def is_number(text: str) -> bool:
+    """Return whether a text is only a number or signs."""
+    return any(map(str.isdigit, text)) and not any(map(str.isalpha, text))

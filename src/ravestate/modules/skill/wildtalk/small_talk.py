@@ -1,0 +1,144 @@
+"""The listening skill, the gate and the prompt within the rules of the module."""
+
+from __future__ import annotations
+
+import asyncio
+from dataclasses import replace
+from functools import cache
+
+import ravestate as rs
+from ravestate.modules import interloc, nlp
+from ravestate.modules.meta.nlp.pipeline import pipeline
+
+from .facts import facts_matcher
+from .gate import Gate, persona_matcher
+from .listening import Heard, Listener, Overheard, State
+from .listening.state import Pending
+from .names import clock, history, listening, notes, overheard
+
+LATELY = 12
+"""The agent's last answers that are not said again."""
+MENTIONED = 4
+"""The last utterances that an answer may refer to."""
+
+_TONES = {
+    "sad": "The user is sad. Be gentle and brief.",
+    "angry": "The user is angry. Stay calm, and take them seriously.",
+    "tired": "The user is tired. Be brief.",
+}
+"""Advice for the model, by the tone of the talk."""
+
+
+@cache
+def listener() -> Listener:
+    """Return the listening skill, one for all contexts."""
+    return Listener()
+
+
+def learn_all() -> None:
+    """Learn all examples of small talk.
+
+    Raises:
+        PlatformError: The sentence model is missing or broken.
+    """
+    listener().load()
+    facts_matcher().load()
+    persona_matcher().load()
+
+
+def heard_in(ctx: rs.RuleContext, text: str, seen: nlp.Analysis | None) -> Heard:
+    """Return the utterance as the skill takes it."""
+    users = [item for item in ctx[interloc.users].values() if isinstance(item, str)]
+    return Heard(text, seen, users[0] if len(users) == 1 else "", ctx.now)
+
+
+async def listen(ctx: rs.RuleContext, heard: Heard) -> str:
+    """Return the answer of the listening skill, and remember it."""
+    state = up_to_date(ctx, heard.text)
+    answer = await asyncio.to_thread(listener().answer, heard, state, ctx.random)
+    ctx[listening] = answer.state
+    return answer.text
+
+
+def is_open(state: State) -> bool:
+    """Return whether the skill waits for the user: for a move in a game, or for an answer."""
+    return state.game is not None or state.pending is not None
+
+
+async def follow_up(ctx: rs.RuleContext, heard: Heard) -> str:
+    """Return the skill's answer to a move or a short answer; an empty string if the utterance is neither."""
+    skill = await asyncio.to_thread(listener)
+    return await listen(ctx, heard) if skill.continues(heard, up_to_date(ctx, heard.text)) else ""
+
+
+def up_to_date(ctx: rs.RuleContext, text: str) -> State:
+    """Return the state of the skill, with what it missed while other modules answered.
+
+    Args:
+        ctx: The context of the rule.
+        text: The utterance to be answered; its own traces do not count yet.
+    """
+    state = ctx[listening]
+    for one in ctx[overheard]:
+        if one.text not in (text, state.before):
+            state = replace(state.toned(one.tone, one.lasts), being=one.being or state.being, before=one.text)
+    answers = [message.text for message in ctx[history].values() if message.role == "assistant"]
+    words = [answer for answer in answers if any(map(str.isalpha, answer))]
+    if words and words[-1:] != list(state.said[-1:]):  # another module has answered since
+        asked = Pending(words[-1]) if words[-1].endswith("?") else None
+        state = replace(state, pending=asked, moment="", game=None)
+    return state
+
+
+def traces(ctx: rs.RuleContext, seen: nlp.Analysis) -> tuple[Overheard, ...]:
+    """Return the last two utterances, the newest last, with what they leave behind whichever module answers."""
+    return (*ctx[overheard][-1:], listener().overhear(seen, ctx[listening].being))
+
+
+def remark(ctx: rs.RuleContext) -> str | None:
+    """Return a remark about an unfinished matter, or about what was said last; None if there is nothing.
+
+    If another module has answered since, that was another subject, and only old matters are taken up.
+    """
+    state = ctx[listening]
+    old = [matter for matter in state.matters if ctx.now - matter.since >= ctx.settings.come_back_after]
+    if old:
+        ctx[listening] = replace(state, matters=tuple(one for one in state.matters if one is not old[0]))
+        return old[0].text
+    answers = [message.text for message in ctx[history].values() if message.role == "assistant"]
+    if not state.said or answers[-1:] != [state.said[-1]]:
+        return None
+    answer = listener().pick_up(state, ctx.random)
+    if answer is None:
+        return None
+    ctx[listening] = answer.state
+    return answer.text
+
+
+def gate_for(ctx: rs.RuleContext, name: str, heard: str) -> Gate:
+    """Return the check of a generated answer."""
+    messages = list(ctx[history].values())
+    said = [message.text for message in messages if message.role == "assistant"]
+    return Gate(
+        name,
+        heard,
+        said=said[-LATELY:],
+        before=[message.text for message in messages[-MENTIONED:]],
+        known={topic: tuple(values) for topic, values in ctx[interloc.facts].items()},
+        pipeline=pipeline(""),
+    )
+
+
+def notes_for(ctx: rs.RuleContext, heard: Heard) -> list[str]:
+    """Return what the model should know besides the conversation: the time, the user, the notes of other modules."""
+    now = ctx[clock]()
+    found = [f"It is {now:%A}, {now:%H:%M}."]
+    if heard.user and "name" not in ctx[interloc.facts]:
+        found.append(f"The user's name is {heard.user}.")
+    known = [f"{topic}: {', '.join(values)}" for topic, values in ctx[interloc.facts].items() if values]
+    if known:
+        found.append(f"What you know about the user: {'; '.join(known)}.")
+    state = ctx[listening]
+    if state.tone in _TONES:
+        found.append(_TONES[state.tone])
+    return [*found, *ctx[notes].values()]

@@ -1,0 +1,109 @@
+"""Jokes, songs, stories and games."""
+
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+from ravestate.modules.skill.wildtalk.listening.material import material
+
+SHOWS = material().shows
+
+
+def test_there_is_enough_of_everything() -> None:
+    assert len(SHOWS["jokes"]) >= 40
+    assert len(SHOWS["stories"]) >= 8
+    assert len(SHOWS["riddles"]) >= 25
+    assert len(SHOWS["songs"]) >= 5
+
+
+def test_no_joke_comes_twice_before_all_were_told(talk: Any) -> None:
+    told = [talk.say("tell me a joke") for _ in SHOWS["jokes"]]
+    assert sorted(told) == sorted(SHOWS["jokes"])
+    assert talk.say("tell me a joke") in SHOWS["jokes"]
+
+
+@pytest.mark.parametrize(("text", "kind"), [("sing a song", "songs"), ("tell me a story", "stories")])
+def test_it_performs_on_request(text: str, kind: str, talk: Any) -> None:
+    assert talk.say(text) in SHOWS[kind]
+
+
+def asked(text: str) -> Any:
+    return next(riddle for riddle in SHOWS["riddles"] if riddle["ask"] == text)
+
+
+def test_a_riddle_is_guessed(talk: Any) -> None:
+    riddle = asked(talk.say("a riddle please"))
+    assert riddle["answers"][0] in talk.say(f"is it a {riddle['answers'][-1]}?")
+    assert asked(talk.say("yes"))["ask"] != riddle["ask"]
+
+
+def test_a_wrong_guess_gets_a_hint_and_then_the_answer(talk: Any) -> None:
+    riddle = asked(talk.say("riddle"))
+    assert riddle["hint"] in talk.say("a banana")
+    assert riddle["answers"][0] in talk.say("a teapot")
+    assert talk.say("no") in SHOWS["over"]
+
+
+def test_a_riddle_can_be_given_up(talk: Any) -> None:
+    riddle = asked(talk.say("riddle"))
+    assert riddle["answers"][0] in talk.say("I don't know").lower()
+
+
+def test_word_chain_goes_by_the_last_letter(talk: Any) -> None:
+    first = talk.say("word chain").rstrip(".").split()[-1]
+    words = {"a": "arm", "d": "duck", "e": "earth", "g": "glove", "h": "horn", "k": "king", "l": "leg", "m": "milk"}
+    words |= {
+        "n": "neck",
+        "o": "oven",
+        "p": "pot",
+        "r": "rain",
+        "s": "snail",
+        "t": "trunk",
+        "w": "wing",
+        "x": "xylophone",
+    }
+    words |= {"y": "yard", "f": "frog", "c": "cat", "i": "iron", "u": "urn"}
+    own = words[first[-1]]
+    answer = talk.say(own).rstrip(".!").split()[-1].lower()
+    assert answer[0] == own[-1]
+    assert talk.state.game is not None
+    assert talk.state.game.used[1] == own
+
+
+def test_it_guesses_an_animal_by_its_questions(talk: Any) -> None:
+    known, questions = SHOWS["animals"]["known"], SHOWS["animals"]["questions"]
+    answer = talk.say("guess my animal")
+    for _ in range(len(questions) + 1):
+        asked = next((name for name, text in questions.items() if text in answer), None)
+        if asked is None:
+            break
+        answer = talk.say("yes" if asked in known["a shark"] else "no")
+    assert "a shark" in answer
+    assert talk.say("yes") in SHOWS["animal_words"]["right"]
+
+
+def test_knock_knock(talk: Any) -> None:
+    assert talk.say("Knock, knock!") == "Who's there?"
+    assert talk.say("lettuce") == "Lettuce who?"
+    assert talk.say("lettuce in, it's cold out here") in SHOWS["knock"]["laugh"]
+
+
+@pytest.mark.parametrize("game", ["riddle", "word chain", "guess my animal"])
+def test_stop_ends_every_game(game: str, begin: Callable[[int], Any]) -> None:
+    talk = begin(2)
+    talk.say(game)
+    assert talk.state.game is not None
+    assert talk.say("stop the game") in SHOWS["over"]
+    assert talk.state.game is None
+
+
+def test_another_subject_ends_a_game(talk: Any) -> None:
+    talk.say("riddle")
+    talk.say("by the way, do you know what my sister told me about her new job yesterday?")
+    assert talk.state.game is None
+
+
+def test_play_offers_a_choice(talk: Any) -> None:
+    assert talk.say("let us play a game") in SHOWS["offer"]
+    assert "chain" in talk.say("the word game").lower()

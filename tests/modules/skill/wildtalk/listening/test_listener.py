@@ -1,0 +1,196 @@
+"""The contracts of the listening skill: it asks back about what was said, and does not repeat itself."""
+
+import itertools
+import re
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from ravestate.language.matcher import bundled_matcher
+from ravestate.modules.skill.wildtalk.listening import Listener, State
+from ravestate.modules.skill.wildtalk.listening.material import Line, Moment, material
+
+PLAIN = [
+    "the bus came late",
+    "i bought some bread",
+    "my aunt has a garden",
+    "ok",
+    "we sat in the park",
+    "hm",
+    "it was warm",
+]
+CLAIMS = re.compile(
+    r"\b(yesterday|last (?:week|night|year)) I\b|\bI (?:ate|drank|slept|drove|walked|went|visited)\b|\bmy (?:wife|husband|mother)\b"
+)
+
+
+def lines_of(moment: Moment) -> list[Line]:
+    return [line for lines in moment.groups.values() for line in lines]
+
+
+def all_lines() -> list[Line]:
+    phrases = material()
+    groups = (phrases.acts, phrases.feelings, phrases.moments, phrases.topics, phrases.verbs, phrases.plain)
+    return [line for group in groups for moment in group.values() for line in lines_of(moment)]
+
+
+@pytest.mark.parametrize("seed", range(2))
+def test_it_says_nothing_twice_within_a_dozen_answers(seed: int, begin: Callable[[int], Any]) -> None:
+    talk = begin(seed)
+    said = [talk.say(text) for text in PLAIN * 6]
+    for place, answer in enumerate(said):
+        assert answer == "Mhm." or answer not in said[max(0, place - 12) : place]
+
+
+@pytest.mark.parametrize("text", ["I see no reason.", "who knows", "my cat sleeps", "hello", "what is a quark"])
+def test_the_same_utterance_again_and_again_gets_other_answers(text: str, talk: Any) -> None:
+    said = [talk.say(text) for _ in range(6)]
+    assert all(first != second for first, second in itertools.pairwise(said))
+
+
+@pytest.mark.parametrize(
+    ("text", "part"),
+    [
+        ("I painted a dragon.", "You painted a dragon?"),
+        ("we baked two cakes", "You baked two cakes?"),
+        ("I met your brother in the park.", "You met my brother"),
+        ("I don't own a hat.", "You don't own a hat"),
+        ("I was the captain there.", "You were the captain"),
+        ("my teacher gave me his umbrella", "Your teacher gave you his umbrella"),
+    ],
+)
+def test_it_asks_back_with_persons_turned_and_the_tense_kept(text: str, part: str, begin: Callable[[int], Any]) -> None:
+    assert any(part.rstrip("?") in begin(seed).say(text) for seed in range(30))
+
+
+@pytest.mark.parametrize(
+    ("text", "pronoun"),
+    [("my mother is ill", "her"), ("my grandfather is in hospital", "him"), ("my parents are ill", "them")],
+)
+def test_it_takes_the_right_pronoun_for_a_relative(text: str, pronoun: str, begin: Callable[[int], Any]) -> None:
+    said = [begin(seed).say(text) for seed in range(20)]
+    assert any(re.search(rf"\b{pronoun}\b", answer) for answer in said)
+    others = {"her", "him", "them"} - {pronoun}
+    assert not any(re.search(rf"\b{other}\b", answer) for answer in said for other in others)
+
+
+def test_a_pronoun_stands_for_the_one_that_was_mentioned(talk: Any) -> None:
+    talk.say("my grandfather is in hospital")
+    talk.say("he broke his leg")
+    assert talk.state.being is not None
+    assert talk.state.being.text == "your grandfather"
+
+
+def test_it_keeps_the_tone_for_a_while(begin: Callable[[int], Any]) -> None:
+    for seed in range(5):
+        talk = begin(seed)
+        talk.say("my grandmother died yesterday")
+        assert talk.state.tone == "sad"
+        assert "!" not in talk.say("she had a red chair")
+
+
+def test_an_answer_to_its_question_is_answered_in_turn(begin: Callable[[int], Any]) -> None:
+    replies: set[str] = set()
+    for seed in range(30):
+        talk = begin(seed)
+        if "Is somebody with her?" in talk.say("my mother is ill"):
+            replies.add(talk.say("yes"))
+    assert replies
+    assert replies <= {"That's good. Nobody should be ill all alone.", "I'm glad she has company."}
+
+
+def test_it_never_asks_three_times_in_a_row_if_there_is_something_else_to_say(begin: Callable[[int], Any]) -> None:
+    rows = 0
+    for seed in range(3):
+        talk = begin(seed)
+        said = [talk.say(text).endswith("?") for text in PLAIN * 2]
+        rows += sum(all(said[place : place + 3]) for place in range(len(said) - 2))
+    assert rows <= 3
+
+
+def test_its_opinions_stay(begin: Callable[[int], Any]) -> None:
+    talk = begin(4)
+    talk.say("what do you think of opera")
+    stance = dict(talk.state.stances)
+    talk.say("I see")
+    talk.say("what do you think of opera")
+    assert dict(talk.state.stances) == stance
+    assert len(stance) == 1
+
+
+def test_the_same_seed_gives_the_same_talk(begin: Callable[[int], Any]) -> None:
+    one, other = begin(7), begin(7)
+    assert [one.say(text) for text in PLAIN] == [other.say(text) for text in PLAIN]
+
+
+@pytest.mark.parametrize(
+    ("text", "group"),
+    [("asdfghj", "nonsense"), ("42", "number"), ("Ich verstehe das nicht", "tongue"), ("где ты живёшь", "tongue")],
+)
+def test_what_is_no_english_is_answered_honestly(text: str, group: str, talk: Any) -> None:
+    assert talk.say(text) in [line.text for line in lines_of(material().plain[group])]
+
+
+def test_it_admits_that_it_does_not_know(begin: Callable[[int], Any]) -> None:
+    known = {line.text for name in ("fact", "why") for line in lines_of(material().plain[name])}
+    assert begin(1).say("how long is the Danube") in known
+
+
+def test_without_a_parse_it_still_answers(talk: Any) -> None:
+    assert talk.say("my dog is called Max", parsed=False)
+    assert talk.say("where is Max?", parsed=False)
+
+
+@pytest.mark.parametrize("text", ["", "...", "🙂", "{clause}", "x" * 5000, "a" * 50, "\x00", "{} {0}"])
+def test_odd_input_gets_an_answer(text: str, talk: Any) -> None:
+    assert talk.say(text)
+
+
+def test_in_a_silence_it_comes_back_once_to_what_was_said(talk: Any) -> None:
+    import random
+
+    talk.say("I painted a dragon")
+    answer = talk.listener.pick_up(talk.state, random.Random(1))
+    assert answer is not None
+    assert "you painted a dragon" in answer.text
+    assert talk.listener.pick_up(answer.state, random.Random(1)) is None
+    assert Listener().pick_up(State(), random.Random(1)) is None
+
+
+def test_illness_becomes_a_matter_to_ask_about_later(talk: Any) -> None:
+    talk.say("my mother is ill")
+    assert [matter.text for matter in talk.state.matters] == ["How is your mother today?"]
+
+
+def test_the_material_is_large_and_each_role_is_known() -> None:
+    lines = all_lines()
+    assert len({line.text for line in lines}) >= 400
+    roles = {"clause", "thing", "who", "they", "them", "their", "are", "were", "have", "do", "answer", "before"}
+    roles |= {"first", "second", "called", "user"}
+    assert {role for line in lines for role in line.roles} <= roles
+
+
+def test_no_phrase_claims_what_a_machine_cannot_do() -> None:
+    assert not [line.text for line in all_lines() if CLAIMS.search(line.text)]
+
+
+def test_every_act_and_feeling_has_an_answer() -> None:
+    phrases = material()
+    feelings = {one for one in bundled_matcher("feelings")._exact.values() if one}
+    acts = {one for one in bundled_matcher("acts")._exact.values() if one}
+    assert feelings - phrases.feelings.keys() <= {"boredom"}
+    assert acts - phrases.acts.keys() <= {"joke", "song", "story", "play", "repeat", "wish"}
+
+
+def test_the_tone_is_right_in_most_of_a_list_of_utterances(begin: Callable[[int], Any]) -> None:
+    rows = [line.split("\t") for line in (Path(__file__).parent / "tones.tsv").read_text().splitlines()[1:]]
+    wrong: list[str] = []
+    for text, tone in rows:
+        talk = begin(0)
+        talk.say(text)
+        if (talk.state.tone or "-") != tone:
+            wrong.append(f"{text}: {talk.state.tone or '-'}, not {tone}")
+    assert len(rows) == 80
+    assert len(wrong) <= 0.35 * len(rows), wrong

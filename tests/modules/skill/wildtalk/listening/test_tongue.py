@@ -1,0 +1,35 @@
+"""Utterances that are no English."""
+
+import pytest
+
+from ravestate.modules.skill.wildtalk.listening.material import material
+from ravestate.modules.skill.wildtalk.listening.tongue import is_nonsense, is_number, tongue_of
+
+
+@pytest.mark.parametrize(
+    ("text", "tongue"),
+    [
+        ("ich habe keine Ahnung und du", "de"), ("hola, qué tal", "es"), ("je suis très content", "fr"),
+        ("здравствуйте", "?"), ("你好吗", "?"),
+        ("I am fine", ""), ("hello my friend", ""), ("no", ""), ("pizza con carne", ""), ("", ""), ("die hard", ""),
+    ],
+)  # fmt: skip
+def test_the_language(text: str, tongue: str) -> None:
+    assert tongue_of(text, material().tongues) == tongue
+
+
+@pytest.mark.parametrize(
+    ("text", "nonsense"),
+    [
+        ("asdfgh", True), ("qwertz uiop", True), ("aaaaaaa", True), ("xkcdbwq", True),
+        ("hello", False), ("strengths", False), ("rhythm", False), ("I see", False), ("", False), ("hmm", False),
+    ],
+)  # fmt: skip
+def test_nonsense(text: str, nonsense: bool) -> None:
+    assert is_nonsense(text) is nonsense
+
+
+def test_numbers() -> None:
+    assert is_number("42!")
+    assert not is_number("four")
+    assert not is_number("!")

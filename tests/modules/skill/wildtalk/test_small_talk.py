@@ -1,0 +1,191 @@
+"""The listening skill and the gate in a running agent, in virtual time."""
+
+from collections.abc import AsyncGenerator, Iterator, Sequence
+from dataclasses import replace
+from typing import Any
+
+import pytest
+
+import ravestate as rs
+from ravestate.language.matcher import bundled_matcher
+from ravestate.modules import idle, interloc, rawio, wildtalk
+from ravestate.modules.skill.wildtalk.backend import Message, Progress
+from ravestate.modules.skill.wildtalk.listening import ListeningBackend
+from ravestate.modules.skill.wildtalk.listening.state import Game
+from ravestate.modules.skill.wildtalk.small_talk import learn_all
+from ravestate.testing import Simulation, simulate
+
+other = rs.Module("other", requires=[rawio, interloc])
+
+
+@other.rule(when=rs.startup, writes=interloc.facts)
+async def remember(ctx: rs.RuleContext) -> None:
+    ctx[interloc.facts].add("home", ("Hannover",))
+
+
+@other.rule(when=rawio.input.changed.where(lambda text: "weather" in text), writes=rawio.output, weight=9.0)
+async def forecast(ctx: rs.RuleContext) -> None:
+    ctx[rawio.output] = "Sunny. Do you like the sun?"
+
+
+class Scripted:
+    """A model that writes prepared answers, and keeps the prompts."""
+
+    def __init__(self, *answers: str) -> None:
+        self.answers = list(answers)
+        self.prompts: list[Sequence[Message]] = []
+
+    async def load(self, progress: Progress | None = None) -> None:
+        """Nothing is to be loaded."""
+
+    async def stream(self, messages: Sequence[Message], **_: Any) -> AsyncGenerator[str, None]:
+        self.prompts.append(messages)
+        for word in self.answers.pop(0).split(" "):
+            yield word + " "
+
+    async def close(self) -> None:
+        """Nothing is to be closed."""
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _models() -> None:
+    for name in ("acts", "feelings"):
+        bundled_matcher(name).load()
+    learn_all()
+
+
+@pytest.fixture
+def sim() -> Iterator[Simulation]:
+    with simulate(wildtalk, other, settings={"idle": {"bored_after": 5.0, "answer_time": 8.0}}, seed=1) as running:
+        running.put(wildtalk.model, ListeningBackend())
+        yield running
+        assert not running.failures
+
+
+def test_without_a_model_the_listening_skill_answers(sim: Simulation) -> None:
+    sim.say("my mother is ill")
+    assert len(sim.said) == 1
+    assert sim.read(wildtalk.listening).tone == "sad"
+
+
+def test_it_answers_once_although_two_clauses_wait_for_the_input(sim: Simulation) -> None:
+    for text in ("hello", "hello", "I bought a hat"):
+        sim.say(text)
+        sim.advance(1.0)
+    assert len(sim.said) == 3
+
+
+def test_in_a_silence_it_comes_back_to_what_was_said_and_then_is_quiet(sim: Simulation) -> None:
+    sim.say("I painted a dragon")
+    sim.advance(120.0)
+    assert len(sim.said) == 2
+    assert "you painted a dragon" in sim.said[1]
+
+
+def test_it_does_not_come_back_to_what_another_module_answered(sim: Simulation) -> None:
+    sim.say("I painted a dragon")
+    sim.say("what about the weather")
+    sim.advance(60.0)
+    assert sim.said[1:] == ["Sunny. Do you like the sun?"]
+
+
+def test_it_asks_about_an_unfinished_matter_after_a_while(sim: Simulation) -> None:
+    sim.say("my mother is ill")
+    sim.say("what about the weather")
+    sim.advance(20.0)
+    assert len(sim.said) == 2
+    sim.advance(700.0)
+    assert sim.said[2:] == ["How is your mother today?"]
+
+
+def test_a_move_in_a_game_is_no_matter_for_other_modules(sim: Simulation) -> None:
+    sim.say("word chain")
+    word = sim.said[0].rstrip(".").split()[-1]
+    assert not sim.read(wildtalk.listening).game.used[1:]
+    sim.put(wildtalk.listening, replace(sim.read(wildtalk.listening), game=Game("chain", "bow", ("bow",))))
+    sim.say("weather")
+    assert word
+    assert "Sunny" not in sim.said[-1]
+    assert sim.read(wildtalk.listening).game.used[:2] == ("bow", "weather")
+
+
+def test_a_long_remark_during_a_game_reaches_other_modules(sim: Simulation) -> None:
+    sim.say("tell me a riddle")
+    sim.say("by the way, I would rather hear what the weather is going to be like tomorrow")
+    assert sim.said[-1].startswith("Sunny")
+
+
+def test_a_yes_to_another_modules_question_is_no_answer_to_its_own(sim: Simulation) -> None:
+    sim.say("my mother is ill")
+    sim.say("how is the weather")
+    sim.say("yes")
+    assert "her" not in sim.said[-1].split()
+
+
+def test_it_hears_the_tone_of_what_others_answer(sim: Simulation) -> None:
+    sim.say("the weather is awful, my grandfather died yesterday")
+    sim.say("he had a white beard")
+    assert sim.read(wildtalk.listening).tone == "sad"
+    assert sim.read(wildtalk.listening).being.text == "your grandfather"
+
+
+def test_the_agent_performs_also_where_a_model_is_set(sim: Simulation) -> None:
+    model = Scripted()
+    sim.put(wildtalk.model, model)
+    sim.say("tell me a joke")
+    assert len(sim.said) == 1
+    assert model.prompts == []
+
+
+@pytest.mark.parametrize(
+    "bad",
+    [
+        "As an AI language model, I have no feelings.",
+        "Awwww! See https://example.org for tips.",
+        "The best pizza in town is open until nine.",
+        "User: my mother is ill",
+        "<|junk|>```",
+        "My name is Marlene.",
+        "I visited my mother yesterday and we had pizza.",
+    ],
+)
+def test_a_bad_answer_is_replaced_by_the_listening_skill(bad: str, sim: Simulation) -> None:
+    sim.put(wildtalk.model, Scripted(bad))
+    sim.say("my mother is ill")
+    (answer,) = sim.said
+    assert answer not in bad
+    assert sim.read(wildtalk.listening).tone == "sad"
+
+
+def test_a_good_answer_passes(sim: Simulation) -> None:
+    sim.put(wildtalk.model, Scripted("I am sorry to hear that. I hope she gets well soon."))
+    sim.say("my mother is ill")
+    assert sim.said == ["I am sorry to hear that. I hope she gets well soon."]
+
+
+def test_a_bad_sentence_after_a_good_one_is_left_out(sim: Simulation) -> None:
+    sim.put(wildtalk.model, Scripted("I am sorry to hear that. Visit www.example.org now!"))
+    sim.say("my mother is ill")
+    assert sim.said == ["I am sorry to hear that."]
+
+
+def test_claims_against_what_is_known_are_refused(sim: Simulation) -> None:
+    sim.put(wildtalk.model, Scripted("You live in Berlin."))
+    sim.say("guess where my home is these days")
+    assert "Berlin" not in sim.said[0]
+
+
+def test_the_prompt_knows_the_user(sim: Simulation) -> None:
+    model = Scripted("That sounds nice.")
+    sim.put(wildtalk.model, model)
+    sim.say("I like the sea")
+    system = model.prompts[0][0].text
+    assert system.startswith("You are Ravestate")
+    assert "home: Hannover" in system
+    assert "It is " in system
+
+
+def test_bored_without_anything_said_it_stays_silent(sim: Simulation) -> None:
+    sim.emit(idle.bored)
+    sim.advance(60.0)
+    assert sim.said == []
