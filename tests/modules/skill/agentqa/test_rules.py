@@ -111,7 +111,7 @@ def test_questions_about_the_agent_are_answered_and_nobody_else_speaks(tmp_path:
         ("open the door please", "chatter"),
         ("", "chatter"),
         ("x" * 100_000, "chatter"),
-        ("how old are " * 9_000, "chatter"),
+        ("how old are " * 9_000, "encyclopaedia"),
         ("🙂\x00\x1b[2J مرحبا", "chatter"),
     ],
 )

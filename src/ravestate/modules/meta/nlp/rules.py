@@ -84,7 +84,7 @@ async def understand(ctx: rs.RuleContext) -> None:
     named = "agent_names" in settings.model_fields_set
     names = settings.agent_names if named else (ctx[interloc.agent],)
     present = tuple(name for name in ctx[interloc.users].values() if isinstance(name, str))
-    designed = intent_matcher(ctx[intents].values())
+    designed = await asyncio.to_thread(intent_matcher, tuple(ctx[intents].values()))
     async with ctx[lock]:
         seen = await asyncio.to_thread(analyse, heard, pipeline(settings.pipeline), names, present, designed)
     words = seen.tree.words

@@ -9,9 +9,11 @@ from dataclasses import replace
 
 import ravestate as rs
 from ravestate.errors import PlatformError, RavestateError, RuleError
+from ravestate.language.acts import acts
 from ravestate.language.bundled import ModelMissing, warn_once
 from ravestate.language.heap import give_back
 from ravestate.modules import idle, interloc, nlp, ontology, rawio, verbaliser
+from ravestate.modules.meta.nlp.analysis import Analysis
 from ravestate.modules.meta.verbaliser.intents import Intent
 
 from .itself import recall, settle
@@ -72,7 +74,7 @@ async def understand(ctx: rs.RuleContext) -> rs.Resign | None:
         return rs.Resign("the agent has no life yet, or nothing was said")
     route = router_of(told).route
     found: Match | Miss = Miss("")
-    if ctx[idle.asked] and seen.act("return_question"):
+    if ctx[idle.asked] and await asyncio.to_thread(_returns, seen):
         found = await asyncio.to_thread(route, ctx[idle.asked], question=True)
     if isinstance(found, Match):
         found = replace(found, returned=True)
@@ -169,6 +171,12 @@ async def offer(ctx: rs.RuleContext) -> rs.Resign | None:
     ctx[prompted] = ctx.now
     ctx[verbaliser.intent] = Intent("ask_me", package=__package__)
     return None
+
+
+def _returns(seen: Analysis) -> bool:
+    """Return whether the user returns a question, perhaps after an answer: *sailing, and you*."""
+    last = seen.sentences[-1].rpartition(", ")[2] if seen.sentences else ""
+    return seen.act("return_question") is not None or "return_question" in acts([last])
 
 
 def intent(topic: str, phrases: Sequence[str]) -> Intent:

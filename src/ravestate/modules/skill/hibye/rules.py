@@ -55,7 +55,7 @@ async def answer_hello(ctx: rs.RuleContext) -> None:
     ctx[verbaliser.intent] = Intent("returned" if returned else "hello", package=__package__)
 
 
-@module.rule(when=goodbye, writes=(verbaliser.intent, parted), weight=GENERAL)
+@module.rule(when=goodbye, writes=(verbaliser.intent, parted), weight=0.9 * GENERAL)
 async def answer_goodbye(ctx: rs.RuleContext) -> None:
     """Answer a goodbye."""
     ctx[parted] = ctx.now
