@@ -42,8 +42,10 @@ SUBJECT = 0.45
 """The confidence in a subject from which it decides."""
 FELT, GLAD = 0.55, 0.7
 """The confidence in a sad feeling from which it decides, and in another one."""
-TURNED = 0.8
-"""The confidence from which a glad feeling ends a sad tone, and from which news count as astonishing."""
+TURNED = 0.95
+"""The confidence from which a glad feeling or a light moment ends a sad tone."""
+AMAZED = 0.8
+"""The confidence from which news count as astonishing."""
 FEW = 0.75
 """The confidence in a feeling or an act for an utterance of one to three words."""
 MEANT = 0.6
@@ -198,8 +200,8 @@ class Listener:
         request = self._request(heard)
         if request:
             return games.start(request, state, chance)
-        if moment is not None and moment.name == "another" and state.show:
-            return games.start(state.show, state, chance)
+        if moment is not None and moment.name == "another":
+            return games.start(state.show or "story", state, chance)
         return None
 
     # ---------------------------------------------------------------------------------- phrases
@@ -306,6 +308,8 @@ class Listener:
         ):
             yield _Source(plain["yes" if seen.yesno.yes else "no"].lines(tone, "say"))
         ranked: list[tuple[float, Moment]] = []
+        if moment is not None and tone == "sad" and moment.tone != "sad" and "sad" not in moment.groups:
+            score = score if score >= TURNED else 0.0  # no light talk in grief
         if moment is not None and moment.name in phrases.moments and score >= SURE:
             ranked.append((score + FINER, moment))
         if feeling is not None:
@@ -373,7 +377,7 @@ class Listener:
             if kind != "unsure" and "any" in pending.then:
                 yield _Source([_bare(pending.then["any"])])
             yield _Source(plain[kind].lines(tone, "say"))
-        elif not kind and size <= SHORT and not seen.acts and not (subject and size > 2) and not _of_others(seen):
+        elif not kind and size <= SHORT and not seen.acts and not (subject and size > 2) and not self._of_others(seen):
             if "any" in pending.then:
                 yield _Source([_bare(pending.then["any"])])
             if not verb:
@@ -524,6 +528,12 @@ class Listener:
         return subject.head in self._phrases.beings or bool(subject.names) or subject.text.lower() in _THIRD
 
     @staticmethod
+    def _of_others(seen: Analysis) -> bool:
+        """Return whether it tells something about somebody or something else: no answer to a question about the user."""
+        others = any(word.low in (*_THIRD, "we") for word in seen.tree.words)
+        return others or any(one.subject.head for one in seen.statements)
+
+    @staticmethod
     def _called(roles: Roles) -> str:
         """Return the name in *his name is Rex*."""
         statement = roles.statement
@@ -534,7 +544,7 @@ class Listener:
 
 def _least(match: Match, tone: str) -> float:
     """Return the confidence from which a feeling decides."""
-    least = FELT if match.name in _SAD else TURNED if tone == "sad" or match.name == "astonishing" else GLAD
+    least = FELT if match.name in _SAD else TURNED if tone == "sad" else AMAZED if match.name == "astonishing" else GLAD
     return max(least, FEW) if len(match.text.split()) <= FEW_WORDS else least
 
 
@@ -546,11 +556,6 @@ def _bare(texts: Sequence[str]) -> list[Line]:
 def _words_of(seen: Analysis) -> set[str]:
     """Return the words of an utterance in lower case."""
     return {word.low for word in seen.tree.words}
-
-
-def _of_others(seen: Analysis) -> bool:
-    """Return whether it tells something about somebody else: no answer to a question about the user."""
-    return any(word.low in (*_THIRD, "we") for word in seen.tree.words)
 
 
 def _is_past(verb: str, seen: Analysis) -> bool:
