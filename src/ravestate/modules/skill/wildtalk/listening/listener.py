@@ -17,35 +17,35 @@ import random
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from ravestate.language.matcher import Match
 from ravestate.modules.meta.nlp.analysis import Analysis
 from ravestate.modules.meta.nlp.question_word import QuestionWord
-from ravestate.modules.meta.nlp.statement import Statement
 from ravestate.modules.skill.wildtalk.facts import facts_matcher
 
 from .games import Games
 from .material import Line, Material, Moment, material, roles_in
+from .meaning import (
+    FELT,
+    FEW,
+    FEW_WORDS,
+    TURNED,
+    about_in,
+    called_in,
+    choice_in,
+    feeling_of,
+    is_living,
+    is_of_others,
+    is_past,
+    moment_of,
+    words_of,
+)
 from .roles import Roles, fragment, has_verb, is_request, roles_of
 from .state import LASTING, Being, Matter, Overheard, Pending, State
 from .tongue import is_nonsense, is_number, tongue_of
-from .turning import turned
 
 SURE = 0.6
 """The confidence in a moment from which it decides."""
-SURE_OF_FEW = 0.7
-"""The same for an utterance of one or two words."""
-FEW_WORDS = 3
-"""The words of a sentence that resembles many others."""
 FINER = 0.1
 """The advantage of a moment over a feeling or an act, which are broader."""
-SUBJECT = 0.45
-"""The confidence in a subject from which it decides."""
-FELT, GLAD = 0.55, 0.7
-"""The confidence in a sad feeling from which it decides, and in another one."""
-TURNED = 0.8
-"""The confidence from which a glad feeling ends a sad tone, and from which news count as astonishing."""
-FEW = 0.75
-"""The confidence in a feeling or an act for an utterance of one to three words."""
 MEANT = 0.6
 """The confidence in an act from which it decides."""
 ASKED = 0.8
@@ -58,10 +58,8 @@ SILENCE = "silence"
 """The moment of a remark that ends a silence."""
 SHOWS = {"joke": "joke", "song": "song", "story": "story", "play": "play"}
 """Performances by the act that requests them."""
-_THIRD = frozenset(("he", "she", "they"))
 _YESNO = frozenset(("contradiction",))
 """The act that a mere *no* resembles."""
-_SAD = frozenset(("grief", "illness", "sadness", "loneliness", "worry", "failure", "anger", "tiredness"))
 
 
 @dataclass(frozen=True, slots=True)
@@ -139,7 +137,7 @@ class Listener:
 
     def answer(self, heard: Heard, state: State, chance: random.Random) -> Answer:
         """Return the answer. Takes about a millisecond if the utterance has been encoded before."""
-        moment = self._moment(heard.seen)
+        moment = moment_of(self._phrases, heard.seen)
         played = self._play(heard, state, chance, moment[0])
         if played is not None:
             text, after = played
@@ -151,7 +149,7 @@ class Listener:
 
     def overhear(self, seen: Analysis, focus: Being | None) -> Overheard:
         """Return what an utterance leaves behind: the tone, and the being that it mentions after `focus`."""
-        feeling, sentence = self._feeling(seen, "", "")
+        feeling, sentence = feeling_of(self._phrases, seen, "", "")
         tone, lasts = (feeling.tone, feeling.lasts) if feeling is not None else ("", LASTING)
         return Overheard(seen.text, roles_of(seen, sentence, focus, self._phrases).being, tone, lasts)
 
@@ -198,8 +196,8 @@ class Listener:
         request = self._request(heard)
         if request:
             return games.start(request, state, chance)
-        if moment is not None and moment.name == "another" and state.show:
-            return games.start(state.show, state, chance)
+        if moment is not None and moment.name == "another":
+            return games.start(state.show or "story", state, chance)
         return None
 
     # ---------------------------------------------------------------------------------- phrases
@@ -208,7 +206,7 @@ class Listener:
         self, heard: Heard, state: State, chance: random.Random, moment: Moment | None, sentence: str, score: float
     ) -> Answer:
         seen = heard.seen
-        feeling, sentence = self._feeling(seen, sentence, state.tone)
+        feeling, sentence = feeling_of(self._phrases, seen, sentence, state.tone)
         roles = Roles() if seen is None else roles_of(seen, sentence, state.being, self._phrases)
         roles = roles.having(user=heard.user, before=state.before.strip().rstrip(".!?")[:80])
         if seen is not None:
@@ -284,7 +282,7 @@ class Listener:
             return
         words = [word for word in seen.tree.words if word.pos != "PUNCT"]
         verb = has_verb(seen)
-        called = self._called(roles)
+        called = called_in(roles)
         if called:
             yield _Source(plain["named"].lines(tone, "say"), roles={"called": called})
         if state.pending is not None:
@@ -306,6 +304,8 @@ class Listener:
         ):
             yield _Source(plain["yes" if seen.yesno.yes else "no"].lines(tone, "say"))
         ranked: list[tuple[float, Moment]] = []
+        if moment is not None and tone == "sad" and moment.tone != "sad" and "sad" not in moment.groups:
+            score = score if score >= TURNED else 0.0  # no light talk in grief
         if moment is not None and moment.name in phrases.moments and score >= SURE:
             ranked.append((score + FINER, moment))
         if feeling is not None:
@@ -373,7 +373,7 @@ class Listener:
             if kind != "unsure" and "any" in pending.then:
                 yield _Source([_bare(pending.then["any"])])
             yield _Source(plain[kind].lines(tone, "say"))
-        elif not kind and size <= SHORT and not seen.acts and not (subject and size > 2) and not _of_others(seen):
+        elif not kind and size <= SHORT and not seen.acts and not (subject and size > 2) and not is_of_others(seen):
             if "any" in pending.then:
                 yield _Source([_bare(pending.then["any"])])
             if not verb:
@@ -387,28 +387,28 @@ class Listener:
         if state.tone:
             groups.append(state.tone)
         statement = roles.statement
-        if statement is not None and self._is_living(statement):
+        if statement is not None and is_living(self._phrases, statement):
             groups.append("theirs")
         if roles.being is not None:
             groups.append(roles.being.kind)
         if statement is not None:
             if roles.being is None and statement.subject_person == "I":
                 groups.append("self")
-            groups.append("future" if statement.plan else "past" if _is_past(statement.verb, seen) else "present")
+            groups.append("future" if statement.plan else "past" if is_past(statement.verb, seen) else "present")
         matter = moment.matter
         return _Source(moment.lines(*groups, "say", "again"), moment.name, moment.tone, moment.lasts, matter)
 
     def _question(self, seen: Analysis, state: State, roles: Roles, chance: random.Random) -> Iterator[_Source]:
         """Yield the answers to a question that no other module has answered."""
         plain = self._phrases.plain
-        choice = _choice(seen)
+        choice = choice_in(seen)
         if choice:
             yield _Source(plain["choice"].lines("say"), roles={"first": choice[0], "second": choice[1]})
         asked = next((one for one in seen.statements if one.question), None)
         subject = asked.subject_person if asked is not None else ""
         opinion = asked is not None and subject == "you" and asked.verb in plain["opinion"].words
-        if opinion or (asked is not None and asked.subject.of("you") and self._about(seen)):
-            thing = self._about(seen) or roles_of(seen, "", None, self._phrases).values.get("thing", "")
+        if opinion or (asked is not None and asked.subject.of("you") and about_in(seen)):
+            thing = about_in(seen) or roles_of(seen, "", None, self._phrases).values.get("thing", "")
             if thing:
                 yield self._opinion(thing, state, chance, known=roles.being is not None or bool(seen.entities))
         if facts_matcher().loaded and any(facts_matcher().match_all(seen.sentences)):
@@ -422,14 +422,6 @@ class Listener:
         if seen.question is QuestionWord.REASON:
             yield _Source(plain["why"].lines("say"))
         yield _Source(plain["you" if seen.about_agent else "fact"].lines("say"))
-
-    @staticmethod
-    def _about(seen: Analysis) -> str:
-        """Return the noun of *what do you think of jazz*."""
-        for word in seen.tree.words:
-            if word.dep in ("pobj", "pcomp") and seen.tree.head(word).low in ("of", "about", "on"):
-                return turned(seen.tree, [part for part in seen.tree.subtree(word) if part.dep != "punct"])
-        return ""
 
     def _opinion(self, thing: str, state: State, chance: random.Random, *, known: bool) -> _Source:
         stances = self._phrases.plain["stances"]
@@ -446,8 +438,8 @@ class Listener:
         """Yield the answers to a statement: about its verb, its subject, or anything told."""
         phrases, tone, statement = self._phrases, state.tone, roles.statement
         plain = phrases.plain["statement"]
-        living = statement is not None and self._is_living(statement)
-        if statement is not None and tone == "sad" and living and _is_past(statement.verb, seen):
+        living = statement is not None and is_living(self._phrases, statement)
+        if statement is not None and tone == "sad" and living and is_past(statement.verb, seen):
             yield _Source(plain.lines("memory"))
         if tone == "sad" or (tone in ("angry", "tired") and (living or chance.random() < 0.5)):
             yield _Source(plain.lines(tone))
@@ -459,7 +451,7 @@ class Listener:
             yield _Source(plain.lines("plan"))
         if statement.conditional:
             yield _Source(plain.lines("imagined"))
-        if statement.past and statement.subject_person == "I" and "used" in _words_of(seen):
+        if statement.past and statement.subject_person == "I" and "used" in words_of(seen):
             yield _Source(plain.lines("used"))
         if living and "they" in roles.values:
             described = ["described"] if statement.verb in ("be", "have") else []
@@ -469,7 +461,7 @@ class Listener:
         name = f"not {statement.verb}" if statement.negated else statement.verb
         verb = next((one for one in phrases.verbs.values() if name in one.words), None)
         if verb is not None and statement.subject_person == "I" and statement.object.person != "you":
-            tense = "past" if _is_past(statement.verb, seen) else "say"
+            tense = "past" if is_past(statement.verb, seen) else "say"
             sources.append(_Source(verb.lines(tense, "say")))
         topic = moment if moment is not None and moment.name in phrases.topics else None
         heads = {statement.object.head, statement.subject.head, *(phrase.head for phrase in statement.phrases)}
@@ -487,91 +479,7 @@ class Listener:
             yield _Source([_bare(state.pending.then["any"])])
         yield _Source(plain.lines(tone, "say"))
 
-    # ---------------------------------------------------------------------------------- what it means
-
-    def _moment(self, seen: Analysis | None) -> tuple[Moment | None, str, float]:
-        """Return the moment or topic that a sentence resembles most, with the sentence and the confidence."""
-        best, sentence, score = None, "", 0.0
-        if seen is not None:
-            for match in self._phrases.matcher.match_all(seen.sentences[:4]):
-                if match is not None:
-                    found = self._phrases.moments.get(match.name)
-                    if found is None and match.score < SUBJECT:
-                        continue
-                    if found is not None and len(match.text.split()) <= 2 and match.score < SURE_OF_FEW:
-                        continue
-                    weight = match.score if found is not None else match.score / 2  # a topic is less telling
-                    if weight > score:
-                        best, sentence, score = found or self._phrases.topics[match.name], match.text, weight
-        return best, sentence, score
-
-    def _feeling(self, seen: Analysis | None, sentence: str, tone: str) -> tuple[Moment | None, str]:
-        """Return the strongest feeling, sad ones first, with its sentence."""
-        known = (
-            [] if seen is None else [match for match in seen.feelings.values() if match.name in self._phrases.feelings]
-        )
-        matches = [match for match in known if match.score >= _least(match, tone)]
-        if not matches:
-            return None, sentence
-        best = max(matches, key=lambda match: (match.name in _SAD, match.score))
-        return self._phrases.feelings[best.name], best.text
-
-    def _is_living(self, statement: Statement) -> bool:
-        """Return whether a statement is about somebody other than the user and the agent."""
-        subject = statement.subject
-        if subject.of("you") or subject.person != "other":
-            return False
-        return subject.head in self._phrases.beings or bool(subject.names) or subject.text.lower() in _THIRD
-
-    @staticmethod
-    def _called(roles: Roles) -> str:
-        """Return the name in *his name is Rex*."""
-        statement = roles.statement
-        if statement is None or statement.question or statement.subject.head != "name" or statement.subject.of("I"):
-            return ""
-        return statement.object.text
-
-
-def _least(match: Match, tone: str) -> float:
-    """Return the confidence from which a feeling decides."""
-    least = FELT if match.name in _SAD else TURNED if tone == "sad" or match.name == "astonishing" else GLAD
-    return max(least, FEW) if len(match.text.split()) <= FEW_WORDS else least
-
 
 def _bare(texts: Sequence[str]) -> list[Line]:
     """Return finished texts as lines; any braces left in them belong to the user's words."""
     return [Line(text, frozenset()) for text in texts if "{" not in text]
-
-
-def _words_of(seen: Analysis) -> set[str]:
-    """Return the words of an utterance in lower case."""
-    return {word.low for word in seen.tree.words}
-
-
-def _of_others(seen: Analysis) -> bool:
-    """Return whether it tells something about somebody else: no answer to a question about the user."""
-    return any(word.low in (*_THIRD, "we") for word in seen.tree.words)
-
-
-def _is_past(verb: str, seen: Analysis) -> bool:
-    """Return whether the clause of a verb is in the past tense."""
-    for word in seen.tree.words:
-        if word.lemma == verb and (
-            word.tag == "VBD" or any(part.tag == "VBD" for part in seen.tree.children(word, "aux"))
-        ):
-            return True
-    return False
-
-
-def _choice(seen: Analysis) -> tuple[str, str] | None:
-    """Return the alternatives of *cats or dogs?*."""
-    tree = seen.tree
-    for word in tree.words:
-        if word.low == "or" and word.dep == "cc":
-            first = tree.head(word)
-            seconds = tree.children(first, "conj")
-            if seconds and first.pos in ("NOUN", "PROPN", "ADJ", "NUM"):
-                left = {"cc", "conj", "punct"}
-                kept = [part for part in tree.subtree(first) if part.dep not in left and tree.head(part).dep != "conj"]
-                return turned(tree, kept), turned(tree, tree.subtree(seconds[0]))
-    return None

@@ -84,6 +84,8 @@ def roles_of(seen: Analysis, sentence: str, focus: Being | None, material: Mater
         they, them, their = (
             _PLURAL if being.plural else _THEY.get(being.gender, _IT if being.kind == "pet" else _PLURAL)
         )
+        if statement is not None and statement.subject.text.lower() == "they":
+            they, them, their = _PLURAL
         roles = replace(roles, being=being).having(who=being.text, they=they, them=them, their=their)
         roles = roles.having(**dict.fromkeys(AGREEING, "yes"))
     elif genders or pronouns & {"it", "its"}:

@@ -61,6 +61,8 @@ def _kept(tree: Tree, root: Word) -> list[Word]:
         if child.dep in _LEFT_OUT or long or particle:
             left_out.update(word.index for word in tree.subtree(child))
     kept = [word for word in tree.subtree(root) if word.index not in left_out]
+    if kept and kept[0].low in ("yes", "no", "yeah"):
+        kept = kept[1:]
     subjects = [word for word in kept if word.dep in _SUBJECTS and word.head == root.index]
     if subjects and subjects[-1].low in ("he", "she", "it", "they"):  # "my mother she is ill"
         before = tree.before(subjects[-1])
