@@ -28,14 +28,16 @@ from .names import (
     triples,
     yesno,
 )
+from .phrase import Phrase
 from .question_word import QuestionWord
-from .statements import Statement
+from .statement import Statement
 from .triple import Triple
 
 __all__ = [
     "Analysis",
     "Entity",
     "Match",
+    "Phrase",
     "QuestionWord",
     "Settings",
     "Statement",

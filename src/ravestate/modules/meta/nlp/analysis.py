@@ -17,7 +17,8 @@ from .greeting import says_bye, says_hi
 from .inquiry import question_of
 from .pipeline import Pipeline
 from .question_word import QuestionWord
-from .statements import Statement, statements_of, triples_of
+from .statement import Statement
+from .statements import statements_of
 from .tree import Tree
 from .triple import Triple
 from .word_set import word_set
@@ -74,12 +75,13 @@ def analyse(text: str, pipeline: Pipeline, agent_names: Iterable[str] = ()) -> A
     tree, entities = pipeline.read(text)
     normal = normalise(tree.text, names)
     sentences = sentences_of(normal.text)
+    statements = statements_of(tree, entities)
     return Analysis(
         text=text,
         normal=normal,
         tree=tree,
         entities=entities,
-        triples=triples_of(tree),
+        triples=tuple(statement.triple for statement in statements),
         yesno=yesno_of(tree.text),
         question=question_of(tree),
         about_agent=_is_about_agent(tree, names),
@@ -87,7 +89,7 @@ def analyse(text: str, pipeline: Pipeline, agent_names: Iterable[str] = ()) -> A
         intent_hi=says_hi(tree.text),
         intent_bye=says_bye(tree.text),
         sentences=sentences,
-        statements=statements_of(tree),
+        statements=statements,
         acts=_best(bundled_matcher("acts"), sentences),
         feelings=_best(bundled_matcher("feelings"), sentences),
     )

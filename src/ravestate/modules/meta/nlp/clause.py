@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 from .asking import AUXILIARIES, QUESTION_WORDS, kind_at
 from .conjuncts import conjuncts, denies_conjunct, is_contrasted
-from .noun_phrase import adjective_phrase, gerund_phrase, noun_phrase
+from .noun_phrase import adjective_phrase, gerund_phrase, noun_phrase, phrase_of
+from .phrase import Phrase
 from .question_word import QuestionWord
 from .tree import Tree, Word
 from .triple import Triple
@@ -44,7 +45,13 @@ _SENSES = word_set("be feel look seem sound taste smell")
 _STATES = word_set("better worse well fine good bad great ok okay awful hard")
 """Adjectives that the tagger mistakes for adverbs."""
 
-Part = str | QuestionWord
+Part = Phrase | QuestionWord
+NOTHING = Phrase("")
+YOU = Phrase("you", person="you")
+
+
+def _text(part: Part) -> str | QuestionWord:
+    return part.text if isinstance(part, Phrase) else part
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,13 +92,21 @@ class Clause:
             if index not in within and not clause._is_tag and not clause._is_lets
         ]
 
-    def triples(self) -> Iterator[Triple]:
-        """Yield a triple for each pair of subject and object."""
+    def readings(self) -> Iterator[tuple[Triple, Part, Part]]:
+        """Yield a triple for each pair of subject and object, with its phrases."""
         subjects, objects = self._parts()
         for subject in subjects:
             for object, contrasted in objects:
                 negated = self.negated != contrasted
-                yield Triple(subject, ("not " if negated else "") + self.predicate, object)
+                predicate = ("not " if negated else "") + self.predicate
+                yield Triple(_text(subject), predicate, _text(object)), subject, object
+
+    @property
+    def requests(self) -> bool:
+        """Whether it demands something: *give me the book*, *let's play*."""
+        if any(clause._is_lets for clause in self._others.values()):
+            return True
+        return not self.own_subjects and self.verb.dep in ("ROOT", "conj") and self._unsaid() == [YOU]
 
     # --------------------------------------------------------------------------------------- the verb
 
@@ -111,10 +126,10 @@ class Clause:
         first, *others = self._prefix + self.chain
         if self._names_pursuit:
             return "be"
-        if self._passive is not None and self._feels:
-            return lemma_of(self._passive)
-        if self._passive is not None and not self._agents:
-            lemma = f"{lemma_of(self._passive)} {first.low}" if first == self.verb else lemma_of(first)
+        if self.passive is not None and self._feels:
+            return lemma_of(self.passive)
+        if self.passive is not None and not self._agents:
+            lemma = f"{lemma_of(self.passive)} {first.low}" if first == self.verb else lemma_of(first)
         else:
             lemma = lemma_of(first)
         words = [lemma, *particles(self.tree, first)]
@@ -130,7 +145,7 @@ class Clause:
     def negated(self) -> bool:
         """Whether the clause is negated."""
         later = self.chain[1:]  # "decide not to go" denies the going alone
-        own = [word for word in self._own if word.dep != "ROOT" and self.tree.head(word) not in later]
+        own = [word for word in self.own if word.dep != "ROOT" and self.tree.head(word) not in later]
         if any(word.low in NEGATIONS and not denies_conjunct(self.tree, word, self._others) for word in own):
             return True
         if any(word.low == "longer" and (before := self.tree.before(word)) and before.low == "no" for word in own):
@@ -139,8 +154,8 @@ class Clause:
             return True
         if any(word.low == "neither" and word.dep in ("cc", "preconj", "det") for word in own):
             return True
-        head = self._head_clause
-        if self.verb.dep == "conj" and head is not None and head.negated and not self._own_subjects:
+        head = self.head_clause
+        if self.verb.dep == "conj" and head is not None and head.negated and not self.own_subjects:
             return any(word.low in ("or", "nor") for word in self.tree.children(head.verb, "cc"))
         return False
 
@@ -152,24 +167,24 @@ class Clause:
     @cached_property
     def _prefix(self) -> list[Word]:
         """The verbs that a joined clause inherits: *like*, for *run* in *like to swim and run*."""
-        head = self._head_clause
+        head = self.head_clause
         if self.verb.dep == "conj" and head is not None and self._head in head.chain[1:]:
             return head._prefix + head.chain[: head.chain.index(self._head)]
         return []
 
     @cached_property
-    def _passive(self) -> Word | None:
+    def passive(self) -> Word | None:
         for child in self.tree.children(self.chain[0], "auxpass"):
             return child
-        head = self._head_clause
-        if self.verb.dep == "conj" and self.verb.tag == "VBN" and head is not None and not self._own_subjects:
-            return None if self.tree.children(self.verb, "aux") else head._passive
+        head = self.head_clause
+        if self.verb.dep == "conj" and self.verb.tag == "VBN" and head is not None and not self.own_subjects:
+            return None if self.tree.children(self.verb, "aux") else head.passive
         return None
 
     @cached_property
     def _agents(self) -> list[Word]:
         """The agent of a passive, after *by*."""
-        if self._passive is None or self._feels:
+        if self.passive is None or self._feels:
             return []
         for by in self.tree.children(self.chain[0], "agent"):
             if pobj := self.tree.children(by, "pobj"):
@@ -179,7 +194,7 @@ class Clause:
     @cached_property
     def _names_pursuit(self) -> bool:
         """Whether the gerund names the subject: *my hobby is reading books*."""
-        subjects = self._own_subjects
+        subjects = self.own_subjects
         return (
             self.verb.tag == "VBG"
             and any(lemma_of(aux) == "be" for aux in self.tree.children(self.verb, "aux"))
@@ -206,7 +221,7 @@ class Clause:
         return self.tree.head(self.verb)
 
     @cached_property
-    def _head_clause(self) -> Clause | None:
+    def head_clause(self) -> Clause | None:
         """The clause that this one depends on."""
         if self.verb.dep == "ROOT":
             return None
@@ -217,7 +232,7 @@ class Clause:
         return None
 
     @cached_property
-    def _own(self) -> list[Word]:
+    def own(self) -> list[Word]:
         """The words of this clause, without those of clauses inside it."""
         found: list[Word] = list(self._verbs)
         for word in found:
@@ -254,7 +269,7 @@ class Clause:
 
     def _parts(self) -> tuple[list[Part], list[tuple[Part, bool]]]:
         """Return the subjects and the objects, and for each object whether *not* precedes it alone."""
-        unknown = self._unknown
+        unknown = self.unknown
         if self._expletive:
             return self._existential(unknown)
         if unknown is not None and self._is_copula:
@@ -263,19 +278,19 @@ class Clause:
         objects = self._objects()
         if self._names_pursuit:
             verbs = [self.verb, *(v for v in self.tree.children(self.verb, "conj"))]
-            return subjects, [(self.tree.phrase(self._gerund(verb)), False) for verb in verbs]
+            return subjects, [(phrase_of(self.tree, verb, self._gerund(verb)), False) for verb in verbs]
         if self._agents:
             objects = [(subject, False) for subject in subjects]
             subjects = [part for part, _ in self._written(self._agents)]
         if unknown is None:
-            return subjects, objects or [("", False)]
-        asked = unknown.top.dep in SUBJECTS and not any(word for word in self._own_subjects if word != unknown.top)
+            return subjects, objects or [(NOTHING, False)]
+        asked = unknown.top.dep in SUBJECTS and not any(word for word in self.own_subjects if word != unknown.top)
         if self._agents and unknown.top.dep == "agent":  # who was it written by
             return [unknown.kind], objects
         if self._agents and asked:  # what was written by him
             return subjects, [(unknown.kind, False)]
         if asked:
-            return [unknown.kind], objects or [("", False)]
+            return [unknown.kind], objects or [(NOTHING, False)]
         adverbial = unknown.kind in (
             QuestionWord.PLACE,
             QuestionWord.TIME,
@@ -299,8 +314,8 @@ class Clause:
             place = place or self._in_phrases(word, of=False)
         place = place or self._at_places()
         if unknown is not None:
-            return [unknown.kind], place or [("", False)]
-        return [part for part, _ in self._written(there)], place or [("", False)]
+            return [unknown.kind], place or [(NOTHING, False)]
+        return [part for part, _ in self._written(there)], place or [(NOTHING, False)]
 
     def _copular_question(self, unknown: _Unknown) -> tuple[list[Part], list[tuple[Part, bool]]]:
         """Return the parts of a question with *be*: *who are you?*, *why are you sad?*"""
@@ -312,9 +327,9 @@ class Clause:
         ]
         rest = self._adjectives(verb, unknown) or self._in_phrases(verb) or self._at_places()
         if not others:
-            others = [w for w in self._own_subjects if w != unknown.top]
+            others = [w for w in self.own_subjects if w != unknown.top]
         if not others:
-            return [unknown.kind], rest or [("", False)]
+            return [unknown.kind], rest or [(NOTHING, False)]
         subjects = [part for part, _ in self._written(others[:1])]
         if unknown.top.dep == "advmod" and unknown.top == unknown.word:  # where, when, why, how
             left = self._written(others[1:]) or rest
@@ -323,7 +338,7 @@ class Clause:
         return subjects, [(unknown.kind, False)]
 
     @cached_property
-    def _own_subjects(self) -> list[Word]:
+    def own_subjects(self) -> list[Word]:
         tree = self.tree
         found = [word for verb in self._verbs for word in tree.children(verb, *SUBJECTS)]
         if not found:  # the parser sometimes attaches the subject to an auxiliary
@@ -337,19 +352,19 @@ class Clause:
     @cached_property
     def subjects(self) -> list[Part]:
         """The subjects; those of the head clause if the clause has none."""
-        own = self._own_subjects
+        own = self.own_subjects
         if own:
             if len(own) == 1 and own[0].low in ("who", "that", "which") and self.verb.dep == "relcl":
                 return self._antecedents
             lets = own[0].low in ("'s", "us", "s") and any(clause._is_lets for clause in self._others.values())
             if lets:
-                return ["we"]
+                return [Phrase("we", person="I")]
             return [part for part, _ in self._written(own)]
-        if self.verb.dep == "ROOT" or (self.verb.dep in ("ccomp", "parataxis", "dep") and self._head_clause is None):
+        if self.verb.dep == "ROOT" or (self.verb.dep in ("ccomp", "parataxis", "dep") and self.head_clause is None):
             return self._unsaid()
         if self.verb.dep == "acl":
             return []
-        head = self._head_clause
+        head = self.head_clause
         if head is None:
             return []
         if self.verb.dep in ("xcomp", "ccomp") and not self._prefix:  # I asked him to come
@@ -358,26 +373,26 @@ class Clause:
                 return [part for part, _ in self._written(him)]
         if head._agents:
             return [part for part, _ in self._written(head._agents)]
-        if head._unknown is not None and head._unknown.top.dep in SUBJECTS:
+        if head.unknown is not None and head.unknown.top.dep in SUBJECTS:
             return head._parts()[0]
         return head.subjects
 
     def _unsaid(self) -> list[Part]:
         """Return the implied subject of a request or of thanks."""
         if self.verb.lemma.lower() == "thank":
-            return ["I"]
+            return [Phrase("I", person="I")]
         request = self.verb.tag in ("VB", "VBP") or any(aux.low == "do" for aux in self.tree.children(self.verb, "aux"))
-        return ["you"] if request else [""]
+        return [YOU] if request else [NOTHING]
 
     @property
     def _antecedents(self) -> list[Part]:
         """The noun before a relative clause."""
-        return [self.tree.phrase(noun_phrase(self.tree, self._head))]
+        return [phrase_of(self.tree, self._head, noun_phrase(self.tree, self._head))]
 
     def _objects(self) -> list[tuple[Part, bool]]:
-        tree, unknown = self.tree, self._unknown
-        if self._passive is not None and self._feels:
-            return [(tree.phrase(adjective_phrase(tree, self.chain[0], self.chain[0])), False)]
+        tree, unknown = self.tree, self.unknown
+        if self.passive is not None and self._feels:
+            return [(phrase_of(tree, self.chain[0], adjective_phrase(tree, self.chain[0], self.chain[0])), False)]
         relative = self.verb.dep == "relcl" and self._asked_of_antecedent
         for verb in reversed(self.chain):
             direct = [word for word in tree.children(verb, *_DIRECT) if word not in self.chain]
@@ -404,7 +419,7 @@ class Clause:
 
     def _named(self) -> list[tuple[Part, bool]]:
         """Return the object of *is your father a doctor*, which the parser attaches elsewhere."""
-        subjects = self._own_subjects
+        subjects = self.own_subjects
         if not (self._is_copula and len(subjects) == 1 and subjects[0].index > self.chain[-1].index):
             return []
         names = [word for word in self.tree.children(self.chain[-1], "npadvmod") if self.tree.children(word, "det")]
@@ -415,7 +430,7 @@ class Clause:
     @cached_property
     def _asked_of_antecedent(self) -> bool:
         """Whether the noun before a relative clause is its object: *the book (that) I read*."""
-        subjects = self._own_subjects
+        subjects = self.own_subjects
         return bool(subjects) and subjects[0].low not in ("who", "that", "which")
 
     def _strays(self, verb: Word, object: Word) -> list[Word]:
@@ -440,7 +455,7 @@ class Clause:
                 if not self.tree.children(phrase, "pobj", "pcomp"):
                     preposition = deeper
             nouns = self.tree.children(preposition, "pobj", "pcomp")
-            if self._unknown is not None and any(self._unknown.word in self.tree.subtree(n) for n in nouns):
+            if self.unknown is not None and any(self.unknown.word in self.tree.subtree(n) for n in nouns):
                 continue
             if nouns:
                 joined = self.tree.children(phrase, "conj")  # in Berlin and in Paris
@@ -452,7 +467,7 @@ class Clause:
         for verb in reversed(self.chain):
             for word in self.tree.children(verb, "advmod", "npadvmod", "dep"):
                 if word.low in PLACES:
-                    return [(word.text, False)]
+                    return [(phrase_of(self.tree, word, [word]), False)]
         return []
 
     def _shared(self) -> list[tuple[Part, bool]]:
@@ -471,10 +486,10 @@ class Clause:
     # ------------------------------------------------------------------------------------- questions
 
     @cached_property
-    def _unknown(self) -> _Unknown | None:
+    def unknown(self) -> _Unknown | None:
         if self.verb.dep == "relcl":
             return None
-        for word in self._own:
+        for word in self.own:
             kind = kind_at(self.tree.words, word.index) if word.low in QUESTION_WORDS else None
             if kind is None or (self.verb.dep == "advcl" and word.low in ("when", "where", "how", "why")):
                 continue
@@ -489,7 +504,7 @@ class Clause:
 
     @cached_property
     def _is_copula(self) -> bool:
-        return self._passive is None and lemma_of(self.chain[-1]) == "be"
+        return self.passive is None and lemma_of(self.chain[-1]) == "be"
 
     @cached_property
     def _expletive(self) -> bool:
@@ -508,14 +523,17 @@ class Clause:
                     words = gerund_phrase(self.tree, word)
                 else:
                     words = noun_phrase(self.tree, word)
-                found.append((self._whose(self.tree.phrase(words)), is_contrasted(self.tree, word, self._others)))
+                found.append(
+                    (self._whose(phrase_of(self.tree, word, words)), is_contrasted(self.tree, word, self._others))
+                )
         return found
 
-    def _whose(self, phrase: str) -> str:
+    def _whose(self, phrase: Phrase) -> Phrase:
         """Replace *whose* in a relative clause: *whose father* becomes *the boy's father*."""
-        first, _, rest = phrase.partition(" ")
+        first, _, rest = phrase.text.partition(" ")
         if self.verb.dep == "relcl" and first.lower() == "whose":
-            return f"{self._antecedents[0]}'s {rest}"
+            owner = phrase_of(self.tree, self._head, noun_phrase(self.tree, self._head))
+            return replace(phrase, text=f"{owner.text}'s {rest}", owner=owner)
         return phrase
 
     def _is_predicative(self, word: Word, verb: Word) -> bool:

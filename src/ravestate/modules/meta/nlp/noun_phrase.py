@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from .phrase import Person, Phrase
 from .tree import Tree, Word
 from .word_set import word_set
 
@@ -106,3 +107,82 @@ def _with_hyphens(tree: Tree, kept: list[Word]) -> list[Word]:
             indices |= {index - 1, index - 2}
             index -= 2
     return [tree.words[index] for index in sorted(indices)]
+
+
+_SPEAKER = word_set("i me my mine myself we us our ours ourselves")
+_AGENT = word_set("you your yours yourself u ur")
+_NUMBERS = ["no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve"]
+
+
+def phrase_of(tree: Tree, head: Word, words: list[Word]) -> Phrase:
+    """Return the phrase of `words` around `head`."""
+    names = _names_in(tree, head)
+    noun = _noun_of(tree, head)
+    owner = next((word for word in tree.children(noun or head, "poss")), None) or next(
+        (
+            of
+            for child in tree.children(noun or head, "prep")
+            if child.low == "of"
+            for of in tree.children(child, "pobj")
+        ),
+        None,
+    )
+    before = tree.head(head)
+    return Phrase(
+        tree.phrase(words),
+        head="" if noun is None else noun.lemma.lower(),
+        names=tuple(names),
+        owner=None
+        if owner is None
+        else phrase_of(tree, owner, [word for word in noun_phrase(tree, owner) if word.dep != "case"]),
+        amount=_amount(tree, head),
+        person=person_of(head),
+        preposition=before.low if head.dep in ("pobj", "pcomp") else "",
+    )
+
+
+def person_of(word: Word) -> Person:
+    """Return the person of a pronoun; *other* for other words."""
+    return "I" if word.low in _SPEAKER else "you" if word.low in _AGENT else "other"
+
+
+def _noun_of(tree: Tree, head: Word) -> Word | None:
+    """Return the common noun or adjective of a phrase: *friend* of *my friend Anna*."""
+    if head.pos == "PROPN":
+        return next((word for word in tree.children(head, "compound", "nmod") if word.pos == "NOUN"), None)
+    return None if head.pos in ("PRON", "DET") else head
+
+
+def _names_in(tree: Tree, head: Word) -> list[str]:
+    """Return the names in a phrase: its head, appositions, and *named Rosa*."""
+    found: list[str] = []
+    if head.pos == "PROPN":
+        kept = [head, *(word for word in tree.children(head, "compound", "flat") if word.pos == "PROPN")]
+        found.append(tree.phrase(kept))
+        found += [name for word in tree.children(head, "conj") for name in _names_in(tree, word) if head.dep == "appos"]
+        return found
+    if head.pos == "NOUN":
+        for child in tree.children(head, "appos"):
+            found += _names_in(tree, child)
+        for child in tree.children(head, "acl", "relcl"):
+            if child.low in ("named", "called"):
+                found += [
+                    name for word in tree.children(child, "oprd", "dobj", "attr") for name in _names_in(tree, word)
+                ]
+    return found
+
+
+def _amount(tree: Tree, head: Word) -> float | None:
+    """Return the number before the head: *two sisters*, *34 years old*."""
+    for word in (
+        *tree.children(head),
+        *(deep for child in tree.children(head, "npadvmod") for deep in tree.children(child)),
+    ):
+        if word.dep in ("nummod", "det", "compound") and word.low in _NUMBERS:
+            return float(_NUMBERS.index(word.low))
+        if word.dep == "nummod":
+            try:
+                return float(word.low.replace(",", ""))
+            except ValueError:
+                continue
+    return None

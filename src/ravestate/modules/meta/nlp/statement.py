@@ -1,0 +1,61 @@
+"""Statements: triples with what their clauses say about them, read from the parse."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from .phrase import Person, Phrase
+from .triple import Triple
+
+
+@dataclass(frozen=True, slots=True)
+class Statement:
+    """One triple of a clause, its phrases, and whether the speaker asserts it.
+
+    Example:
+        *my sister Rosa lives in Antwerp* has the triple (my sister Rosa, live, Antwerp); ``subject.head`` is ``sister``,
+        ``subject.name`` is ``Rosa``, ``subject.of("I")`` holds; ``object.preposition`` is ``in``. A skill may write::
+
+            for said in analysis.statements:
+                if said.holds and said.subject_person == "I" and said.verb == "live":
+                    home = said.object.text
+    """
+
+    triple: Triple
+    """The triple. A `QuestionWord` in it is the unknown of a question."""
+    subject: Phrase
+    object: Phrase
+    """An empty phrase if there is none."""
+    verb: str
+    """The lemma of the last verb of the predicate: ``live``, also for *used to live* and *want to live*."""
+    phrases: tuple[Phrase, ...] = ()
+    """All prepositional phrases of the clause, in order: *as a nurse*, *in a hospital*, *in Hamburg*."""
+    when: str = ""
+    """The time that the clause names: ``two years ago``, ``since 2010``, ``next month``."""
+    negated: bool = False
+    """*I don't live here*; *I have no sister*; *I no longer smoke*."""
+    past: bool = False
+    """It was so and is so no more: *I lived in Berlin*, *I used to smoke*, *he was a baker*. An event in the past holds:
+    *I moved to Toronto two years ago*, *I was born in Rome*, *I painted a dragon*; so does *I have lived here since 2010*."""
+    hearsay: bool = False
+    """Somebody else says or thinks it: *my mother says I am lazy*, *people say...*."""
+    conditional: bool = False
+    """It is imagined: *if I lived in Rome*, *I would be happy*, *I wish I were rich*, *maybe he is ill*."""
+    plan: bool = False
+    """It is wanted or lies ahead: *I want to move to Rome*, *I am going to visit him*, *I will call you*."""
+    question: bool = False
+    """It is asked: *do you live here*, *where do you live*."""
+    request: bool = False
+    """It is demanded: *give me the book*, *let's play*."""
+
+    @property
+    def subject_person(self) -> Person:
+        """The person of the subject: ``I`` for *I* and *we*."""
+        return self.subject.person
+
+    @property
+    def holds(self) -> bool:
+        """Whether the speaker says that it is so now, or that it has happened."""
+        return not (
+            self.negated or self.past or self.hearsay or self.conditional or self.plan or self.question or self.request
+        )
