@@ -18,7 +18,8 @@ from ravestate.modules.skill.genqa.referring import Before, completed
 from ravestate.modules.skill.hibye.words import is_farewell, is_greeting
 from ravestate.modules.skill.persqa.talk import Talk
 from ravestate.modules.skill.persqa.topics import Fact
-from ravestate.modules.skill.persqa.understanding import Heard, understand
+from ravestate.modules.skill.persqa import kinds
+from ravestate.modules.skill.persqa.understanding import understand
 from ravestate.modules.skill.wildtalk.facts import asks_for_fact
 
 __all__ = ["FLOORS", "SETS", "result", "results"]
@@ -49,11 +50,8 @@ def persqa_facts(sentence: str) -> str:
         known = {topic: (value,)}
     if what == "told":
         talk = talk.learning([topic], topic, (value,))
-    seen = _seen(text)
-    words = seen.tree.words
-    tokens, pos = tuple(word.text for word in words), tuple(word.pos for word in words)
-    heard = Heard(text, seen.yesno, seen.question, seen.entities, tokens, pos, seen.triples)
-    meaning = understand(heard, talk, known, now=1.0, within=90.0)
+    kinds.load()
+    meaning = understand(_seen(text), talk, known, now=1.0, within=90.0)
     facts = " ".join(map(_label, sorted(meaning.facts, key=lambda fact: fact.topic)))
     if meaning.kind in ("told", "corrected"):
         return facts or "-"

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from .topics import TOPICS, Topic
-from .words import SMALL
+SMALL = frozenset("of the and in on upon am an at der die das den von van de da di del la le du y zu near for bei a".split())
+"""Words without a capital inside a name."""
 
 BARE = frozenset(["retired", "self-employed", "freelance", "unemployed"])
 """Occupations without an article."""
