@@ -9,6 +9,7 @@ from functools import cache
 from ravestate.language.contractions import WRITTEN
 from ravestate.modules import nlp
 
+from .kinds import is_remark
 from .reading import Reader, relations
 from .topics import TOPICS, Fact, Topic
 from .values import value_of
@@ -71,7 +72,7 @@ def _values(rest: str, topic: Topic, seen: nlp.Analysis) -> list[str | None]:
     found: list[str | None] = []
     for piece in pieces[:5]:
         value = value_of(_HEDGES.sub("", piece.strip()), topic, seen)
-        if value is None:
+        if value is None or not any(map(str.isalnum, value)) or is_remark(value):
             break  # nothing after such a piece is a value
         found.append(value)
     return found
@@ -119,4 +120,6 @@ def _may_answer(said: nlp.Statement) -> bool:
     subject = said.subject
     if subject.person == "you":
         return said.verb in Reader.activities()
-    return subject.person == "I" or subject.text.lower() in ("", "it", "that", "this", "they", "these", "those", "he", "she") or subject.owner is not None
+    if subject.person == "I":
+        return not said.plan and said.verb in ("be", *relations().words["likes"], *relations().words["pastimes"])
+    return subject.text.lower() in ("", "it", "that", "this", "they", "these", "those", "he", "she") or subject.owner is not None

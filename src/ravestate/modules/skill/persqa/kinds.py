@@ -13,7 +13,7 @@ FITTING = {
     "people": ("person",),
     "place": ("place",),
     "work": ("job",),
-    "organisation": ("workplace",),
+    "organisation": ("workplace", "group"),
     "subject": ("studies",),
     "activity": ("activity",),
 }
@@ -41,6 +41,12 @@ def likeness(value: str, kind: str) -> float:
     if best is None:
         return -1.0 if ranked and ranked[0].name else 0.0
     return best.margin
+
+
+def is_remark(value: str) -> bool:
+    """Return whether a value is rather a remark, a time or a state than an answer."""
+    ranked = nouns().ranked(value)
+    return bool(ranked) and ranked[0].name in ("remark", "state", "time") and ranked[0].margin > 0.15
 
 
 def load() -> None:

@@ -23,6 +23,7 @@ LASTING = frozenset(["subject", "university", "birthplace", "childhood"])
 ENDED = ("home", "occupation", "employer", "club")
 """Topics of which the past tells that they hold no longer, if they were known."""
 
+_ANY = re.compile(r"(?:any|there$|here$)", re.IGNORECASE)
 _INTRODUCED = frozenset(["be called", "be named", "call", "name"])
 _BE = "be"
 
@@ -94,18 +95,21 @@ class Reader:
         for said in self.seen.statements:
             if not self._asserted(said):
                 continue
+            if not said.past and (topic := self._ended(said)):
+                gone.setdefault(topic, ())
+                continue
             for link in self._links(said):
                 values = self._values(link)
                 if said.negated or (said.past and link.topic not in LASTING):
                     ended = said.past and not said.negated
                     if ended and (link.topic not in ENDED or not values or values[0] not in (known or {}).get(link.topic, ())):
                         continue
-                    if values or link.phrase is None or self._denies_all(link):
+                    if values or link.phrase is None or _ANY.match(link.phrase.text):
                         gone.setdefault(link.topic, values)
-                elif values:
-                    _add(told, link.topic, values)
-            if not said.past and (topic := self._ended(said)):
-                gone.setdefault(topic, ())
+                    continue
+                for value in () if said.negated else values:
+                    pursued = link.topic == "liking" and is_gerund(value)
+                    _add(told, "hobby" if pursued else link.topic, (value,))
         for topic, values in self._mentioned():
             _add(told, topic, values)
         if self.asked == "home" and "origin" in told and "home" not in told:
@@ -124,9 +128,14 @@ class Reader:
                 unknown = self.seen.question
             links = list(self._links(said))
             if unknown is not None and said.subject_person == "I":
-                topic = self._table.asks.get(f"{_predicate(said)} {unknown.name}")
+                asked = f"{_predicate(said)} {unknown.name}"
+                what = self._asked_noun(said)
+                heads = [f"{asked} {phrase.head}" for phrase in said.phrases]
+                topic = what or next(filter(None, map(self._table.asks.get, [*heads, asked])), "")
                 if topic:
                     return Fact(topic, ())
+            if unknown not in (None, nlp.QuestionWord.PERSON, nlp.QuestionWord.OBJECT, nlp.QuestionWord.PLACE):
+                continue
             for link in links:
                 values = self._values(link) if unknown is None else ()
                 if values or link.phrase is None or unknown is not None or TOPICS[link.topic].nouns:
@@ -185,6 +194,15 @@ class Reader:
         """Return the verbs that a bare answer may begin with."""
         return relations().words["pastimes"]
 
+    def _asked_noun(self, said: nlp.Statement) -> str:
+        """Return the topic of the noun in *which club am I in*, *which food do I like best*."""
+        for word in self._tree.words:
+            if word.low in ("which", "what") and self._tree.head(word).pos == "NOUN":
+                noun = self._tree.head(word).lemma
+                likes = said.verb in self._table.words["likes"]
+                return favourite(f"favourite {noun}") if likes else self._table.nouns.get(noun, "")
+        return ""
+
     def without_name(self) -> str:
         """Return the topic of a relative that the user has, but does not name: *I have two brothers*."""
         for said in self.seen.statements:
@@ -213,7 +231,22 @@ class Reader:
             return False
         if said.plan and not self._is_habit(said):
             return False
-        return not said.request or said.subject_person == "I" or said.verb in ("call", "name")
+        if self._is_temporal(said):
+            return False
+        return not said.request or said.subject.text.lower() == "i" or said.verb in ("call", "name")
+
+    def _verb(self, said: nlp.Statement) -> Word | None:
+        """Return the verb of a statement in the tree."""
+        last = said.triple.predicate.split()[-1]
+        verbs = [word for word in self._tree.words if word.low == last or word.lemma == said.verb]
+        return next((word for word in verbs if word.pos in ("VERB", "AUX")), verbs[0] if verbs else None)
+
+    def _is_temporal(self, said: nlp.Statement) -> bool:
+        """Return whether it only names a time that lies ahead: *when I live in Paris, I will eat cheese*."""
+        verb = self._verb(said)
+        if verb is None or verb.dep != "advcl" or verb.tag in ("VBD", "VBN"):
+            return False
+        return any(child.low in ("when", "whenever", "once", "until", "before") for child in self._tree.children(verb))
 
     def _is_habit(self, said: nlp.Statement) -> bool:
         """Return whether a plan is none: *I like to read*, but not *I would like to read*."""
@@ -231,9 +264,14 @@ class Reader:
             yield from self._of_user(said)
         elif said.verb in _INTRODUCED and object.person == "I":
             yield from self._called(said)
+        elif object.person == "I" and (topics := self._table.says.get(f"{_predicate(said)} me")):
+            yield from (Link(topic, subject) for topic in topics)
         elif topic := self._noun(subject):
             if said.verb == _BE or _predicate(said) in _INTRODUCED:
-                yield Link(topic, object if object.text and isinstance(said.triple.object, str) else None)
+                sure = bool(object.names) or subject.head == "name" or said.verb != _BE or TOPICS[topic].kind != "people"
+                yield Link(topic, object if object.text and isinstance(said.triple.object, str) else None, sure)
+            elif TOPICS[topic].kind == "activity":
+                yield Link(topic, subject, value=self._span((self._verb(said) or self._tree.words[0]).text, object))
         elif said.verb == _BE and (topic := self._noun(object)):
             yield Link(topic, subject if isinstance(said.triple.subject, str) else None, sure=topic != NAME)
 
@@ -261,7 +299,9 @@ class Reader:
             if (topic := self._table.nouns.get(object.head, "")) and (said.negated or object.names or said.question):
                 yield Link(topic, object if object.names else None)
             return
-        if (verbs[0] in likes and len(verbs) > 1) or verbs[0] in self._table.words["pastimes"] and not asked:
+        leisure = re.search(r"\b(?:free|spare|leisure) time\b|\bfor fun\b|\bas a hobby\b", self._tree.text, re.IGNORECASE)
+        pastime = verbs[0] in self._table.words["pastimes"] or (leisure and predicate != _BE)
+        if not asked and ((verbs[0] in likes and len(verbs) > 1) or (pastime and verbs[0] not in likes)):
             if (hobby := self._pursuit(said, verbs, object)) is not None:
                 yield hobby
                 return
@@ -269,20 +309,24 @@ class Reader:
             yield from self._being(said)
         direct = [object] if object.text and not object.preposition else []
         for phrase in (*direct, *said.phrases):
-            head = f" {object.head}" if predicate == _BE and object.head and phrase.preposition else ""
+            head = f" {object.head}" if predicate == _BE and direct and phrase.preposition else ""
             topics = self._table.says.get(f"{predicate}{head} {phrase.preposition}".strip(), ())
+            if not topics and phrase.preposition:
+                topics = self._table.says.get(f"{self._word_before(phrase)} {phrase.preposition}", ())
             for topic in topics:
-                yield Link(topic, phrase, sure=topic == NAME)
+                yield Link(topic, phrase, sure=predicate != _BE and phrase.preposition != "in")
+
+    def _word_before(self, phrase: Phrase) -> str:
+        """Return the word before a phrase and its preposition: a verb that the parser may have mistaken for a noun."""
+        found = re.search(rf"(\w+) {phrase.preposition} (?:an? |the )?{re.escape(phrase.text)}", self._tree.text, re.IGNORECASE)
+        return found[1].lower() if found else ""
 
     def _pursuit(self, said: nlp.Statement, verbs: list[str], object: Phrase) -> Link | None:
         """Return the hobby in *I like to read books*, *I play chess*, *I go swimming*."""
-        verb = verbs[-1]
-        if verbs[0] == "go" and len(verbs) == 1:
+        if said.subject.text.lower() != "i" or (len(verbs) == 1 and (verbs[0] == "go" or not object.text or object.preposition)):
             return None
-        written = self._span(verb, object)
-        if verbs[0] == "play" and not object.text or object.preposition:
-            return None
-        return Link("hobby", object, value=written) if written else None
+        written = self._span(verbs[-1], Phrase("") if object.head in ("time", "weekend") else object)
+        return Link("hobby", object if object.text else said.subject, value=written) if written else None
 
     def _being(self, said: nlp.Statement) -> Iterator[Link]:
         """Yield what *I am ...* tells: an age, an occupation, studies, or a name."""
@@ -321,7 +365,7 @@ class Reader:
         if said.subject_person != "I" or said.past:
             return ""
         parts = (("not " if said.negated else "") + _predicate(said), said.object.head)
-        return self._table.ends.get(" ".join(filter(None, parts))) or self._table.ends.get(parts[0] + " -", "") * (not parts[1])
+        return self._table.ends.get(" ".join(filter(None, parts)), "")
 
     def _mentioned(self) -> Iterator[tuple[str, tuple[str, ...]]]:
         """Yield the relatives that the user names in passing: *I went to Rome with my sister Rosa*."""
@@ -341,20 +385,19 @@ class Reader:
             return ()
         topic = TOPICS[link.topic]
         if topic.kind in ("people", "name") and not link.value:
-            raw = self._names(link.phrase) or (link.phrase.text,)
+            phrase = link.phrase.owner if link.phrase.head == "name" and link.phrase.owner else link.phrase
+            raw = (topic.kind == "people" and self._names(phrase)) or (self._written(phrase),)
         elif link.value:
             raw = (link.value,)
         else:
             raw = (self._written(link.phrase),)
-        if link.topic == "liking" and raw and is_gerund(raw[0]):
-            return ()
         sure = link.sure or link.topic == self.asked
         return tuple(filter(None, (value_of(text, topic, self.seen, sure=sure) for text in raw)))
 
     def _written(self, phrase: Phrase) -> str:
         """Return a phrase with its article, as in the utterance."""
         inner = r"\s+(?:(?:the|an?)\s+)?".join(map(re.escape, phrase.text.split()))
-        found = re.search(rf"(?<![\w'])(?:(?:the|an?|our|this|that|these|those)\s+)?{inner}(?!\w)", self._tree.text, re.IGNORECASE)
+        found = re.search(rf"(?<![\w'])(?:(?:the|an?|our|this|that|these|those)\s+)?{inner}(?!\w)(?:-[\w-]+|\s(?:am|an der|upon|de|del)\s\w+)*", self._tree.text, re.IGNORECASE)
         return found[0] if found else phrase.text
 
     def _span(self, verb: str, object: Phrase) -> str:
@@ -386,9 +429,6 @@ class Reader:
             run.append(after.text)
             word = after
         return run
-
-    def _denies_all(self, link: Link) -> bool:
-        return link.phrase is not None and link.phrase.text.lower() in ("there", "here")
 
     # ----------------------------------------------------------------------------------- free statements
 

@@ -84,6 +84,8 @@ def understand(
         return _of_forgetting(seen, leave) if fresh else Meaning("nothing", leave=leave)
     if wish is not None:
         return wish
+    if pending is not None and topic in TOPICS and not pending.turns and "refuse" in acts:
+        return Meaning("declined", topic=topic)
     asks = seen.question is not None
     if (asks or "ask_everything" in acts) and (inquiry := _inquiry(seen, reader, acts, known, told)):
         return inquiry
@@ -109,13 +111,11 @@ def understand(
             return Meaning("corrected", tuple(put_right), talk.correctable)
     if pending is None or topic not in TOPICS:
         return Meaning("nothing")
-    return _of_answer(seen, text, topic, acts, fresh=pending.fresh, first=not pending.turns)
+    return _of_answer(seen, text, topic, acts, fresh=pending.fresh)
 
 
-def _of_answer(seen: nlp.Analysis, text: str, topic: str, acts: set[str], *, fresh: bool, first: bool) -> Meaning:
+def _of_answer(seen: nlp.Analysis, text: str, topic: str, acts: set[str], *, fresh: bool) -> Meaning:
     """Return the meaning of words that may answer the open question."""
-    if first and "refuse" in acts:
-        return Meaning("declined", topic=topic)
     if fresh and "nothing" in acts:
         return Meaning("none" if topic != NAME else "declined", topic=topic)
     answered = answer(text, topic, seen) or (correction(text, topic, (), seen) if seen.yesno.no else [])  # no, from Bremen
@@ -143,7 +143,7 @@ def _forgetting(
         if said.verb not in table.words["forgetting"] or not _is_wish(seen, said):
             continue
         object = said.object
-        if object.person == "I" or (object.head or object.text.lower()) in table.words["everything"]:
+        if object.person == "I" or (object.head or object.text.lower()) in table.words["everything"] or object.text.lower().endswith(" data"):
             about_me = object.person == "I" or re.search(r"\b(?:me|my|i)\b", seen.text, re.IGNORECASE)
             return Meaning("forget") if about_me else None
         value = object.text
@@ -201,6 +201,9 @@ def _inquiry(
         return Meaning("asked", (Fact(EVERYTHING, ()),))
     if asked := reader.asks():
         return Meaning("asked", (asked,))
+    for said in seen.statements:
+        if said.question and said.verb in relations().words["knowing"] and (topics := reader.topics_of(said.object)):
+            return Meaning("asked", (Fact(topics[0], ()),))
     if "ask_name" in acts:
         return Meaning("asked", (Fact(NAME, ()),))
     for name in reader.people_asked():

@@ -22,7 +22,7 @@ _CLOSED = frozenset(["PRON", "DET", "AUX", "SCONJ", "CCONJ", "PART", "ADV", "INT
 _PLACES = frozenset(["GPE", "LOC", "FAC", "NORP"])
 _TIMES = frozenset(["DATE", "TIME"])
 LONGEST = {"name": 4, "people": 4, "place": 5}
-DOUBT = {"place": -0.12, "work": -0.02, "organisation": -0.3, "subject": -0.35, "name": 0.12, "people": 0.12}
+DOUBT = {"place": -0.12, "work": -0.02, "organisation": 0.0, "subject": -0.35, "name": 0.12, "people": 0.12}
 """The least likeness of a value to its kind, by kind, where nothing introduces it."""
 
 
@@ -35,7 +35,8 @@ def value_of(text: str, topic: Topic, seen: nlp.Analysis, *, sure: bool = True) 
         seen: The analysis of the utterance.
         sure: Whether the words before it introduce this kind: *my name is*, or the agent asked for it.
     """
-    text = _trimmed(text)
+    text = re.sub(r"^(?:the )?(?:city|town|village) of (?=\S)", "", _trimmed(text), flags=re.IGNORECASE) if topic.kind == "place" else _trimmed(text)
+    text = re.sub(r"\.(?= )", "", text)
     words = text.lower().split()
     if topic.kind in ("work", "subject", "activity", "thing") and len(words) > 1 and words[0] in ("a", "an"):
         text, words = text.split(maxsplit=1)[1], words[1:]
@@ -45,7 +46,8 @@ def value_of(text: str, topic: Topic, seen: nlp.Analysis, *, sure: bool = True) 
         return None
     if topic.kind == "number":
         return text if text.isdecimal() and 0 < int(text) < 120 else None
-    if _FUNCTION & set(words) or not any(map(_tells, text)) or text[0].isdigit():
+    named = topic.kind in ("name", "people")
+    if (_FUNCTION | _DETERMINERS if named else _FUNCTION) & set(words[named and words[0] == "will" :]) or not any(map(_tells, text)) or text[0].isdigit():
         return None
     if not _fits(text, words, topic, seen, sure):
         return None
@@ -78,11 +80,11 @@ def _fits(text: str, words: list[str], topic: Topic, seen: nlp.Analysis, sure: b
         case "organisation":
             if labels & {"ORG"}:
                 return True
-            return likeness(text, kind) > DOUBT[kind]
+            return likeness(text, kind) > (-0.6 if sure else DOUBT[kind])
         case "work":
             return likeness(text, kind) > (-0.5 if sure else DOUBT[kind]) and words[0] not in _DETERMINERS
         case "subject":
-            return likeness(text, kind) > DOUBT[kind] and words[0] not in _DETERMINERS
+            return likeness(text, kind) > (-0.7 if sure else DOUBT[kind]) and words[0] not in _DETERMINERS
         case _:
             return _DEICTIC.match(text) is None and words[0] not in ("more", "most", "a", "many", "much")
 
