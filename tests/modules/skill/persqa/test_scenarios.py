@@ -15,6 +15,7 @@ from modules.skill.persqa.conftest import Look
 from ravestate.errors import PlatformError
 from ravestate.modules import hibye, idle, interloc, nlp, ontology, persqa, rawio, verbaliser
 from ravestate.modules.meta.verbaliser.phrases import PhraseBook
+from ravestate.modules.skill.persqa.talk import MORE
 from ravestate.testing import Simulation, simulate
 
 pytestmark = pytest.mark.usefixtures("reader")
@@ -69,10 +70,15 @@ def meant(text: str, intent: str) -> bool:
 
 
 def asked(sim: Simulation) -> str:
-    """Return the topic that the agent asks about in a silence."""
+    """Return the topic that the agent asks about in a silence; a personal question in between does not count."""
     before = len(sim.said)
     sim.advance(6.0)
     question = sim.read(persqa.talk).question
+    if question is not None and question.topic == MORE:
+        sim.say("hm, well.")
+        before = len(sim.said)
+        sim.advance(30.0)
+        question = sim.read(persqa.talk).question
     assert len(sim.said) == before + 1 and question is not None, sim.said[before:]
     assert meant(sim.said[-1], f"ask_{question.topic}"), sim.said[-1]
     return question.topic
@@ -143,6 +149,7 @@ def test_another_process_remembers(file: Path) -> None:
     code = """
 import sys
 from ravestate.modules import persqa
+from ravestate.modules.skill.persqa.talk import MORE
 from ravestate.testing import simulate
 with simulate(persqa, settings={"ontology": {"path": sys.argv[1]}}) as sim:
     for text in sys.argv[2:]:
@@ -765,6 +772,7 @@ def test_a_full_disk(file: Path, look: Look) -> None:
     code = """
 import os, resource, sys
 from ravestate.modules import ontology, persqa
+from ravestate.modules.skill.persqa.talk import MORE
 from ravestate.testing import simulate
 with simulate(persqa, settings={"ontology": {"path": sys.argv[1]}}) as sim:
     sim.say("my name is ada and i live in ulm")

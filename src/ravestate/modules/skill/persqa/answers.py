@@ -14,7 +14,9 @@ from .reading import Reader, relations
 from .topics import TOPICS, Fact, Topic
 from .values import value_of
 
-_PREPOSITIONS = re.compile(r"^(?:(?:in|from|at|out of|for|with|as|of|to|(?:the )?(?:city|town|village) of)\s+)+", re.IGNORECASE)
+_PREPOSITIONS = re.compile(
+    r"^(?:(?:in|from|at|out of|for|with|as|of|to|(?:the )?(?:city|town|village) of)\s+)+", re.IGNORECASE
+)
 _LISTED = re.compile(r"\s*(?:[,;/&+]|\band\b|\bor\b|\bas well as\b|\bplus\b)\s*", re.IGNORECASE)
 _FIRST = re.compile(r"[.;:!?…\n()\"]")
 _END = re.compile(
@@ -24,7 +26,9 @@ _END = re.compile(
     re.IGNORECASE | re.DOTALL,
 )  # fmt: skip
 """The words after an answer."""
-_HEDGES = re.compile(r"^(?:(?:a bit of|a little|some|lots of|also|sometimes|mostly|maybe|just|both|to) )+", re.IGNORECASE)
+_HEDGES = re.compile(
+    r"^(?:(?:a bit of|a little|some|lots of|also|sometimes|mostly|maybe|just|both|to) )+", re.IGNORECASE
+)
 _WHERE = re.compile(r"\s(?:in|at|from|for|on|near|by)\s(.+)$", re.IGNORECASE)
 _PLACED = frozenset(["name", "people", "place", "work", "subject"])
 """Kinds whose values contain no place: *teacher at a school*."""
@@ -38,7 +42,11 @@ def _before(name: str) -> re.Pattern[str]:
 
 def spelled_out(text: str) -> str:
     """Return a text with its short forms written out: *it's* as *it is*."""
-    return re.sub(r"[^\W\d_]+['’][^\W\d_]+|\b(?:im|its|thats|dont|id)\b", lambda w: WRITTEN.get(w[0].lower().replace("’", "'"), w[0]), text)
+    return re.sub(
+        r"[^\W\d_]+['’][^\W\d_]+|\b(?:im|its|thats|dont|id)\b",
+        lambda w: WRITTEN.get(w[0].lower().replace("’", "'"), w[0]),
+        text,
+    )
 
 
 def answer(text: str, topic: str, seen: nlp.Analysis) -> list[Fact]:
@@ -78,11 +86,16 @@ def _values(rest: str, topic: Topic, seen: nlp.Analysis) -> list[str | None]:
     return found
 
 
-_NOT_THIS = re.compile(r"^\W*(?:(?:no|it is|i am|i)\W+)*not (?P<wrong>.+?)[,;.]\s*(?:(?:but|it is|i am|rather) )*(?P<right>.+)$", re.IGNORECASE)
+_NOT_THIS = re.compile(
+    r"^\W*(?:(?:no|it is|i am|i)\W+)*not (?P<wrong>.+?)[,;.]\s*(?:(?:but|it is|i am|rather) )*(?P<right>.+)$",
+    re.IGNORECASE,
+)
 _NOT_THAT = re.compile(r"^(?:no\W+)?(?:(?:it is|i am) )?(?P<right>.+?)[,;]? not (?P<wrong>\w.*)$", re.IGNORECASE)
 
 
-def correction(text: str, topic: str, known: Collection[str], seen: nlp.Analysis, *, explicit: bool = False) -> list[Fact]:
+def correction(
+    text: str, topic: str, known: Collection[str], seen: nlp.Analysis, *, explicit: bool = False
+) -> list[Fact]:
     """Return the facts in a correction: *no, Bremen*, *Bremen, not Hannover*.
 
     Args:
@@ -122,4 +135,7 @@ def _may_answer(said: nlp.Statement) -> bool:
         return said.verb in Reader.activities()
     if subject.person == "I":
         return not said.plan and said.verb in ("be", *relations().words["likes"], *relations().words["pastimes"])
-    return subject.text.lower() in ("", "it", "that", "this", "they", "these", "those", "he", "she") or subject.owner is not None
+    return (
+        subject.text.lower() in ("", "it", "that", "this", "they", "these", "those", "he", "she")
+        or subject.owner is not None
+    )

@@ -14,8 +14,8 @@ from ravestate.modules.meta.nlp.phrase import Phrase
 from ravestate.modules.meta.nlp.tree import Word
 from ravestate.yaml_text import load_yaml
 
-from .topics import NAME, RELATIVES, TOPICS, Fact, favourite
 from .told import Told, retold
+from .topics import NAME, RELATIVES, TOPICS, Fact, favourite
 from .values import is_gerund, value_of
 
 LASTING = frozenset(["subject", "university", "birthplace", "childhood"])
@@ -102,7 +102,9 @@ class Reader:
                 values = self._values(link)
                 if said.negated or (said.past and link.topic not in LASTING):
                     ended = said.past and not said.negated
-                    if ended and (link.topic not in ENDED or not values or values[0] not in (known or {}).get(link.topic, ())):
+                    if ended and (
+                        link.topic not in ENDED or not values or values[0] not in (known or {}).get(link.topic, ())
+                    ):
                         continue
                     if values or link.phrase is None or _ANY.match(link.phrase.text):
                         gone.setdefault(link.topic, values)
@@ -123,7 +125,9 @@ class Reader:
         for said in self.seen.statements:
             if not said.question or said.conditional:
                 continue
-            unknown = next((p for p in (said.triple.object, said.triple.subject) if isinstance(p, nlp.QuestionWord)), None)
+            unknown = next(
+                (p for p in (said.triple.object, said.triple.subject) if isinstance(p, nlp.QuestionWord)), None
+            )
             if unknown is None and self.seen.question != nlp.QuestionWord.YES_NO:
                 unknown = self.seen.question
             links = list(self._links(said))
@@ -268,7 +272,9 @@ class Reader:
             yield from (Link(topic, subject) for topic in topics)
         elif topic := self._noun(subject):
             if said.verb == _BE or _predicate(said) in _INTRODUCED:
-                sure = bool(object.names) or subject.head == "name" or said.verb != _BE or TOPICS[topic].kind != "people"
+                sure = (
+                    bool(object.names) or subject.head == "name" or said.verb != _BE or TOPICS[topic].kind != "people"
+                )
                 yield Link(topic, object if object.text and isinstance(said.triple.object, str) else None, sure)
             elif TOPICS[topic].kind == "activity":
                 yield Link(topic, subject, value=self._span((self._verb(said) or self._tree.words[0]).text, object))
@@ -299,7 +305,9 @@ class Reader:
             if (topic := self._table.nouns.get(object.head, "")) and (said.negated or object.names or said.question):
                 yield Link(topic, object if object.names else None)
             return
-        leisure = re.search(r"\b(?:free|spare|leisure) time\b|\bfor fun\b|\bas a hobby\b", self._tree.text, re.IGNORECASE)
+        leisure = re.search(
+            r"\b(?:free|spare|leisure) time\b|\bfor fun\b|\bas a hobby\b", self._tree.text, re.IGNORECASE
+        )
         pastime = verbs[0] in self._table.words["pastimes"] or (leisure and predicate != _BE)
         if not asked and ((verbs[0] in likes and len(verbs) > 1) or (pastime and verbs[0] not in likes)):
             if (hobby := self._pursuit(said, verbs, object)) is not None:
@@ -318,12 +326,16 @@ class Reader:
 
     def _word_before(self, phrase: Phrase) -> str:
         """Return the word before a phrase and its preposition: a verb that the parser may have mistaken for a noun."""
-        found = re.search(rf"(\w+) {phrase.preposition} (?:an? |the )?{re.escape(phrase.text)}", self._tree.text, re.IGNORECASE)
+        found = re.search(
+            rf"(\w+) {phrase.preposition} (?:an? |the )?{re.escape(phrase.text)}", self._tree.text, re.IGNORECASE
+        )
         return found[1].lower() if found else ""
 
     def _pursuit(self, said: nlp.Statement, verbs: list[str], object: Phrase) -> Link | None:
         """Return the hobby in *I like to read books*, *I play chess*, *I go swimming*."""
-        if said.subject.text.lower() != "i" or (len(verbs) == 1 and (verbs[0] == "go" or not object.text or object.preposition)):
+        if said.subject.text.lower() != "i" or (
+            len(verbs) == 1 and (verbs[0] == "go" or not object.text or object.preposition)
+        ):
             return None
         written = self._span(verbs[-1], Phrase("") if object.head in ("time", "weekend") else object)
         return Link("hobby", object if object.text else said.subject, value=written) if written else None
@@ -351,7 +363,9 @@ class Reader:
         elif object.text and not object.of("I"):
             yield Link("occupation", object, sure=self.asked == "occupation")
             yield Link(NAME, object, sure=False)
-            yield from (Link("employer", phrase) for phrase in said.phrases if phrase.preposition in ("at", "for", "with"))
+            yield from (
+                Link("employer", phrase) for phrase in said.phrases if phrase.preposition in ("at", "for", "with")
+            )
 
     def _called(self, said: nlp.Statement) -> Iterator[Link]:
         """Yield the name in *call me Tom*, *my friends call me Buzz*."""
@@ -397,12 +411,18 @@ class Reader:
     def _written(self, phrase: Phrase) -> str:
         """Return a phrase with its article, as in the utterance."""
         inner = r"\s+(?:(?:the|an?)\s+)?".join(map(re.escape, phrase.text.split()))
-        found = re.search(rf"(?<![\w'])(?:(?:the|an?|our|this|that|these|those)\s+)?{inner}(?!\w)(?:-[\w-]+|\s(?:am|an der|upon|de|del)\s\w+)*", self._tree.text, re.IGNORECASE)
+        found = re.search(
+            rf"(?<![\w'])(?:(?:the|an?|our|this|that|these|those)\s+)?{inner}(?!\w)(?:-[\w-]+|\s(?:am|an der|upon|de|del)\s\w+)*",
+            self._tree.text,
+            re.IGNORECASE,
+        )
         return found[0] if found else phrase.text
 
     def _span(self, verb: str, object: Phrase) -> str:
         """Return a verb with its object and all between them."""
-        found = re.search(rf"\b{re.escape(verb)}\w*\b(?:.{{0,40}}?{re.escape(object.text)})?", self._tree.text, re.IGNORECASE)
+        found = re.search(
+            rf"\b{re.escape(verb)}\w*\b(?:.{{0,40}}?{re.escape(object.text)})?", self._tree.text, re.IGNORECASE
+        )
         return found[0] if found else ""
 
     def _names(self, phrase: Phrase) -> tuple[str, ...]:
@@ -440,7 +460,13 @@ class Reader:
             return ""
         if subject.person == "I":
             thing = said.object
-            fits = thing.text and thing.head and not thing.preposition and verb not in (_BE, "have") and thing.person == "other"
+            fits = (
+                thing.text
+                and thing.head
+                and not thing.preposition
+                and verb not in (_BE, "have")
+                and thing.person == "other"
+            )
             new = not list(self._links(said)) and "my" not in thing.text.lower().split()
             return "I" if fits and new and self._is_new(thing) else ""
         topic = self._table.nouns.get(subject.head, "")

@@ -3,13 +3,25 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from datetime import datetime
 
 from ravestate.modules import nlp
 from ravestate.modules.meta.nlp.tree import Tree, Word
 
 from .wording import among
 
-_SAID_BACK = {"i": "you", "me": "you", "my": "your", "mine": "yours", "myself": "yourself", "am": "are", "we": "you", "our": "your", "us": "you", "ours": "yours"}
+_SAID_BACK = {
+    "i": "you",
+    "me": "you",
+    "my": "your",
+    "mine": "yours",
+    "myself": "yourself",
+    "am": "are",
+    "we": "you",
+    "our": "your",
+    "us": "you",
+    "ours": "yours",
+}
 _ASIDE = frozenset(["punct", "cc", "conj", "advcl", "parataxis", "intj", "mark", "meta", "dep"])
 
 
@@ -27,8 +39,8 @@ class Told:
     """A clause that says it to the user: *you painted a dragon*."""
     by: str = ""
     """The name of the person who told it; empty while it is not known."""
-    at: float = 0.0
-    """The time of day when they told it, in seconds since 1970; 0 if it is not known."""
+    at: datetime | None = None
+    """The moment when they told it."""
 
     @property
     def key(self) -> str:
@@ -65,4 +77,4 @@ def retold(tree: Tree, said: nlp.Statement) -> str:
 
 
 def _of(tree: Tree, child: Word) -> list[Word]:
-    return [] if child.dep in _ASIDE else [word for word in tree.subtree(child)]
+    return [] if child.dep in _ASIDE else list(tree.subtree(child))

@@ -12,7 +12,7 @@ from ravestate.modules import nlp
 from . import kinds
 from .answers import answer, correction, may_stand_alone, spelled_out
 from .reading import Reader, relations
-from .talk import FORGET, Talk
+from .talk import CONFIRM, FORGET, Talk
 from .told import Told
 from .topics import NAME, TOPICS, Fact
 from .wording import among
@@ -31,6 +31,7 @@ Kind = Literal[
     "mentioned",  # a relative without a name
     "asked",  # about themselves
     "asked_told",  # about what they told of others
+    "vouched",  # the answer by which somebody shows that they are who they say
     "identified",  # it's me, perhaps with a name
     "mistaken",  # they are not the person that the agent takes them for
     "strike",  # forget some facts
@@ -73,7 +74,7 @@ def understand(
     """Return the meaning of an utterance at `now`; a question waits `within` seconds for its answer."""
     pending = talk.pending(now, within)
     topic = pending.topic if pending else ""
-    reader = Reader(seen, topic if topic in TOPICS else "")
+    reader = Reader(seen, talk.doubt if topic == CONFIRM else topic if topic in TOPICS else "")
     acts = _acts(seen)
     leave = seen.intent_bye or "farewell" in seen.acts
     wish = _forgetting(seen, reader, known, told)
@@ -86,6 +87,8 @@ def understand(
         return wish
     if pending is not None and topic in TOPICS and not pending.turns and "refuse" in acts:
         return Meaning("declined", topic=topic)
+    if topic == CONFIRM and (vouched := _vouched(seen, reader, talk.doubt, acts)):
+        return vouched
     asks = seen.question is not None
     if (asks or "ask_everything" in acts) and (inquiry := _inquiry(seen, reader, acts, known, told)):
         return inquiry
@@ -118,7 +121,9 @@ def _of_answer(seen: nlp.Analysis, text: str, topic: str, acts: set[str], *, fre
     """Return the meaning of words that may answer the open question."""
     if fresh and "nothing" in acts:
         return Meaning("none" if topic != NAME else "declined", topic=topic)
-    answered = answer(text, topic, seen) or (correction(text, topic, (), seen) if seen.yesno.no else [])  # no, from Bremen
+    answered = answer(text, topic, seen) or (
+        correction(text, topic, (), seen) if seen.yesno.no else []
+    )  # no, from Bremen
     if answered and may_stand_alone(seen) and not {"thanks", "greeting", "acknowledgement"} & set(seen.acts):
         return Meaning("told", tuple(answered), topic)
     if not fresh:
@@ -143,13 +148,19 @@ def _forgetting(
         if said.verb not in table.words["forgetting"] or not _is_wish(seen, said):
             continue
         object = said.object
-        if object.person == "I" or (object.head or object.text.lower()) in table.words["everything"] or object.text.lower().endswith(" data"):
+        if (
+            object.person == "I"
+            or (object.head or object.text.lower()) in table.words["everything"]
+            or object.text.lower().endswith(" data")
+        ):
             about_me = object.person == "I" or re.search(r"\b(?:me|my|i)\b", seen.text, re.IGNORECASE)
             return Meaning("forget") if about_me else None
         value = object.text
         facts = [Fact(topic, (value,), gone=True) for topic, values in known.items() if value and among(value, values)]
         facts = facts or [Fact(topic, (), gone=True) for topic in reader.topics_of(object)]
-        facts = facts or [Fact(fact.topic, fact.values, gone=True) for fact in reader.facts() or filter(None, [reader.asks()])]
+        facts = facts or [
+            Fact(fact.topic, fact.values, gone=True) for fact in reader.facts() or filter(None, [reader.asks()])
+        ]
         free = tuple(one for one in told if among(value or "-", (one.subject, one.object)) or one in reader.free())
         if facts or free:
             return Meaning("strike", tuple(facts), free=free)
@@ -177,6 +188,17 @@ def _of_forgetting(seen: nlp.Analysis, leave: bool) -> Meaning:
 
 
 # ----------------------------------------------------------------------------------------------- identity
+
+
+def _vouched(seen: nlp.Analysis, reader: Reader, topic: str, acts: set[str]) -> Meaning | None:
+    """Return the answer by which the user shows who they are; one without facts if they cannot or will not."""
+    told = [fact for fact in reader.facts() if fact.topic == topic and not fact.gone]
+    told = told or (
+        answer(spelled_out(seen.text), topic, seen) if seen.question is None and may_stand_alone(seen) else []
+    )
+    if told or seen.yesno.no or seen.yesno.unsure or {"refuse", "nothing"} & acts:
+        return Meaning("vouched", tuple(told[:1]))
+    return None
 
 
 def _identity(seen: nlp.Analysis, known: Mapping[str, tuple[str, ...]]) -> Meaning | None:
@@ -224,7 +246,11 @@ def _of_yesno(yesno: nlp.YesNo, topic: str, text: str) -> Kind:
         return "unsure"
     if yesno.no:
         return "declined" if topic in (NAME, "home", "origin") else "none"
-    if yesno.yes and len(text.split()) <= 4 and not re.match(r"\W*(?:fine|good|great|ok|okay|right)\b", text, re.IGNORECASE):
+    if (
+        yesno.yes
+        and len(text.split()) <= 4
+        and not re.match(r"\W*(?:fine|good|great|ok|okay|right)\b", text, re.IGNORECASE)
+    ):
         return "which"
     return "nothing"
 

@@ -11,13 +11,15 @@ from .kinds import likeness
 from .topics import Topic
 from .wording import tidy
 
-_DETERMINERS = frozenset("a an the my your his her our their this that these those it some any no one".split())
+_DETERMINERS = frozenset(["a", "an", "the", "my", "your", "his", "her", "our", "their", "this", "that", "these", "those", "it", "some", "any", "no", "one"])
 _FUNCTION = frozenset(
-    "i i'm me you he she we they it him them us myself yourself is are was were be am do does did has have had will would can could "
-    "not no what why how when where who if because".split()
+    ["i", "i'm", "me", "you", "he", "she", "we", "they", "it", "him", "them", "us", "myself", "yourself", "is", "are", "was", "were", "be", "am", "do", "does", "did", "has", "have", "had", "will", "would", "can", "could", "not", "no", "what", "why", "how", "when", "where", "who", "if", "because"]
 )
 """Grammatical words that no value has."""
-_DEICTIC = re.compile(r"(?:this|that|these|those|it|you|him|her|them|me|us|my|your|here|there|(?:any|some|every|no)(?:thing|one|body))\b", re.IGNORECASE)
+_DEICTIC = re.compile(
+    r"(?:this|that|these|those|it|you|him|her|them|me|us|my|your|here|there|(?:any|some|every|no)(?:thing|one|body))\b",
+    re.IGNORECASE,
+)
 _CLOSED = frozenset(["PRON", "DET", "AUX", "SCONJ", "CCONJ", "PART", "ADV", "INTJ", "VERB", "ADP"])
 _PLACES = frozenset(["GPE", "LOC", "FAC", "NORP"])
 _TIMES = frozenset(["DATE", "TIME"])
@@ -35,7 +37,11 @@ def value_of(text: str, topic: Topic, seen: nlp.Analysis, *, sure: bool = True) 
         seen: The analysis of the utterance.
         sure: Whether the words before it introduce this kind: *my name is*, or the agent asked for it.
     """
-    text = re.sub(r"^(?:the )?(?:city|town|village) of (?=\S)", "", _trimmed(text), flags=re.IGNORECASE) if topic.kind == "place" else _trimmed(text)
+    text = (
+        re.sub(r"^(?:the )?(?:city|town|village) of (?=\S)", "", _trimmed(text), flags=re.IGNORECASE)
+        if topic.kind == "place"
+        else _trimmed(text)
+    )
     text = re.sub(r"\.(?= )", "", text)
     words = text.lower().split()
     if topic.kind in ("work", "subject", "activity", "thing") and len(words) > 1 and words[0] in ("a", "an"):
@@ -47,7 +53,11 @@ def value_of(text: str, topic: Topic, seen: nlp.Analysis, *, sure: bool = True) 
     if topic.kind == "number":
         return text if text.isdecimal() and 0 < int(text) < 120 else None
     named = topic.kind in ("name", "people")
-    if (_FUNCTION | _DETERMINERS if named else _FUNCTION) & set(words[named and words[0] == "will" :]) or not any(map(_tells, text)) or text[0].isdigit():
+    if (
+        (_FUNCTION | _DETERMINERS if named else _FUNCTION) & set(words[named and words[0] == "will" :])
+        or not any(map(_tells, text))
+        or text[0].isdigit()
+    ):
         return None
     if not _fits(text, words, topic, seen, sure):
         return None
@@ -123,9 +133,10 @@ def _tells(letter: str) -> bool:
 
 def is_gerund(text: str) -> bool:
     """Return whether a text begins with an activity: *sailing*, *rock climbing*, but not *spring*."""
-    return any(re.fullmatch(r"[a-z]*[aeiouy][a-z]*[b-df-hj-np-tv-z]?ing", word) and len(word) > 5 for word in text.lower().split()[:2]) and (
-        likeness(text, "activity") > -0.2
-    )
+    return any(
+        re.fullmatch(r"[a-z]*[aeiouy][a-z]*[b-df-hj-np-tv-z]?ing", word) and len(word) > 5
+        for word in text.lower().split()[:2]
+    ) and (likeness(text, "activity") > -0.2)
 
 
 _DOUBLED = re.compile(r"(?:[^aeiou]|^)[aeiou][bdgmnpt]")

@@ -5,7 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from .topics import TOPICS, Topic
-SMALL = frozenset("of the and in on upon am an at der die das den von van de da di del la le du y zu near for bei a".split())
+
+SMALL = frozenset(
+    ["of", "the", "and", "in", "on", "upon", "am", "an", "at", "der", "die", "das", "den", "von", "van", "de", "da", "di", "del", "la", "le", "du", "y", "zu", "near", "for", "bei", "a"]
+)
 """Words without a capital inside a name."""
 
 BARE = frozenset(["retired", "self-employed", "freelance", "unemployed"])
@@ -66,6 +69,12 @@ def same(one: str, other: str) -> bool:
 def among(value: str, others: Iterable[str]) -> bool:
     """Return whether one of `others` means the same as `value`."""
     return any(same(value, other) for other in others)
+
+
+def alike(value: str, others: Iterable[str]) -> bool:
+    """Return whether one of `others` means the same, or names a part of it: *Bremen* of *the city of Bremen*."""
+    words = set(_key(value).split())
+    return any(words and (words <= set(_key(other).split()) or words >= set(_key(other).split())) for other in others)
 
 
 def _key(value: str) -> str:
