@@ -16,6 +16,7 @@ from ravestate.modules.skill.agentqa.router import Match, router_of
 from ravestate.modules.skill.genqa.question import as_question
 from ravestate.modules.skill.genqa.referring import Before, completed
 from ravestate.modules.skill.hibye.words import is_farewell, is_greeting
+from ravestate.modules.skill.persqa.reading import Reader
 from ravestate.modules.skill.persqa.talk import Talk
 from ravestate.modules.skill.persqa.topics import Fact
 from ravestate.modules.skill.persqa import kinds
@@ -58,6 +59,18 @@ def persqa_facts(sentence: str) -> str:
     if meaning.kind == "asked":
         return f"? {facts}".rstrip()
     return {"nothing": "-", "mentioned": "-"}.get(meaning.kind, meaning.kind)
+
+
+def facts(sentence: str) -> str:
+    """Return what a sentence tells when nothing is known and nothing was asked.
+
+    The parts are joined by semicolons: ``topic=value``, ``topic=a|b``, ``not topic=value``; ``Subject / verb / object`` for
+    what no topic covers; ``-`` for nothing.
+    """
+    kinds.load()
+    reader = Reader(_seen(sentence))
+    free = [f"{told.subject} / {told.verb} / {told.object}" for told in reader.free()]
+    return "; ".join([*map(_label, sorted(reader.facts(), key=lambda fact: fact.topic)), *free]) or "-"
 
 
 def _label(fact: Fact) -> str:

@@ -50,7 +50,8 @@ def knower() -> rs.Module:
 
 def agent(file: Path | None, *others: Any, **settings: Any) -> Simulation:
     where: dict[str, Any] = {"path": file} if file is not None else {"path": "/dev/null/no/memory.lbug"}
-    return simulate(persqa, chatter(), *others, settings={"ontology": where, "persqa": settings})
+    chosen = {"confirm": False, **settings}
+    return simulate(persqa, chatter(), *others, settings={"ontology": where, "persqa": chosen})
 
 
 def meant(text: str, intent: str) -> bool:
@@ -151,7 +152,7 @@ import sys
 from ravestate.modules import persqa
 from ravestate.modules.skill.persqa.talk import MORE
 from ravestate.testing import simulate
-with simulate(persqa, settings={"ontology": {"path": sys.argv[1]}}) as sim:
+with simulate(persqa, settings={"ontology": {"path": sys.argv[1]}, "persqa": {"confirm": False}}) as sim:
     for text in sys.argv[2:]:
         sim.say(text)
     print(sim.said[-1])
@@ -576,7 +577,7 @@ def test_a_friend_of_ones_own_name_is_somebody_else(file: Path, look: Look) -> N
         ("my name is 🦊", "🦊"),
         ("my name is ada 🎉", "Ada"),
         ("👋 my name is 🦊 ada👍🏽❤️!", "Ada"),
-        ('my name is "; DROP', "Drop"),
+        ('my name is "; DROP', None),
         ("my name is Robert'); MATCH (n) DETACH DELETE n;--", "Robert"),
         ("my name is o'brien", "O'Brien"),
         ("my name is `}) x", None),
@@ -650,7 +651,6 @@ def test_forget_me(file: Path, look: Look) -> None:
         before = len(sim.said)
         sim.advance(300.0)
         assert len(sim.said) == before
-        assert meant(answers(sim, "forget me"), "forget_nobody")
         assert meant(answers(sim, "what is my name?"), "recall_stranger")
         assert dict(sim.read(interloc.users)) == {"console": None}
     assert look() == {}

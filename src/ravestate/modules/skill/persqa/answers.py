@@ -134,6 +134,8 @@ def _may_answer(said: nlp.Statement) -> bool:
     if subject.person == "you":
         return said.verb in Reader.activities()
     if subject.person == "I":
+        if f"i {said.verb}" in map(str.lower, relations().words["openers"]):
+            return True
         return not said.plan and said.verb in ("be", *relations().words["likes"], *relations().words["pastimes"])
     return (
         subject.text.lower() in ("", "it", "that", "this", "they", "these", "those", "he", "she")

@@ -14,6 +14,7 @@ FITTING = {
     "place": ("place",),
     "work": ("job",),
     "organisation": ("workplace", "group"),
+    "club": ("group",),
     "subject": ("studies",),
     "activity": ("activity",),
 }

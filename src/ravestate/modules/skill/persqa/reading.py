@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
@@ -14,9 +15,10 @@ from ravestate.modules.meta.nlp.phrase import Phrase
 from ravestate.modules.meta.nlp.tree import Word
 from ravestate.yaml_text import load_yaml
 
+from .kinds import likeness
 from .told import Told, retold
 from .topics import NAME, RELATIVES, TOPICS, Fact, favourite
-from .values import is_gerund, value_of
+from .values import gerund, is_gerund, value_of
 
 LASTING = frozenset(["subject", "university", "birthplace", "childhood"])
 """Topics that the past tells as well: *I studied law*."""
@@ -24,6 +26,8 @@ ENDED = ("home", "occupation", "employer", "club")
 """Topics of which the past tells that they hold no longer, if they were known."""
 
 _ANY = re.compile(r"(?:any|there$|here$)", re.IGNORECASE)
+_NAMING = frozenset(["'s", "’s", "'", "s", "name", "names", "is", "are", "called", "named", ",", "who", "that"])
+"""Words between a relative and their name: *my mother's name is Anna*."""
 _INTRODUCED = frozenset(["be called", "be named", "call", "name"])
 _BE = "be"
 
@@ -123,7 +127,7 @@ class Reader:
     def asks(self) -> Fact | None:
         """Return the fact that the user asks for; it has values if they want them confirmed."""
         for said in self.seen.statements:
-            if not said.question or said.conditional:
+            if not self._is_asked(said) or said.conditional:
                 continue
             unknown = next(
                 (p for p in (said.triple.object, said.triple.subject) if isinstance(p, nlp.QuestionWord)), None
@@ -218,8 +222,13 @@ class Reader:
     def free(self) -> list[Told]:
         """Return what the user tells about themselves and others that no topic covers: *Jonas plays the violin*."""
         found: list[Told] = []
+        last = ""
         for said in self.seen.statements:
-            if said.holds and (subject := self._about(said)):
+            pronoun = said.subject.text.lower() in ("he", "she", "they")
+            subject = last if pronoun and said.verb not in self._table.words["passing"] else self._about(said)
+            if said.subject.names or self._noun(said.subject):
+                last = said.subject.name or said.subject.text
+            if subject and (said.holds or self._happened(said)):
                 verb = _predicate(said)
                 text = retold(self._tree, said)
                 thing = said.object.text
@@ -231,13 +240,21 @@ class Reader:
     # --------------------------------------------------------------------------------------- the flags
 
     def _asserted(self, said: nlp.Statement) -> bool:
-        if said.hearsay or said.conditional or said.question:
+        if said.hearsay or said.conditional or self._is_asked(said):
             return False
         if said.plan and not self._is_habit(said):
             return False
         if self._is_temporal(said):
             return False
         return not said.request or said.subject.text.lower() == "i" or said.verb in ("call", "name")
+
+    def _is_asked(self, said: nlp.Statement) -> bool:
+        """Return whether it is asked, and not only beside a question: *my name is Ada, what is yours*."""
+        if not said.question or any(isinstance(part, nlp.QuestionWord) for part in said.triple):
+            return said.question
+        verb, others = self._verb(said), [other for other in self.seen.statements if other is not said]
+        first = said.subject.text and verb and self._tree.text.find(said.subject.text) < verb.start
+        return not (first and any(isinstance(part, nlp.QuestionWord) for other in others for part in other.triple))
 
     def _verb(self, said: nlp.Statement) -> Word | None:
         """Return the verb of a statement in the tree."""
@@ -309,6 +326,11 @@ class Reader:
             r"\b(?:free|spare|leisure) time\b|\bfor fun\b|\bas a hobby\b", self._tree.text, re.IGNORECASE
         )
         pastime = verbs[0] in self._table.words["pastimes"] or (leisure and predicate != _BE)
+        verb = self._verb(said)
+        if verb is not None and verb.tag in ("VBP", "VB") and object.text and not object.preposition and said.holds:
+            pastime = pastime or likeness(gerund(self._span(verb.low, object), self.seen), "activity") > 0.2
+        if verb is not None and verb.tag == "VBG" and verb.dep == "conj":  # I love climbing and baking bread
+            pastime = pastime or any(other.verb in likes and other.holds for other in self.seen.statements)
         if not asked and ((verbs[0] in likes and len(verbs) > 1) or (pastime and verbs[0] not in likes)):
             if (hobby := self._pursuit(said, verbs, object)) is not None:
                 yield hobby
@@ -316,13 +338,25 @@ class Reader:
         if predicate == _BE:
             yield from self._being(said)
         direct = [object] if object.text and not object.preposition else []
+        if not object.text and (dangling := self._dangling(verb)):
+            direct = [dangling]
+        if object.preposition and object not in said.phrases:
+            direct.append(object)
         for phrase in (*direct, *said.phrases):
-            head = f" {object.head}" if predicate == _BE and direct and phrase.preposition else ""
+            head = f" {object.head}" if predicate == _BE and direct and phrase.preposition not in ("", "from") else ""
             topics = self._table.says.get(f"{predicate}{head} {phrase.preposition}".strip(), ())
             if not topics and phrase.preposition:
                 topics = self._table.says.get(f"{self._word_before(phrase)} {phrase.preposition}", ())
             for topic in topics:
-                yield Link(topic, phrase, sure=predicate != _BE and phrase.preposition != "in")
+                yield Link(topic, phrase, predicate != _BE and (phrase.preposition != "in" or topic == "subject"))
+
+    def _dangling(self, verb: Word | None) -> Phrase | None:
+        """Return the words after a verb and a preposition that the parser has not recognised: *moved to Basel*."""
+        preposition = self._tree.after(verb) if verb is not None else None
+        value = self._tree.after(preposition) if preposition is not None and preposition.pos in ("ADP", "PART") else None
+        if preposition is None or value is None or value.pos == "PUNCT":
+            return None
+        return Phrase(" ".join(self._run(value)), preposition=preposition.low)
 
     def _word_before(self, phrase: Phrase) -> str:
         """Return the word before a phrase and its preposition: a verb that the parser may have mistaken for a noun."""
@@ -333,17 +367,18 @@ class Reader:
 
     def _pursuit(self, said: nlp.Statement, verbs: list[str], object: Phrase) -> Link | None:
         """Return the hobby in *I like to read books*, *I play chess*, *I go swimming*."""
-        if said.subject.text.lower() != "i" or (
-            len(verbs) == 1 and (verbs[0] == "go" or not object.text or object.preposition)
-        ):
+        free = object.head in ("time", "weekend", "fun")
+        alone = verbs[0] == "go" or not object.text or object.preposition
+        if said.subject.text.lower() != "i" or (len(verbs) == 1 and alone and not free):
             return None
-        written = self._span(verbs[-1], Phrase("") if object.head in ("time", "weekend") else object)
+        verb = self._verb(said)
+        written = self._span(verb.low if verb else verbs[-1], Phrase("") if free else object)
         return Link("hobby", object if object.text else said.subject, value=written) if written else None
 
     def _being(self, said: nlp.Statement) -> Iterator[Link]:
         """Yield what *I am ...* tells: an age, an occupation, studies, or a name."""
         object = said.object
-        if re.fullmatch(r"\d+( years?( old)?| old)?", object.text) or (object.amount and object.head == "old"):
+        if re.fullmatch(r"\d+( years?( old)?| old)?", object.text) or (object.head == "old" and len(object.text.split()) == 3):
             number = re.match(r"\d+", object.text)
             yield Link("age", object, value=number[0] if number else str(int(object.amount or 0)))
         elif object.head == "member" and object.owner is not None:
@@ -372,7 +407,7 @@ class Reader:
         me = next((w for w in self._tree.words if w.low == "me" and self._tree.head(w).lemma == said.verb), None)
         after = self._tree.after(me) if me is not None else None
         if after is not None and after.pos in ("PROPN", "NOUN", "X", "ADJ", "VERB"):
-            yield Link(NAME, said.object, sure=after.pos == "PROPN", value=" ".join(self._run(after)))
+            yield Link(NAME, said.object, sure=after.pos == "PROPN" or not said.request, value=" ".join(self._run(after)))
 
     def _ended(self, said: nlp.Statement) -> str:
         """Return the topic that *I quit my job*, *I moved away* ends; empty if there is none."""
@@ -382,15 +417,40 @@ class Reader:
         return self._table.ends.get(" ".join(filter(None, parts)), "")
 
     def _mentioned(self) -> Iterator[tuple[str, tuple[str, ...]]]:
-        """Yield the relatives that the user names in passing: *I went to Rome with my sister Rosa*."""
+        """Yield the relatives that the user names: *my sister Rosa*, *my mother's name is Anna*, *a son named Ben*."""
+        if any(said.question or said.conditional or said.hearsay for said in self.seen.statements):
+            return
         for said in self.seen.statements:
             for phrase in (said.subject, said.object, *said.phrases):
-                topic = self._table.nouns.get(phrase.head, "")
-                if not (topic and phrase.names and TOPICS[topic].nouns) or said.question or said.conditional:
-                    continue
-                if phrase.of("I") or (said.subject_person == "I" and said.verb == "have" and not said.negated):
-                    names = (value_of(name, TOPICS[topic], self.seen) for name in self._names(phrase))
-                    yield topic, tuple(filter(None, names))
+                mine = phrase.of("I") or (said.subject_person == "I" and said.verb == "have" and not said.negated)
+                topic, names = self._named(phrase)
+                if topic and names and mine:
+                    yield topic, self._people(topic, names)
+        words = self._tree.words
+        for index, word in enumerate(words):
+            topic = self._relative(word.lemma)
+            rest = words[index + 1 :]
+            passed = list(itertools.takewhile(lambda other: other.low in _NAMING, rest))
+            if topic and {"name", "names", "called", "named"} & {other.low for other in passed} and len(passed) < len(rest):
+                first = rest[len(passed)]
+                names = [" ".join(self._run(one)) for one in (first, *self._joined(first)) if one.pos not in ("DET", "ADV")]
+                yield topic, self._people(topic, names)
+
+    def _named(self, phrase: Phrase) -> tuple[str, tuple[str, ...]]:
+        """Return the topic and the names of *my sister Rosa*, also where the parser takes the name for the noun."""
+        if topic := self._relative(phrase.head):
+            return topic, self._names(phrase)
+        words = phrase.text.split()
+        topic = self._relative(words[-2].lower()) if len(words) == 3 else ""
+        return topic, (words[-1],) if topic else ()
+
+    def _relative(self, noun: str) -> str:
+        """Return the topic of a relative, a friend or a pet; empty for other nouns."""
+        topic = self._table.nouns.get(noun, "")
+        return topic if topic and TOPICS[topic].nouns else ""
+
+    def _people(self, topic: str, names: Iterable[str]) -> tuple[str, ...]:
+        return tuple(filter(None, (value_of(name, TOPICS[topic], self.seen) for name in names)))
 
     # -------------------------------------------------------------------------------------- the values
 
@@ -416,7 +476,7 @@ class Reader:
             self._tree.text,
             re.IGNORECASE,
         )
-        return found[0] if found else phrase.text
+        return found[0] if found else phrase.name or phrase.text
 
     def _span(self, verb: str, object: Phrase) -> str:
         """Return a verb with its object and all between them."""
@@ -456,27 +516,38 @@ class Reader:
         """Return the subject of a statement that is worth keeping, an empty string for others."""
         words, subject = self._table.words, said.subject
         verb = said.verb
-        if verb in words["passing"] or not isinstance(said.triple.object, str):
+        if " to " in said.triple.predicate or said.object.person != "other":
+            return ""
+        if verb in words["passing"] or not isinstance(said.triple.object, str) or self._ended(said):
             return ""
         if subject.person == "I":
             thing = said.object
             fits = (
                 thing.text
-                and thing.head
                 and not thing.preposition
                 and verb not in (_BE, "have")
                 and thing.person == "other"
             )
-            new = not list(self._links(said)) and "my" not in thing.text.lower().split()
+            mine = "my" in thing.text.lower().split() and not self._happened(said)
+            new = not mine and not list(self._links(said))
             return "I" if fits and new and self._is_new(thing) else ""
-        topic = self._table.nouns.get(subject.head, "")
-        if topic and TOPICS[topic].nouns and subject.of("I"):
+        topic, names = self._named(subject)
+        if topic and subject.of("I"):
             if verb == _BE and (said.object.names or not said.object.text):
                 return ""
-            return subject.name or subject.text
+            return names[0] if names else subject.text
+        mine = subject.text.lower().split() if subject.of("I") else []
+        if words["kin"] & {subject.head, *mine[1:2]}:
+            return " ".join(subject.text.split()[2:]) if len(mine) == 3 else subject.text
         if subject.names and not subject.head and self._is_person(subject):
             return subject.text if not self._noun(said.object) else ""
         return ""
+
+    def _happened(self, said: nlp.Statement) -> bool:
+        """Return whether it is an event of the past: *I painted a dragon*, but not *I lived in Rome*."""
+        verb = self._verb(said)
+        flags = said.negated or said.hearsay or said.conditional or said.plan or said.question or said.request
+        return not flags and verb is not None and verb.tag == "VBD" and said.verb not in self._table.words["states"]
 
     def _is_new(self, phrase: Phrase) -> bool:
         return self._written(phrase).split()[0].lower() not in ("this", "that", "these", "those")

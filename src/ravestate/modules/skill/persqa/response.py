@@ -74,7 +74,7 @@ def respond_to(
         case "none":
             closed = _closed("none", meaning.topic, listening).user
             none = Meaning("none", (Fact(meaning.topic, (), gone=True),), meaning.topic)
-            return _told(none, closed, now, chance)
+            return _told(none, closed, now, chance, confirm=confirm)
         case "which":
             talk = replace(user.talk, ignored=0, spoke=now)  # the question stays open
             return Response(say("which", user.known), replace(user, talk=talk))

@@ -99,7 +99,7 @@ def understand(
         return Meaning("told", tuple(facts), topic, leave, aloud=bool(facts) and not aside, free=free)
     if identity := _identity(seen, known):
         return identity
-    text = spelled_out(seen.text).strip()
+    text = spelled_out(seen.tree.text).strip()
     if aside:
         before = _before_question(text) if asks and topic else ""
         side = answer(before, topic, seen) if before else []
@@ -194,7 +194,7 @@ def _vouched(seen: nlp.Analysis, reader: Reader, topic: str, acts: set[str]) -> 
     """Return the answer by which the user shows who they are; one without facts if they cannot or will not."""
     told = [fact for fact in reader.facts() if fact.topic == topic and not fact.gone]
     told = told or (
-        answer(spelled_out(seen.text), topic, seen) if seen.question is None and may_stand_alone(seen) else []
+        answer(spelled_out(seen.tree.text), topic, seen) if seen.question is None and may_stand_alone(seen) else []
     )
     if told or seen.yesno.no or seen.yesno.unsure or {"refuse", "nothing"} & acts:
         return Meaning("vouched", tuple(told[:1]))
@@ -224,9 +224,11 @@ def _inquiry(
     if asked := reader.asks():
         return Meaning("asked", (asked,))
     for said in seen.statements:
+        if said.plan:
+            continue
         if said.question and said.verb in relations().words["knowing"] and (topics := reader.topics_of(said.object)):
             return Meaning("asked", (Fact(topics[0], ()),))
-    if "ask_name" in acts:
+    if "ask_name" in acts and not any(said.plan for said in seen.statements):
         return Meaning("asked", (Fact(NAME, ()),))
     for name in reader.people_asked():
         for topic, values in known.items():

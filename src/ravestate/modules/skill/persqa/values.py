@@ -73,7 +73,7 @@ def _fits(text: str, words: list[str], topic: Topic, seen: nlp.Analysis, sure: b
         return False
     match kind:
         case "name" | "people":
-            if words[0] in _DETERMINERS or any(letter.isdigit() for letter in text):
+            if any(letter.isdigit() for letter in text) or re.search(r"['’]s\b", text):
                 return False
             if _is_name(text, seen, labels):
                 return True
@@ -86,11 +86,12 @@ def _fits(text: str, words: list[str], topic: Topic, seen: nlp.Analysis, sure: b
                 return False
             if labels & _PLACES:
                 return True
-            return likeness(text, kind) > (0.0 if words[0] in _DETERMINERS else DOUBT[kind])
+            doubt = -0.5 if sure else DOUBT[kind]
+            return likeness(text, kind) > (0.0 if words[0] in _DETERMINERS else doubt)
         case "organisation":
             if labels & {"ORG"}:
                 return True
-            return likeness(text, kind) > (-0.6 if sure else DOUBT[kind])
+            return likeness(text, "club" if topic.name == "club" else kind) > (-0.7 if sure else DOUBT[kind])
         case "work":
             return likeness(text, kind) > (-0.5 if sure else DOUBT[kind]) and words[0] not in _DETERMINERS
         case "subject":
