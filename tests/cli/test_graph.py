@@ -71,7 +71,7 @@ def test_a_given_format_goes_before_the_name(hello: str, folder: Path, capsys: C
         (("--format", "png"), "invalid choice: 'png'"),
         (("--without", "nlp"), "--without is for the complete agent: leave the modules out"),
         (("--unfold", "helo"), "--unfold helo: the agent has no such module; did you mean 'hello'?"),
-        (("--unfold", "hello", "--no-fold"), "--unfold draws some modules, --no-fold all: write one of them"),
+        (("--unfold", "hello", "--no-fold"), "--unfold draws some modules, --no-fold all: write only one of them"),
     ],
 )
 def test_wrong_use_is_2_and_writes_nothing(

@@ -105,7 +105,7 @@ def test_files_that_cannot_be_written_or_read(file: Path, folder: Path, capsys: 
     assert call(capsys, "memory", "--path", str(file), "load", "broken.json")[0] == 2
     write(folder / "other.json", "[]")
     code, _, errors = call(capsys, "memory", "--path", str(file), "load", "other.json")
-    assert code == 1 and "this is not a document of memory" in errors
+    assert code == 1 and "this is not an exported memory" in errors
 
 
 @pytest.mark.parametrize("answer", ["n\n", "", "\n", "yess\n"])
@@ -208,7 +208,7 @@ def test_the_settings_of_an_agent_are_used(file: Path, folder: Path, capsys: Cap
     assert "Lady" in call(capsys, "memory", "-f", "agent.yaml", "list")[1]
     code, out, errors = call(capsys, "memory", "--set", f"ontology.path={file}", "list")
     assert code == 0 and "Lady" not in out
-    assert "also has Boat, which no file of types has" in errors
+    assert "also has Boat, which no file of types declares" in errors
 
 
 def test_the_place_may_be_named_behind_the_action_too(file: Path, folder: Path, capsys: Capture) -> None:

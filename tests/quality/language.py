@@ -11,11 +11,12 @@ from functools import cache
 
 from quality import modules
 from quality.measure import Result, labelled, measure_labels, measure_triples
+from ravestate.language.matcher import bundled_matcher
 from ravestate.modules import emotion
 from ravestate.modules.meta.idle.words import asks_for_quiet, takes_leave
 from ravestate.modules.meta.nlp import Settings
 from ravestate.modules.meta.nlp.analysis import analyse
-from ravestate.modules.meta.nlp.answer import yesno_of
+from ravestate.modules.meta.nlp.answer import YesNo, yesno_of
 from ravestate.modules.meta.nlp.pipeline import pipeline
 
 LABELLED = ("questions_rows", "yesno_rows", "intents_rows", "quiet_rows", "emotion_rows")
@@ -27,6 +28,12 @@ def intents(text: str) -> str:
     seen = analyse(text, pipeline(""), Settings().agent_names)
     found = (seen.intent_hi and "hi", seen.intent_bye and "bye", seen.intent_play and "play")
     return "+".join(filter(None, found)) or "-"
+
+
+def answered(text: str) -> YesNo:
+    """By nlp, with the examples learnt."""
+    bundled_matcher("answers").load()
+    return yesno_of(text)
 
 
 def quiet(text: str) -> str:
@@ -41,7 +48,7 @@ def feelings(text: str) -> str:
 
 SEE: dict[str, Callable[[str], str]] = {
     "questions_rows": modules.questions,
-    "yesno_rows": lambda text: modules.yesno_label(yesno_of(text)),
+    "yesno_rows": lambda text: modules.yesno_label(answered(text)),
     "intents_rows": intents,
     "quiet_rows": quiet,
     "emotion_rows": feelings,

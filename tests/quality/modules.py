@@ -9,6 +9,7 @@ from functools import cache
 from pathlib import Path
 
 from quality.measure import Reply, labelled
+from ravestate.language.matcher import bundled_matcher
 from ravestate.modules import emotion
 from ravestate.modules import genqa as genqa_module
 from ravestate.modules.meta.nlp import QuestionWord, Settings, YesNo
@@ -40,7 +41,8 @@ def questions(text: str) -> str:
 
 
 def yesno(text: str) -> str:
-    """By nlp."""
+    """By nlp, with the examples learnt."""
+    bundled_matcher("answers").load()
     return yesno_label(_seen(text).yesno)
 
 

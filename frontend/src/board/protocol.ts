@@ -102,7 +102,7 @@ export interface ClauseView {
   condition: string;
   constraints: ConstraintView[];
   gates: GateView[];
-  /** The addends of the pathway with the least utility, which decides. */
+  /** The addends of the pathway with the least utility, which decides the clause's utility. */
   terms: Term[];
   /** The number of pathways. */
   pathways: number;
@@ -114,7 +114,7 @@ export interface ClauseView {
   base: number;
 }
 
-/** A signal in a clause; ages in seconds (`max_age=None`: any), predicates by their names. */
+/** A signal in a clause, with ages in seconds (`max_age=None` sets no limit) and the names of its predicates. */
 export interface ConstraintView {
   signal: string;
   min_age: number;
@@ -129,7 +129,7 @@ export interface Diagram {
   edges: Edge[];
 }
 
-/** A spike was withdrawn: by overflow, a wipe, or a later one (L20, L23). */
+/** A spike was withdrawn, by overflow, a wipe, or a later spike (L20, L23). */
 export interface Dropped {
   kind: "dropped";
   time: number;
@@ -249,17 +249,17 @@ export interface Pressed {
   until: number;
 }
 
-/** A rule that may raise a missing signal, and how that ended in this causal group. */
+/** A rule that may raise a missing signal, and the outcome in this causal group. */
 export interface Raiser {
   rule: string;
   /** The outcome of its run, `running`, or `not run`. */
   outcome: string;
   time: number | null;
-  /** The same as text. */
+  /** The outcome as text. */
   words: string;
 }
 
-/** A rule as declared. `raises` has all signals that it may raise, with those of its slots. */
+/** A rule as declared. `raises` has all signals that it may raise, including those of the slots that it writes. */
 export interface RuleView {
   name: string;
   module: string;

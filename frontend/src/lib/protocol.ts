@@ -1,12 +1,12 @@
 // Written by tools/protocol.py from ravestate.modules.platform.webio.protocol: change that file, and run the tool.
 
-/** The version of the protocol. A new frame or field keeps it; any other change raises it. */
+/** The version of the protocol. A new frame or field keeps the number; any other change raises it. */
 export const VERSION = 1;
 
 /** The maximum number of characters that a visitor may say at once. */
 export const LONGEST_TEXT = 10000;
 
-/** The WebSocket's closing code for each error; an error that is not listed closes with that of `malformed`. */
+/** The WebSocket's closing code for each error; any other error closes with the code of `malformed`. */
 export const CLOSING_CODES = {
   ended: 1000,
   closing: 1001,

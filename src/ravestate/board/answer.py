@@ -10,11 +10,11 @@ from ravestate.engine.reasons import Verdict
 
 @dataclass(frozen=True, slots=True)
 class Raiser:
-    """A rule that may raise a missing signal, and how that ended in this causal group.
+    """A rule that may raise a missing signal, and the outcome in this causal group.
 
     Attributes:
         outcome: The outcome of its run, ``running``, or ``not run``.
-        words: The same as text.
+        words: The outcome as text.
     """
 
     rule: str
@@ -49,7 +49,7 @@ class WhyNot:
         rule, spike, signal, time: The question; the time is the spike's birth (seconds).
         verdict: How far the rule came at best.
         words: The reason, in a sentence or two.
-        at: The time of that decision (seconds); None while it is open.
+        at: The time at which this was decided (seconds); None while it is undecided.
         clause: The number of the clause that took a spike, if one did.
         missing: The signals that the rule lacked.
         moments: The rule's history for this cause. Beyond 200 moments, the middle is left out and one moment says so.

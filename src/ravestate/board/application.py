@@ -29,8 +29,8 @@ INSIDE = "board/"
 """The board's address, relative to the chat page."""
 
 LARGEST = 64 * 1024 * 1024
-"""The maximum number of bytes of an uploaded recording: twice the page's largest export, some 125,000 records of 270
-bytes."""
+"""The maximum number of bytes of an uploaded recording: twice the page's largest export, which has some 125,000 records
+of 270 bytes."""
 
 AT_ONCE = 4
 """The maximum number of uploads at once."""
@@ -69,7 +69,7 @@ def routes(
     known = Recorders() if recorders is None else recorders
     recordings = Recordings(recording)
     receiving = asyncio.Semaphore(AT_ONCE)
-    reading = asyncio.Lock()  # one recording at a time, because reading takes many times its size
+    reading = asyncio.Lock()  # one recording at a time: reading takes many times its size in memory
 
     async def inspect(socket: WebSocket) -> None:
         state = socket.app.state

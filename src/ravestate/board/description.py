@@ -21,7 +21,7 @@ _Users = dict[str, list[str]]
 
 @dataclass(frozen=True, slots=True)
 class ConstraintView:
-    """A signal in a clause; ages in seconds (``max_age=None``: any), predicates by their names."""
+    """A signal in a clause, with ages in seconds (``max_age=None`` sets no limit) and the names of its predicates."""
 
     signal: str
     min_age: float
@@ -53,7 +53,7 @@ class ClauseView:
 
     Attributes:
         condition: Its source text.
-        terms: The addends of the pathway with the least utility, which decides.
+        terms: The addends of the pathway with the least utility, which decides the clause's utility.
         pathways: The number of pathways.
         predicates: The number of predicates, which add ln 2 each.
         utility: The sum of all addends (L9).
@@ -72,7 +72,7 @@ class ClauseView:
 
 @dataclass(frozen=True, slots=True)
 class RuleView:
-    """A rule as declared. ``raises`` has all signals that it may raise, with those of its slots."""
+    """A rule as declared. ``raises`` has all signals that it may raise, including those of the slots that it writes."""
 
     name: str
     module: str
@@ -130,11 +130,11 @@ class Description:
     diagram: Diagram
 
     def rule(self, name: str) -> RuleView | None:
-        """Return the rule of a name, if there is one."""
+        """Return the rule with a given name, if there is one."""
         return next((rule for rule in self.rules if rule.name == name), None)
 
     def signal(self, name: str) -> SignalView | None:
-        """Return the signal of a name, if there is one."""
+        """Return the signal with a given name, if there is one."""
         return next((signal for signal in self.signals if signal.name == name), None)
 
 

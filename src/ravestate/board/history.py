@@ -1,6 +1,6 @@
 """An index of a trace for one causal group: its spikes, and the attempts of each rule on them.
 
-It is built from the records alone, once for each question.
+Each question builds such an index from the records alone.
 """
 
 from __future__ import annotations
@@ -164,8 +164,8 @@ class History:
         """Return the first run that answered for the group.
 
         Args:
-            hears: For each rule that counts, the signals that each of its clauses takes. A detached constraint takes
-                none (L19).
+            hears: For each rule to consider, the signals that each of its clauses consumes. A detached constraint
+                consumes none (L19).
         """
         return next((a for a in self._answers if a.rule in hears and self._is_taken(a, hears[a.rule][a.clause])), None)
 
@@ -174,7 +174,7 @@ class History:
         return any(spike in self.group and self.born[spike].signal in signals for spike in attempt.spikes)
 
     def before(self, run: int) -> str:
-        """Return the rule that raised a spike that a run took of this group; empty if none did, or the trace lacks it."""
+        """Return the rule that raised the input of a run in this group; empty if no rule did, or the trace lacks it."""
         attempt = self._runs.get(run)
         if attempt is None or attempt.started is None:
             return ""
@@ -214,7 +214,7 @@ class History:
                 self._attempt(record.run, record).started = record
             case t.GaveUp() | t.Waits():
                 attempt = self._runs.get(record.activation)
-                if attempt is not None:  # otherwise it began before the trace
+                if attempt is not None:  # otherwise the attempt began before the trace
                     attempt.records.append(record)
                     if isinstance(record, t.GaveUp):
                         attempt.lose(record)

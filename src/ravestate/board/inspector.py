@@ -29,7 +29,7 @@ FRAME = 0.05
 """Seconds between two frames of records."""
 
 SHARE = 0.015
-"""The share of the loop's time for one inspector: after a slow frame comes a long pause."""
+"""The share of the loop's time that one inspector may use. So a long pause follows a slow frame."""
 
 OF_SPARE = 0.5
 """The share of the process's idle time that an inspector may use as well."""
@@ -41,8 +41,7 @@ BACKLOG = 20_000
 """The maximum number of past records that a new inspector gets."""
 
 LAG = 25_000
-"""The maximum number of records that an inspector may lag behind. If it lags further, the server skips to the
-present."""
+"""The maximum number of records that an inspector may lag behind. Beyond it, the server skips to the present."""
 
 BURST, SPEED = 60, 30.0
 """The rate limit: the size of a burst, and commands a second after that."""
@@ -51,7 +50,7 @@ LISTED = 1.0
 """Seconds between two checks of the list of conversations."""
 
 LIST = 100
-"""The maximum number of conversations in the list: the newest, and the shown one."""
+"""The maximum number of conversations in the list: the newest ones, and the one that the page shows."""
 
 WORDS = 48
 """The maximum number of characters of a visitor's last words in the list."""
@@ -111,7 +110,7 @@ class Inspector:
             title = self._title_of(session)
         try:
             if session is not None:
-                await asyncio.sleep(0)  # a new conversation begins
+                await asyncio.sleep(0)  # lets a new conversation begin
             seen = max(source.first - 1, source.last - BACKLOG)
             visitor = None if session is None else session.visitor
             whole = source.whole and seen == 0
@@ -218,9 +217,9 @@ class Inspector:
     # ------------------------------------------------------------------------------------ to the page
 
     async def _write(self, source: Source, session: Session | None, seen: int, title: str) -> None:
-        """Send records, some twenty times a second at most, and answers."""
+        """Send records, at most some twenty times a second, and answers."""
         idle = IdleShare()
-        sent: bool | None = None  # whether the clock was stopped, as the page knows it
+        sent: bool | None = None  # whether the clock was stopped in the last frame
         listed: protocol.Conversations | None = None
         now, looked = asyncio.get_running_loop().time, -LISTED
         while True:
@@ -277,7 +276,7 @@ class Inspector:
         return session.agent if self._title is None else self._title
 
     def _conversations(self, own: Session) -> protocol.Conversations:
-        """Return the newest conversations and the shown one."""
+        """Return the newest conversations, and the one that the page shows."""
         running = list(self._sessions)
         listed = running[-LIST:]
         if own in running[:-LIST]:

@@ -12,7 +12,7 @@ from ravestate.declare.slot import Collection, Flag, Slot, checkable
 from ravestate.errors import RavestateError
 
 SAMPLES: tuple[Any, ...] = (True, 0, 0.5, "", [], {})
-"""One value of each JSON type but null."""
+"""One value of each JSON type except null."""
 
 
 def check_value(slot: Slot[Any], value: object, holds: object) -> None:
@@ -95,7 +95,7 @@ def _is_expressible(takes: Any) -> bool:
 
 
 def _checkable(kind: Any) -> Any:
-    """Return the types for an `isinstance` check; None: there is none.
+    """Return the types for an `isinstance` check, or None if no such check is possible.
 
     ``list[int]`` checks for a list, and not for its items.
     """

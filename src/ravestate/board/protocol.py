@@ -351,7 +351,7 @@ def parse(text: str | bytes) -> ClientFrame:
     """Return the frame that a text stands for.
 
     Raises:
-        ValueError: It is not a frame; the message says why.
+        ValueError: The text is not a frame; the message says why.
 
     Example:
         >>> parse('{"type": "why", "rule": "demo:talk", "spike": 3}')

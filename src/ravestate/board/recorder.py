@@ -7,7 +7,7 @@ Making records is expensive for a busy agent, so a rate limit applies: a burst, 
 process is idle. Beyond the limit, a recorder stops listening for a moment, and the engine makes no records. A `Gap` says
 how many spikes the recorder missed.
 
-All recorders of an agent share one limit. Beyond it, the longest ones are shortened to one length.
+All recorders of an agent share one limit. Beyond it, the recorders with the most records are cut to the same length.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ BURST = 20_000
 """The maximum number of records at once."""
 
 RATE = 2_000
-"""Records a second after a burst, from an agent that is always busy."""
+"""The records per second that are kept after a burst, if the agent is always busy."""
 
 SPARE = 60_000
 """Additional records a second, multiplied by the idle share of the process."""
@@ -91,7 +91,7 @@ class Recorder:
         self._rate = rate
         self._spare = spare
         self._idle_share = IdleShare()
-        self._left = 0  # the first record earns a burst
+        self._left = 0  # records that it may still take; the first record earns a burst
         self._granted: float | None = None
         self._spike = 0  # the newest spike so far
         self._gap: Gap | None = None
@@ -159,7 +159,7 @@ class Recorder:
         self._take(record)  # may begin the next gap
 
     def _rest(self) -> None:
-        """Raise the allowance for the time that has passed; if there is none, stop listening for a moment."""
+        """Add the allowance that the passed time has earned; if nothing is left, stop listening for a moment."""
         loop = asyncio.get_running_loop()
         now = loop.time()
         earned = self._burst if self._granted is None else (now - self._granted) * self._speed()
@@ -216,7 +216,7 @@ class Recorders:
 
 
 def _fair(lengths: list[int], in_all: int) -> int:
-    """Return the length to which to cut the longest ones, for a total of at most `in_all`.
+    """Return the maximum length for each recorder, so that the total is at most `in_all`.
 
     Example:
         >>> _fair([10, 500, 700], 610)

@@ -8,7 +8,7 @@ from collections import OrderedDict
 from ravestate.board.trace_file import Recording
 
 KEPT = 4
-"""The most uploaded recordings; the newest stay."""
+"""The maximum number of uploaded recordings; the newest are kept."""
 
 
 class Recordings:

@@ -19,7 +19,7 @@ DEEPEST = 6
 """The maximum depth of nested containers."""
 
 TRACEBACK = 8000
-"""The most characters of a traceback; its end is kept."""
+"""The maximum number of characters of a traceback; the end is kept."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,7 +135,7 @@ def _json(value: object, depth: int) -> Iterator[str]:
 def _repr(value: object, most: int) -> Rendered:
     try:
         text = well_formed(_start(repr_chunks(value), most)[: most + 1])
-    except Exception as error:  # a container that changes, or a field that fails, meanwhile
+    except Exception as error:  # a container changed, or a field failed, while being read
         return Rendered(f"<{type(value).__name__} whose repr fails: {type(error).__name__}>", False)
     return Rendered(text[:most], False, len(text) > most)
 

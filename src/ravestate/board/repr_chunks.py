@@ -31,9 +31,9 @@ BUILT_IN: dict[Any, Any] = {kind.__repr__: kind for kind in _WALKS}
 
 
 class _Box(NamedTuple):
-    """A container: the text around its items, the items, each with its prefix, and the text for it within itself.
+    """The parts of a container's ``repr``: the text around its items, and the items, each with its prefix.
 
-    By default, a container within itself appears as three dots in its brackets.
+    `again` stands for the container within itself; by default, that is three dots in its brackets.
     """
 
     opening: str
@@ -147,5 +147,5 @@ def _fields(own: type[Any], made_by: Any) -> list[str]:
 def _whole(value: object) -> str:
     try:
         return repr(value)
-    except Exception as error:  # the user's code
+    except Exception as error:  # the user's `__repr__` may raise anything
         return f"<{type(value).__name__} whose repr fails: {type(error).__name__}>"

@@ -55,15 +55,15 @@ class Rivals:
         return " (equal utility, declared earlier)" if abs(nats) <= 1e-8 else ""
 
     def answerer(self, rule: RuleView, lost: GaveUp | Passed) -> tuple[str, str]:
-        """Return the rule that answered a lost spike: its name, and its path, with the rule that raised its input."""
+        """Return the rule that answered a lost spike, and its path, which includes the rule that raised its input."""
         by, run = (lost.by, lost.run) if lost.by else self._answered(rule, lost.time)
         before = self._history.before(run)
         return by, f"{before} → {by}" if before else by
 
     def pressure(self, rule: RuleView, end: float) -> str:
-        """Say which rule waited until this one's patience ran out."""
+        """Say which other rule waited until the patience of `rule` ran out."""
         pressed = self._history.pressed.get(rule.name, [])
-        times = bisect_right(pressed, end, key=lambda one: one.until)  # a rule's patience never changes
+        times = bisect_right(pressed, end, key=lambda one: one.until)  # in order: a rule's patience never changes
         ended = f"its patience ran out at {seconds(end)}"
         if not times:
             return ended
@@ -77,7 +77,7 @@ class Rivals:
         return min(1.0, (time - fired[times - 1]) / rule.cooldown) if rule.cooldown and times else 1.0
 
     def _answered(self, rule: RuleView, time: float) -> tuple[str, int]:
-        """Return the rule and run that had taken one of the rule's slots in this group by a time."""
+        """Return the first other rule that had answered with one of `rule`'s slots by a time (seconds), and its run."""
         if rule.name not in self._first:
             slots = set(rule.writes)
             self._first[rule.name] = self._history.answered(

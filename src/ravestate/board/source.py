@@ -119,7 +119,7 @@ class LiveSource:
         """Carry out a command.
 
         Raises:
-            RavestateError: It is refused.
+            RavestateError: The command is refused.
         """
         context = self._context
         if isinstance(command, Say | Put | Emit) and (self._session.leaving or self._session.ended is not None):
@@ -237,11 +237,11 @@ class RecordedSource:
         return State(slots, [], *self.clock())
 
     def explain(self, rule: str) -> Explained:
-        """Refuse: only an agent can explain a moment."""
+        """Refuse to explain: only an agent can."""
         raise RavestateError("this is a recording: there is no agent to ask")
 
     async def act(self, command: ClientFrame) -> None:
-        """Refuse."""
+        """Refuse every command."""
         raise RavestateError(f"this is a recording: there is no agent to take {command.type!r}")
 
 

@@ -35,7 +35,7 @@ LONGEST = 120
 """The maximum number of seconds for reading a file."""
 
 CHUNK = 1000
-"""Records that pass between processes at once. While they are unpacked, no other thread runs."""
+"""The number of records in a message between processes. No other thread runs while a message is unpacked."""
 
 SURROGATE = re.compile(r"\\u[dD][89a-fA-F]")
 """One half of a surrogate pair in JSON."""
@@ -157,7 +157,7 @@ def _parsed(text: str) -> Any:
 
 def _main() -> int:
     """Read a trace from the standard input, and write it to the standard output for `read_apart`."""
-    from ravestate.board import trace_file  # import it by name, because the pickled records need that
+    from ravestate.board import trace_file  # not `__main__`: pickled records name their module
 
     try:
         read = trace_file.read_trace(sys.stdin.buffer.read())

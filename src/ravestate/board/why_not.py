@@ -24,8 +24,8 @@ MOST = 200
 """The maximum number of moments in an answer. If there are more, the middle is left out."""
 
 Opens = Callable[[str, int, int, Any], bool | None]
-"""Returns whether a slot predicate accepts a value, given the rule, the clause's number, the predicate's number and the
-value. None: unknown."""
+"""A function that returns whether a slot predicate accepts a value, or None if that is unknown. Its arguments are the
+rule, the clause's number, the predicate's number and the value."""
 
 
 def why_not(
@@ -60,7 +60,7 @@ Reached = tuple[Verdict, str, float | None]
 """How far a rule came, the reason as text, and the time of that decision."""
 
 Judgement = tuple[Verdict, str, float | None, Attempt | None]
-"""The same, and the attempt."""
+"""A `Reached`, and the attempt that reached this point."""
 
 ORDER = {verdict: place for place, verdict in enumerate(Verdict)}
 
@@ -116,7 +116,7 @@ class _Inquiry:
 
     def _judge(self, rule: RuleView, attempt: Attempt) -> Reached:
         settled = attempt.settled
-        if settled is not None:  # a gap may hide the start
+        if settled is not None:  # a gap in the trace may hide the start
             began = settled.time if attempt.started is None else attempt.started.time
             return self._ran(attempt, began, settled)
         if attempt.started is not None:
@@ -175,7 +175,7 @@ class _Inquiry:
         return Verdict.FIRED, join(parts), at
 
     def _pending(self, rule: RuleView, clause: ClauseView, attempt: Attempt, ripe: float | None) -> Reached:
-        """Judge an attempt that still holds something."""
+        """Judge an attempt that still holds spikes."""
         if attempt.lacks or attempt.complete is None:
             held = join(dict.fromkeys(held.signal for held in attempt.held))
             return Verdict.LACKED, f"it has {held} and still lacks {join(attempt.lacks)}", None
@@ -207,7 +207,7 @@ class _Inquiry:
         return ripe
 
     def _shut(self, rule: RuleView, attempt: Attempt, time: float) -> bool | None:
-        """Return whether a slot predicate was false at a time; None: unknown."""
+        """Return whether a slot predicate was false at a time (seconds), or None if that is unknown."""
         if self.opens is None:
             return None
         known = True
@@ -249,7 +249,8 @@ class _Inquiry:
     # ------------------------------------------------------------------------------------ missing signals
 
     def missing(self, rule: RuleView, attempt: Attempt | None) -> tuple[Missing, ...]:
-        """Return the signals that a rule lacked for the clause that it tried, or else for all its clauses."""
+        """Return the signals that a rule lacked in the clause it tried; if it tried none, the signals of all
+        clauses."""
         if attempt is not None:
             names = dict.fromkeys(attempt.lacks)
         else:
@@ -298,7 +299,7 @@ class _Inquiry:
             return Raiser(name, "not run", None, f"{name} did not run")
         self.asked.append(name)
         verdict, words, at, attempt = self.judge(rule)
-        if verdict in (Verdict.LACKED, Verdict.UNTOUCHED):  # one step further back
+        if verdict in (Verdict.LACKED, Verdict.UNTOUCHED):  # explain one step further back
             for lack in dict.fromkeys(attempt.lacks if attempt is not None else ()):
                 lacked = self.description.signal(lack)
                 for raiser in () if lacked is None else lacked.raisers:
@@ -319,7 +320,7 @@ class _Inquiry:
                 match record:
                     case Waits():
                         words = words_of(record, others=self.rivals.names(rule, attempt, record))
-                        if words != waited:  # the engine may ask it again, with the same result
+                        if words != waited:  # the engine may ask for consent again
                             yield Moment(record.time, words, record.for_)
                         waited = words
                     case GaveUp(by=by):

@@ -19,7 +19,7 @@ from ravestate.board.rendering import Rendered, render, traceback_of
 from ravestate.engine.trace import Record
 
 VERSION = 1
-"""The version of the protocol and of trace files. A new frame, record or field keeps it; any other change raises it."""
+"""The version of the protocol and of trace files. Additions keep the number; any other change raises it."""
 
 PAYLOAD = 400
 """The maximum number of characters of a payload."""
@@ -53,7 +53,7 @@ else:
     TraceRecord = typing_extensions.TypeAliasType(
         "TraceRecord",
         Annotated[
-            Union[tuple(_shape(name, kind) for name, kind in KINDS.items())],  # noqa: UP007  # not known before
+            Union[tuple(_shape(name, kind) for name, kind in KINDS.items())],  # noqa: UP007  # known only now
             pydantic.Field(discriminator="kind"),
         ],
     )

@@ -48,7 +48,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("--version", action="version", version=f"ravestate {__version__}")
-    parser.add_argument("-v", "--verbose", action="count", default=0, help="say more; twice for everything")
+    parser.add_argument("-v", "--verbose", action="count", default=0, help="log more; repeat it to log everything")
     commands = parser.add_subparsers(dest="command", metavar="COMMAND", required=True, parser_class=CommandParser)
     arguments = sys.argv[1:] if argv is None else list(argv)
     if not {"-h", "--help"}.isdisjoint(arguments):
@@ -57,7 +57,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         parser.epilog = listing()
     for name, summary in COMMANDS.items():
         command = commands.add_parser(name, help=summary, description=summary.capitalize() + ".")
-        if name in arguments:  # the list of the other commands needs none of their options
+        if name in arguments:  # the other commands are only listed, without their options
             import_module(f"ravestate.cli.{name}").add_arguments(command)
     first = next((word for word in arguments if not word.startswith("-")), "chat")
     if first not in COMMANDS and (hint := nearest(first, COMMANDS)):
@@ -108,7 +108,7 @@ class CommandParser(argparse.ArgumentParser):
         """Refuse unknown arguments here: the parser above would show its own usage."""
         options, unknown = super().parse_known_args(args, namespace)
         many = [action.dest for action in self._get_positional_actions() if action.nargs in ("+", "*")]
-        if many and unknown and all(not word.startswith("-") for word in unknown):  # they belong to an option
+        if many and unknown and all(not word.startswith("-") for word in unknown):  # they continue an argument
             setattr(options, many[0], [*getattr(options, many[0]), *unknown])
             return options, []
         if unknown:

@@ -28,7 +28,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         action="append",
         default=[],
         metavar="MODULE.KEY=VALUE",
-        help="a setting, before the file's and the environment's (may be repeated)",
+        help="a setting, which overrides the file and the environment (may be repeated)",
     )
     parser.add_argument("--seed", type=int, help="the seed of all random choices, to repeat a run")
 
@@ -39,7 +39,7 @@ def load_agent(options: argparse.Namespace, first: Iterable[str] = (), *, announ
     Args:
         options: The parsed arguments.
         first: Modules that the agent has in any case.
-        announce: Print the Python code that agent files run, before it runs: for commands that only look.
+        announce: Whether to print which Python code agent files run, before it runs. Commands that only inspect do so.
 
     Raises:
         UsageError: A module, file or setting is wrong. The message lists all mistakes of agent files and of ``--set``.

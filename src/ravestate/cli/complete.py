@@ -77,7 +77,7 @@ def names(options: argparse.Namespace) -> list[str]:
 
 
 def leave_out_absent(agent: AgentSpec, command: str) -> None:
-    """Leave the modules out whose packages are absent, and name the line to type. A module with settings stays."""
+    """Leave out modules whose packages are absent, and print how to install them. Modules with settings stay."""
     present = [module.name for module in with_required(agent.modules)]
     needs = {name: PACKAGES[name] for name in present if name in PACKAGES}
     absent = {name for name, packages in needs.items() if not all(map(find_spec, packages))}
@@ -94,7 +94,7 @@ def leave_out_absent(agent: AgentSpec, command: str) -> None:
         if module.name in COMPLETE and any(required.name in out for required in module.requires):
             out.add(module.name)
     agent.modules = [module for module in agent.modules if module.name not in out]
-    out -= {module.name for module in with_required(agent.modules)}  # a module of the user's needs it
+    out -= {module.name for module in with_required(agent.modules)}  # the user's modules need these
     for name in out:
         agent.settings.pop(name, None)
     left = (

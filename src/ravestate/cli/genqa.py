@@ -25,8 +25,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "index",
         help="read files and folders",
         description="Read files and folders: text, Markdown, HTML, PDF, JSON lines, ZIM. Run it again to read "
-        "new and changed files, and to forget deleted ones; it also goes on after an interruption. Exit code 1: a file could "
-        "not be read.",
+        "new and changed files, and to forget deleted ones; it also resumes after an interruption. Exit code 1: a "
+        "file could not be read.",
     )
     listing = actions.add_parser("list", help="list what has been read")
     forgetting = actions.add_parser("forget", help="forget files and folders")
@@ -39,12 +39,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_index(parser: argparse.ArgumentParser, *, later: bool = False) -> None:
-    """Add the option for the index. `later` means that it follows the name of an action, and keeps an earlier value."""
+    """Add the option for the index. With `later`, it may follow an action, and does not reset an earlier value."""
     parser.add_argument(
         "--index",
         metavar="FILE",
         default=argparse.SUPPRESS if later else None,
-        help="the index; by default the setting's: the environment's RAVESTATE_GENQA_INDEX, or a file in your data folder",
+        help="the index; by default RAVESTATE_GENQA_INDEX of the environment, or else a file in your data folder",
     )
 
 
@@ -118,7 +118,7 @@ def _collected(found: Found, index: Index) -> Iterator[Outcome]:
         try:
             sizes[path] = path.stat().st_size
         except OSError:
-            sizes[path] = 0  # its turn will come
+            sizes[path] = 0  # `collect` reports it
     with tqdm(
         total=sum(sizes.values()), unit="B", unit_scale=True, disable=not sys.stderr.isatty(), leave=False
     ) as bar:

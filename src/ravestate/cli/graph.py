@@ -53,11 +53,11 @@ def run(options: argparse.Namespace) -> int:
 
     named = bool(options.modules or options.file)
     if options.output is None and not options.format and sys.stdout.isatty():
-        raise UsageError("the diagram is no text for a terminal: name a file, e.g. -o agent.svg")
+        raise UsageError("the diagram is not for reading on a terminal: name a file, e.g. -o agent.svg")
     if named and options.without:
         raise UsageError("--without is for the complete agent: leave the modules out")
     if options.unfold and options.fold is False:
-        raise UsageError("--unfold draws some modules, --no-fold all: write one of them")
+        raise UsageError("--unfold draws some modules, --no-fold all: write only one of them")
     format = options.format or (SUFFIXES.get(Path(options.output).suffix) if options.output else "svg")
     if format is None:
         raise UsageError(

@@ -31,23 +31,23 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     forgetting = does.add_parser("forget", help="forget a person with everything about them")
     forgetting.add_argument("which", metavar="NAME|ID")
     forgetting.add_argument("-y", "--yes", action="store_true", help="do not ask")
-    resetting = does.add_parser("reset", help="remove all files of the memory, also damaged ones")
+    resetting = does.add_parser("reset", help="remove all files of the memory, even damaged ones")
     resetting.add_argument("-y", "--yes", action="store_true", help="do not ask")
     for action in (listing, showing, exporting, loading, forgetting, resetting):
         _add_place(action, later=True)
 
 
 def _add_place(parser: argparse.ArgumentParser, *, later: bool = False) -> None:
-    """Add the options that choose a memory. `later` means that they follow an action, and keep earlier values."""
+    """Add the options that choose a memory. With `later`, they may follow an action, and keep earlier values."""
     default = argparse.SUPPRESS if later else None
     parser.add_argument(
         "--path",
         metavar="FILE",
         default=default,
-        help="the file of memory; by default the one of the settings",
+        help="the memory file; by default the file in the settings",
     )
     parser.add_argument(
-        "-f", "--file", metavar="FILE", default=default, help="an agent file, for its settings of ontology"
+        "-f", "--file", metavar="FILE", default=default, help="an agent file with the settings of ontology"
     )
     parser.add_argument(
         "--set",
@@ -55,7 +55,7 @@ def _add_place(parser: argparse.ArgumentParser, *, later: bool = False) -> None:
         action="append",
         default=[],
         metavar="ontology.KEY=VALUE",
-        help="a setting, before the file's and the environment's (may be repeated)",
+        help="a setting, which overrides the file and the environment (may be repeated)",
     )
 
 
@@ -76,12 +76,12 @@ def run(options: argparse.Namespace) -> int:
     try:
         try:
             memory.opened().result()
-        except PlatformError as error:  # its words are for an agent; here another option names the file
+        except PlatformError as error:  # its message is for an agent; here another option names the file
             raise PlatformError(str(error).replace("--set ontology.path=", "--path ")) from error
         unseen = memory.undeclared().result()
         if unseen:
             print(
-                f"ravestate memory: {memory.place} also has {', '.join(unseen)}, which no file of types has, so it is "
+                f"ravestate memory: {memory.place} also has {', '.join(unseen)}, which no file of types declares, so it is "
                 "hidden here: name the file with --set ontology.types=[FILE]",
                 file=sys.stderr,
             )
@@ -92,7 +92,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _leftover(path: Path) -> str:
-    """Return a hint at the files of a memory that was deleted without them; empty if there are none."""
+    """Return a hint at the files that a deleted memory has left behind; empty if there are none."""
     from ravestate.modules.meta.ontology.files import MemoryFiles
 
     names = ", ".join(file.name for file in MemoryFiles(path).present())
@@ -156,7 +156,7 @@ def _export(memory: Memory, options: argparse.Namespace) -> int:
     target = Path(options.to)
     new = target.with_name(target.name + ".new")
     try:
-        new.unlink(missing_ok=True)  # a file that is left from before may be public
+        new.unlink(missing_ok=True)  # others may be able to read an earlier file
         new.touch(mode=0o600)  # the document has personal data
         new.write_text(text, encoding="utf-8")
         new.replace(target)
@@ -236,7 +236,7 @@ def _chosen(memory: Memory, which: str) -> Node:
     """Return the one node with this id or name, ignoring case.
 
     Raises:
-        UsageError: There is none, or there are several.
+        UsageError: No node matches, or several nodes do.
     """
     node = memory.get(which).result()
     if node is not None:

@@ -21,7 +21,7 @@ R = TypeVar("R")
 
 
 def keywords(*options: str) -> Callable[[Callable[P, R]], Callable[P, R]]:
-    """Make a method refuse an unknown keyword with the nearest known one.
+    """Make a method refuse an unknown keyword; the message names the nearest known one.
 
     Args:
         options: Keywords that the method takes besides those in its signature.
@@ -48,7 +48,7 @@ def keywords(*options: str) -> Callable[[Callable[P, R]], Callable[P, R]]:
 
 
 def check_name(name: object, what: str) -> None:
-    """Refuse a name that is not a word; `what` names the declaration in the message."""
+    """Refuse an invalid name; `what` names the declaration in the message."""
     if not isinstance(name, str) or not name.replace("-", "_").isidentifier():
         raise DeclarationError(
             f"{what}: {name!r} is not a name: use letters, digits, '_' and '-', beginning with a letter"
@@ -68,7 +68,7 @@ def check_function(function: object, title: str, *, named: bool, where: str, dec
 
     Args:
         function: The value.
-        title: The rule's name within its module: given, or the function's own.
+        title: The rule's name within its module: the given name, or the function's own.
         named: Whether the name was given.
         where: The rule and its place, for messages.
         decorator: The decorator as the user types it, for messages.
@@ -110,15 +110,14 @@ def condition(value: object, what: str, where: str, home: str) -> Condition:
 
 
 def number(value: object, what: str, where: str) -> Number:
-    """Return a number as a float, or a setting as it is; refuse any other value."""
+    """Return a number as a float, and a setting unchanged; refuse any other value."""
     if isinstance(value, bool) or not isinstance(value, type_of_number):
         raise DeclarationError(f"{where}: {what}={value!r} is not a number; write {what}=1.0 or a setting")
     return value if isinstance(value, SettingRef) else float(value)
 
 
 def several(values: Any, kind: type[T], what: str, where: str, home: str) -> tuple[T, ...]:
-    """Return one slot or signal, or an iterable of them, as a tuple without duplicates; the arguments are those of
-    `condition`."""
+    """Turn a slot or signal, or several, into a tuple without duplicates. For the arguments, see `condition`."""
     if isinstance(values, kind):
         return (values,)
     try:

@@ -69,7 +69,7 @@ class Constraint(Condition):
         return replace(self, min_age_=_age(seconds, "min_age"))
 
     def max_age(self, seconds: Number | None) -> Constraint:
-        """Give a spike up when it is older than `seconds`; ``None`` keeps it for ever. The default is 5 s."""
+        """Give up a spike that is older than `seconds`; with ``None``, keep it for ever. The default is 5 s."""
         return replace(self, max_age_=None if seconds is None else _age(seconds, "max_age"))
 
     def detached(self) -> Constraint:
@@ -80,11 +80,10 @@ class Constraint(Condition):
         """Accept a spike only if ``predicate(payload)`` is true. Adds ln 2 to the utility (L9).
 
         Args:
-            predicate: A plain function, which should be fast. The loop calls it for each spike that it offers to the
-                rule.
+            predicate: A plain, fast function. The event loop calls it for each spike that might trigger the rule.
 
         Raises:
-            DeclarationError: The predicate is not a function, or an asynchronous one.
+            DeclarationError: The predicate is not a function, or it is asynchronous.
 
         Example:
             >>> import ravestate as rs
@@ -136,10 +135,10 @@ class AnyOf(Compound):
 def checked_predicate(predicate: object, what: str, of: str) -> Predicate:
     """Return a predicate that is a plain function; refuse any other value.
 
-    A call of an asynchronous function or a generator only makes an object, which is always true.
+    A call of an asynchronous function or a generator only creates an object, and that object always counts as true.
 
     Raises:
-        DeclarationError: The predicate is not a function, an asynchronous one, or a generator.
+        DeclarationError: The predicate is not a function, or it is an asynchronous function or a generator.
     """
     if not callable(predicate):
         raise DeclarationError(f"{what}({predicate!r}): expected a function of the {of}")

@@ -21,7 +21,7 @@ startup = core.signal("startup", input=True)
 """Raised once, when a context starts."""
 
 shutdown = core.signal("shutdown", input=True)
-"""Raised once, when a context is about to end; rules that react to it run to their end."""
+"""Raised once, when a context is about to end; the context waits a few seconds for rules that react to it."""
 
 error = core.signal("error", payload=RuleFailure, input=True)
 """Raised when a rule fails (L18)."""

@@ -35,12 +35,12 @@ class Module:
     """A named collection of signals, slots and rules.
 
     Args:
-        name: Letters, digits, ``_`` and ``-``; the first part of all its qualified names.
+        name: Letters, digits, ``_`` and ``-``; the first part of the names of its signals, slots and rules.
         requires: Modules whose signals and slots this one uses: `Module` values, or Python modules that contain one
             (``from ravestate.modules import rawio``).
         settings: A subclass of ``rs.Settings`` with the values that a user may configure.
         serve: An async function, for platforms that serve many users at once. ``rs.run`` calls it with the `Agent`
-            instead of running one context. It makes a context for each user, and ends when it is cancelled.
+            instead of running one context. The function makes a context for each user, and ends when cancelled.
 
     Example:
         >>> import ravestate as rs
@@ -68,7 +68,7 @@ class Module:
         self.name = name
         self.origin = place_of_call()
         if isinstance(requires, (Module, ModuleType, str)):
-            requires = (requires,)  # type: ignore[assignment]  # a text is refused below, whole
+            requires = (requires,)  # type: ignore[assignment]  # a str is refused below as a whole
         self.requires: list[Module] = []
         for required in requires:
             try:
@@ -97,8 +97,8 @@ class Module:
         """Declare a signal.
 
         Args:
-            name: Its name within the module.
-            payload: The type of its payload; none by default.
+            name: The signal's name within the module.
+            payload: The type of the payload; by default, the signal has no payload.
             options: See `SignalOptions`.
         """
         qualified = self._qualified("signal", name, options)
@@ -117,10 +117,10 @@ class Module:
         """Declare a value slot; its signal is ``.changed``.
 
         Args:
-            name: Its name within the module.
+            name: The slot's name within the module.
             default: The value before the first write. Each context starts with a copy of its own.
             type: The value's type, e.g. ``str`` or ``str | Path``. Writing a value of another type fails; None is
-                allowed if it is the default. Types that ``isinstance`` does not know are not checked.
+                allowed if it is the default. Types that ``isinstance`` cannot check are not enforced.
             options: See `SlotOptions`.
         """
         qualified = self._qualified("slot", name, options)
@@ -130,16 +130,14 @@ class Module:
 
     @keywords(*SlotOptions.__annotations__)
     def flag(self, name: str, default: bool = False, **options: Unpack[SlotOptions]) -> Flag:
-        """Declare a boolean slot; its signals are ``.changed``, ``.true``, ``.false``. The arguments are those of
-        `slot`."""
+        """Declare a boolean slot with the signals ``.changed``, ``.true``, ``.false``. Arguments: see `slot`."""
         flag = Flag(self._qualified("flag", name, options), default, origin=place_of_call(), **options)
         self.slots.append(flag)
         return flag
 
     @keywords(*SignalOptions.__annotations__)
     def collection(self, name: str, **options: Unpack[SignalOptions]) -> Collection[Any]:
-        """Declare keyed items; the signals are ``.added``, ``.removed``, ``.changed``. The arguments are those of
-        `slot`."""
+        """Declare keyed items with the signals ``.added``, ``.removed``, ``.changed``. Arguments: see `slot`."""
         qualified = self._qualified("collection", name, options)
         collection: Collection[Any] = Collection(qualified, origin=place_of_call(), **options)
         self.slots.append(collection)
@@ -167,26 +165,26 @@ class Module:
         background: bool = False,
         name: str | None = None,
     ) -> Callable[[Callable[P, R]], Rule[P, R]]:
-        """Turn a function of the rule context into a rule. An ``async def`` runs on the loop, a plain function in a
-        thread.
+        """Turn a function, which receives the rule context, into a rule. An ``async def`` runs on the event loop, a
+        plain function in a thread.
 
         Args:
             when: The condition: signals, combined with ``&`` and ``|``.
             reads: The slot or slots whose values the function may read.
-            writes: The slot or slots that it may write and read. Rules that write one slot for the same cause exclude
-                each other (L10).
+            writes: The slot or slots that it may write and read. Rules that write the same slot for the same cause
+                exclude each other (L10).
             emits: The signal or signals that it may emit.
             weight: Factor that multiplies the utility (L9), above 0.
             cooldown: Seconds over which the utility recovers from 0 after a run (L9).
-            patience: Seconds that the rule has to become ready while others wait for it (L16); the context's by default.
+            patience: Seconds that the rule has to become ready while others wait (L16); by default the context's.
             until: A condition that interrupts a run (L21).
             timeout: Seconds that a run may take (L18); no limit by default.
             detached: Whether the rule's effects begin new causal groups (L19).
             background: Whether the rule leaves ``rs.activity`` alone (L22).
-            name: Its name within the module; the function's by default.
+            name: The rule's name within the module; by default the function's name.
 
         Raises:
-            DeclarationError: An argument of the wrong type. ``rs.compile`` reports numbers out of range.
+            DeclarationError: An argument has the wrong type. ``rs.compile`` reports numbers out of range.
         """
         origin = place_of_call()
 

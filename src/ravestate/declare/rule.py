@@ -28,11 +28,11 @@ class Rule(Generic[P, R]):
             a worker thread.
         when: The condition.
         reads: The slots whose values the function may read.
-        writes: The slots that the function may write and read. Rules that write one slot exclude each other (L10).
+        writes: The slots that the function may write and read. Rules that write the same slot exclude each other (L10).
         emits: The signals that the function may emit.
         weight: Factor that multiplies the utility (L9), above 0.
         cooldown: Seconds over which the utility recovers from 0 after a run (L9).
-        patience: Seconds that the rule has to become ready while others wait for it (L16); ``None`` for the context's.
+        patience: Seconds that the rule has to become ready while others wait (L16); ``None`` for the context's.
         until: A condition that interrupts a run (L21).
         timeout: Seconds that a run may take (L18); ``None`` for no limit.
         detached: Whether the rule's effects begin new causal groups (L19).

@@ -11,7 +11,8 @@ from ravestate.declare.settings import Number
 T = TypeVar("T")
 
 Keep = Literal["all", "latest"]
-"""The overflow policy of a signal: a new spike leaves older live ones up to a limit, or withdraws them (L20, L23)."""
+"""The fate of older live spikes when a new one arrives: ``"all"`` keeps them up to a limit, ``"latest"`` withdraws them
+(L20, L23)."""
 
 DEFAULT_LIMIT = 100_000
 """The default of a signal's `limit`."""
@@ -21,9 +22,9 @@ class SignalOptions(TypedDict, total=False):
     """The options of a signal; a collection gives them to each of its signals.
 
     Attributes:
-        input: Whether code outside may raise it even though a rule does (L8). A signal that no rule raises is an input
-            anyway.
-        keep: ``"all"``; or ``"latest"``: a new spike withdraws the older ones (L20).
+        input: Whether code outside the rules may raise the signal even if a rule raises it too (L8). A signal that no
+            rule raises is always an input.
+        keep: ``"all"`` or ``"latest"``. With ``"latest"``, a new spike withdraws the older ones (L20).
         limit: The maximum number of live spikes, 100,000 by default. If there are more, the oldest is dropped (L23).
     """
 
@@ -38,8 +39,9 @@ class Signal(Condition, Generic[T]):
 
     Attributes:
         name: The qualified name, ``module:name``.
-        payload: The payload's type. None if there is no payload, and for a slot's signal, whose payload is the slot's.
-        input: Whether code outside may raise it even though a rule does (L8).
+        payload: The payload's type. It is None if there is no payload; it is also None for a slot's signal, whose
+            payload has the slot's type.
+        input: Whether code outside the rules may raise the signal even if a rule raises it too (L8).
         keep: ``"all"`` or ``"latest"``.
         limit: The maximum number of live spikes.
         origin: The place of the declaration, ``file:line``.

@@ -21,7 +21,7 @@ class SlotOptions(SignalOptions, total=False):
     """The options of a value slot and of a flag.
 
     Attributes:
-        always: Whether writing an equal value also raises the signals: an utterance may occur twice.
+        always: Whether writing an equal value also raises the signals, for example when the same utterance comes twice.
     """
 
     always: bool
@@ -40,8 +40,8 @@ class Slot(Generic[T]):
     Attributes:
         name: The qualified name, ``module:name``.
         default: The value before the first write; each context gets a copy of its own.
-        type: The type that `isinstance` checks at each write; None checks nothing.
-        declared: The type as the designer wrote it, such as ``list[int]``; None if there is none.
+        type: The type that `isinstance` checks at each write; with None, nothing is checked.
+        declared: The type as the designer wrote it, such as ``list[int]``; None if the designer gave no type.
         always: Whether writing an equal value also raises the signals.
         signals: All signals of the slot, `changed` first.
         origin: The place of the declaration, ``file:line``.
@@ -116,8 +116,7 @@ class Slot(Generic[T]):
 
 
 def checkable(kind: Any) -> Any:
-    """Return a type for `isinstance`, or None for a type that `isinstance` cannot check. A float slot takes integers
-    too."""
+    """Return a type for `isinstance`; None if `isinstance` cannot check it. A float slot takes integers too."""
     if kind is float:
         kind = int | float
     try:

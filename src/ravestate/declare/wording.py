@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 
 LENGTH = 60
-"""Characters of a value that a message shows."""
+"""The maximum number of characters of a value in a message."""
 
 HERE = __file__.removesuffix("wording.py")
 CORE = HERE + "core.py"  # the only file here that declares something
@@ -35,7 +35,7 @@ def place_of_call() -> str:
 
 
 def shown(value: object) -> str:
-    """Return the `repr` of a value. If its own code fails, return its type."""
+    """Return the `repr` of a value, or its type if the `repr` fails."""
     try:
         return repr(value)
     except Exception:  # a value's own code may raise anything, and the message must still appear
@@ -43,7 +43,7 @@ def shown(value: object) -> str:
 
 
 def said(exception: BaseException) -> str:
-    """Return the message of an exception. If its own code fails, return its type."""
+    """Return the message of an exception, or its type if the message fails."""
     try:
         return str(exception)
     except Exception:  # its `__str__` may raise anything, and the message must still appear
@@ -51,7 +51,7 @@ def said(exception: BaseException) -> str:
 
 
 def cut(text: str, length: int = LENGTH) -> str:
-    """Return a text cut to `length` characters; a text that was cut ends in three dots.
+    """Return the text, shortened to `length` characters if it is longer; a shortened text ends in three dots.
 
     Example:
         >>> cut("a long story", 9), cut("short", 9)

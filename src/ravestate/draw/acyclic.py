@@ -1,8 +1,8 @@
 """Acyclic graphs: their topological order, and a small feedback arc set, whose edges the layout reverses.
 
 The heuristic of Eades, Lin and Smyth (1993) runs within each strongly connected component. It orders the vertices from
-both ends at once; the edges that point backwards in this order are the set. Two refinements: weak edges go before strong
-ones, and ties go by number, so that the result depends on the input alone.
+both ends at once; the edges that point backwards in this order form the set. Two refinements: weak edges are reversed
+first, and ties are broken by number, so that the result depends on the input alone.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from collections.abc import Sequence
 from ravestate.policy.components import components
 
 STRONG = 1 << 20
-"""The weight of a strong edge. It is reversed only if the weak edges alone do not break the cycle."""
+"""The weight of a strong edge. The layout reverses such an edge only if weak edges alone cannot break the cycle."""
 
 
 def feedback_arcs(count: int, edges: Sequence[tuple[int, int, int]]) -> list[bool]:
@@ -32,7 +32,7 @@ def feedback_arcs(count: int, edges: Sequence[tuple[int, int, int]]) -> list[boo
 
 
 def topological(after: Sequence[Sequence[int]]) -> list[int]:
-    """Return the vertices of a graph in topological order, without those on a cycle or behind one.
+    """Return the vertices of a graph in topological order, without the vertices on a cycle or behind a cycle.
 
     Args:
         after: The vertices to which the arcs of each vertex lead.
@@ -52,7 +52,7 @@ def topological(after: Sequence[Sequence[int]]) -> list[int]:
 
 
 def _peel(count: int, edges: Sequence[tuple[int, int, int]]) -> list[int]:
-    """Number the vertices so that few edges point backwards, and weak ones rather than strong ones."""
+    """Number the vertices so that few edges point backwards, preferably weak ones."""
     after: list[list[tuple[int, int]]] = [[] for _ in range(count)]
     before: list[list[tuple[int, int]]] = [[] for _ in range(count)]
     out = [0] * count
@@ -86,7 +86,7 @@ _LAST = (0, 2)
 
 
 def _urgency(out: int, into: int) -> tuple[int, int]:
-    """Return the sort key of a vertex: sinks, sources, sinks and sources of the strong edges, then the best ratio."""
+    """Return the sort key of a vertex: sinks, sources, then both if only strong edges count, then the rest."""
     if out == 0:
         return (0, 0)
     if into == 0:

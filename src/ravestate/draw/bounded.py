@@ -1,8 +1,8 @@
 """Layers of bounded size, for pictures that would be too tall for a screen.
 
-The shortest edges may give few and crowded layers: all neighbours of a hub share one layer. If the picture is then tall and
-narrow, the layers get a bound. Surplus vertices move to a later layer, as in the scheduling of Coffman and Graham (1972).
-A vertex that has just become ready goes first, so that a chain continues before another chain begins.
+With the shortest edges, layers may be few and crowded: all neighbours of a hub share one layer. If the picture is then
+tall and narrow, the layers get a bound. Surplus vertices move to a later layer, as in the scheduling of Coffman and
+Graham (1972). A vertex that has just become ready goes first, so that a chain continues before another chain begins.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ Extent = tuple[float, float]
 
 _SCREEN = 720.0  # pixels: a picture of this height fits a screen, however narrow it is
 _TALLEST = 1.2  # minimum width : height
-_ASPECT = 1.6  # wished width : height
+_ASPECT = 1.6  # desired width : height
 _SPLITS = 16
 
 

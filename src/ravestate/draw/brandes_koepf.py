@@ -1,8 +1,8 @@
 """Vertical coordinates by Brandes and Köpf (2002): no overlaps, and straight long edges.
 
 Each vertex is aligned with its median neighbours in four ways: from the left or the right, upwards or downwards. Each
-alignment is packed tightly. Each vertex takes the average median of its four places. The alignment is between ports rather
-than middles, so that a line between two ports is straight.
+alignment is packed tightly. Each vertex gets the average of the two middle values of its four places. The alignment is
+between ports rather than middles, so that a line between two ports is straight.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ def brandes_koepf(graph: LayeredGraph) -> list[float]:
 
 
 def _forbidden(graph: LayeredGraph) -> set[int]:
-    """Return the segments that cross an inner segment, between two dummies: type 1 conflicts, not to be aligned."""
+    """Return the segments that cross a segment between two dummies. These type 1 conflicts are never aligned."""
     place = places(graph.order)
     by_layer: list[list[tuple[int, int, int, bool]]] = [[] for _ in graph.order]
     for segment in range(len(graph.segments)):
@@ -58,14 +58,15 @@ def _forbidden(graph: LayeredGraph) -> set[int]:
 
 
 def _aligned(graph: LayeredGraph, crossed: set[int], from_left: bool, downwards: bool) -> list[float]:
-    """Return one of the four assignments."""
+    """Return the coordinates for one of the four alignments."""
     count = len(graph.layer)
     sign = 1.0 if downwards else -1.0
     order = graph.order if from_left else graph.order[::-1]
     if not downwards:
         order = [layer[::-1] for layer in order]
     place = places(order)
-    # For each vertex: (place of the neighbour, neighbour, how far below the vertex an alignment puts it, segment).
+    # For each vertex: (place of the neighbour, neighbour, offset below the neighbour at which alignment puts the
+    # vertex, segment).
     towards: list[list[tuple[int, int, float, int]]] = [[] for _ in range(count)]
     for segment, (low, high) in enumerate(graph.segments):
         p, q = graph.ports[low], graph.ports[high]
@@ -73,7 +74,7 @@ def _aligned(graph: LayeredGraph, crossed: set[int], from_left: bool, downwards:
             p, q = q, p
         towards[q.vertex].append((place[p.vertex], p.vertex, sign * (p.offset - q.offset), segment))
     root = list(range(count))
-    shift = [0.0] * count  # from the root of the block to the vertex
+    shift = [0.0] * count  # offset from the root of the block to the vertex
     taken = [False] * count
     for layer in order:
         limit = -1

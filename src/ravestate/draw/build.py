@@ -1,8 +1,8 @@
-"""From declared rules to a diagram.
+"""Building a diagram from declared rules.
 
 The diagram has only the slots and signals that some rule names. It shows a slot's signals only if they have a listener.
 Conditions are in disjunctive normal form, since a rule fires by one clause at a time (L5). Several constraints of a
-clause meet in a conjunction, several clauses in a disjunction.
+clause meet in a conjunction, and several clauses meet in a disjunction.
 """
 
 from __future__ import annotations

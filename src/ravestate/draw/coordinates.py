@@ -1,7 +1,7 @@
 """Coordinate assignment: the best of several methods.
 
-Brandes and Köpf's alignment suits small pictures, relaxation (`relax`) crowded ones. Each candidate is straightened. The
-candidate with the shortest lines and the fewest steps wins; among equals, the first.
+Brandes and Köpf's alignment suits small pictures, and relaxation (`relax`) suits crowded ones. Each candidate is
+straightened. The candidate with the shortest lines and the fewest steps wins; among equals, the first wins.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from ravestate.draw.layered import LayeredGraph
 from ravestate.draw.relax import relax
 from ravestate.draw.straighten import straighten
 
-_STEP = 70.0  # pixels of length that count as much as a step
+_STEP = 70.0  # the cost of a step, in pixels of length
 _SPREADS = (1.0, 1.15)
 _LEVEL = 0.01
 

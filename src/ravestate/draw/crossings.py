@@ -1,8 +1,8 @@
 """Crossing minimisation: the order of the vertices within their layers.
 
 Barycentre sweeps run forwards and backwards, each followed by transpositions of neighbours (Sugiyama, Tagawa and Toda 1981;
-Gansner et al. 1993). There are two initial orders; the best order of all wins. The initial orders come from a depth-first
-search in declaration order, which keeps related declarations together.
+Gansner et al. 1993). There are two initial orders; the best order that the sweeps find wins. The initial orders come
+from a depth-first search in declaration order, which keeps related declarations together.
 """
 
 from __future__ import annotations
@@ -124,7 +124,7 @@ def _sweep(
 
 
 def _by_barycentre(layer: list[int], neighbours: Sequence[Sequence[int]], place: list[int], flip: bool) -> None:
-    """Sort a layer by the mean place of the neighbours. Vertices without neighbours stay; equals swap if `flip`."""
+    """Sort a layer by the mean place of the neighbours. Vertices without any stay; with `flip`, ties swap."""
     moving = [(sum(place[w] for w in neighbours[v]) / len(neighbours[v]), v) for v in layer if neighbours[v]]
     if flip:
         moving.reverse()
@@ -161,7 +161,7 @@ def _transpose(
 def _gain(upper: Sequence[int], lower: Sequence[int]) -> int:
     """Return how many crossings a swap of two neighbours saves, given their sorted ends."""
     gain = before = upto = 0
-    for end in upper:  # lower ends before it cross now, those after it cross when swapped
+    for end in upper:  # lower ends before `end` cross now; those after it would cross after the swap
         while before < len(lower) and lower[before] < end:
             before += 1
         while upto < len(lower) and lower[upto] <= end:

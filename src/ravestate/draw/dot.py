@@ -68,5 +68,5 @@ def _quoted(text: str) -> str:
 
 
 def _escaped(text: str) -> str:
-    """Escape quotes, backslashes and the ampersands of entities."""
+    """Escape quotes and backslashes, and ampersands, which Graphviz would read as entities."""
     return clean(text).replace("&", "&amp;").replace("\\", "\\\\").replace('"', '\\"')

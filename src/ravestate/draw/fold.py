@@ -20,7 +20,7 @@ _STRONGEST_FIRST: tuple[EdgeKind, ...] = (
 def fold(diagram: Diagram, unfolded: Collection[str] = ()) -> Diagram:
     """Return the diagram with one node for each module.
 
-    Edges inside a folded module disappear. Several edges from or to it become one arrow of the strongest kind.
+    Edges inside a folded module disappear. Several edges with the same ends become one arrow of the strongest kind.
 
     Args:
         diagram: The whole diagram.

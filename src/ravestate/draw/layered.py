@@ -16,7 +16,7 @@ from ravestate.draw.graph import EdgeKind
 
 VertexKind = Literal["node", "label", "dummy"]
 
-_SOLID: tuple[EdgeKind, ...] = ("writes", "emits")  # solid lines may overlap; dashes would fall out of step
+_SOLID: tuple[EdgeKind, ...] = ("writes", "emits")  # solid lines may overlap; dashes would not match
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,7 +28,7 @@ class Link:
     kind: EdgeKind
     is_reversed: bool
     label: tuple[float, float] | None
-    """Width and height of its label, pixels."""
+    """The width and height of its label in pixels."""
 
 
 @dataclass(slots=True)
@@ -47,7 +47,7 @@ Chain = list[int]
 
 @dataclass(slots=True)
 class LayeredGraph:
-    """The graph: vertices by number, layers from top to bottom, ports, and segments between ports."""
+    """The graph: vertices by number, each layer from top to bottom, ports, and segments between ports."""
 
     layer: list[int] = field(default_factory=list[int])
     kind: list[VertexKind] = field(default_factory=list[VertexKind])
@@ -55,7 +55,7 @@ class LayeredGraph:
     height: list[float] = field(default_factory=list[float])
     ports: list[Port] = field(default_factory=list[Port])
     segments: list[tuple[int, int]] = field(default_factory=list[tuple[int, int]])
-    """Pairs of ports: one on the right of a vertex, one on the left of a vertex one layer on."""
+    """Pairs of ports: one on the right of a vertex, one on the left of a vertex in the next layer."""
     chains: list[Chain] = field(default_factory=list[Chain])
     labels: list[int | None] = field(default_factory=list[int | None])
     """For each link the vertex of its label, or ``None``."""
@@ -89,7 +89,7 @@ def proper_layering(ranks: Sequence[int], sizes: Sequence[tuple[float, float]], 
     for link in links:
         share_low = from_low[_low(link)] >= from_high[_high(link)]
         if link.label is not None or link.kind not in _SOLID:
-            # The label is near the arrow's head, on its own line. Dashes keep step only from the start of the line.
+            # The label is near the arrow's head, on its own line. Overlapping dashes match only from a common start.
             share_low = not link.is_reversed
         builder.link(link, ranks[link.low], ranks[link.high], share_low)
     graph.order = [[] for _ in range(max(graph.layer, default=-1) + 1)]

@@ -1,6 +1,6 @@
 """Layered layout after Sugiyama, Tagawa and Toda (1981), from left to right.
 
-1. Cycle removal reverses some edges (`acyclic`): detached ones and reads before others.
+1. Cycle removal reverses some edges (`acyclic`): preferably detached edges and reads.
 2. Layer assignment keeps edges short (`simplex`). Layers are bounded if the picture would be too tall (`bounded`).
 3. Dummies make the graph proper (`layered`). Crossing minimisation orders the layers (`crossings`).
 4. Coordinate assignment places ports and vertices (`ports`, `coordinates`).
@@ -32,9 +32,9 @@ Size = tuple[float, float]
 """Width and height in pixels."""
 
 _GAP = 32.0  # pixels between layers with straight lines
-_TURN = 2.0  # pixels for each port whose lines may turn there, on average
+_TURN = 2.0  # average pixels that each port adds to a gap, for the turns of its lines
 _BETWEEN = 36.0  # pixels between components
-_ASPECT = 1.6  # wished width : height of packed components
+_ASPECT = 1.6  # desired width : height of packed components
 
 _STRENGTH: dict[EdgeKind, int] = {
     "writes": 3 * STRONG,
@@ -56,7 +56,7 @@ class Box:
     height: float
 
     def moved(self, x: float, y: float) -> Box:
-        """Return the same box further right and further down."""
+        """Return the box, moved right by `x` and down by `y`."""
         return Box(round(self.x + x, 2), round(self.y + y, 2), self.width, self.height)
 
 
@@ -113,7 +113,7 @@ class _Component:
 
 
 def _components(diagram: Diagram) -> list[tuple[list[str], list[int]]]:
-    """Return the nodes and edges of each connected component, in the order of first nodes."""
+    """Return the nodes and edges of each connected component, in the order of their first nodes."""
     index = {node.id: place for place, node in enumerate(diagram.nodes)}
     ends = [(index[edge.source], index[edge.target]) for edge in diagram.edges]
     near: list[list[int]] = [[] for _ in diagram.nodes]
@@ -183,7 +183,7 @@ def _extent(graph: LayeredGraph) -> Size:
 
 
 def _tightness(edge: Edge, kinds: Mapping[str, NodeKind]) -> int:
-    """Return the cost of a longer edge: junctions stay next to their rule, signals next to their slot."""
+    """Return the cost of an edge's length: junctions stay next to their rule, and signals next to their slot."""
     if kinds[edge.source] in JUNCTIONS:
         return 8
     if edge.kind == "emits" and kinds[edge.source] == "slot":
@@ -192,7 +192,7 @@ def _tightness(edge: Edge, kinds: Mapping[str, NodeKind]) -> int:
 
 
 def _pack(sizes: Sequence[Size]) -> list[Point]:
-    """Pack rectangles into rows, the highest first."""
+    """Pack rectangles into rows, the tallest first."""
     order = sorted(range(len(sizes)), key=lambda i: (-sizes[i][1], i))
     area = sum((width + _BETWEEN) * (height + _BETWEEN) for width, height in sizes)
     wide = max([(area * _ASPECT) ** 0.5, *(width for width, _ in sizes)], default=0.0)

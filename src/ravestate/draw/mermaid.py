@@ -31,7 +31,7 @@ _WORDS: dict[EdgeKind, str] = {
 """Words on the line: Mermaid has too few arrows to tell these kinds apart without colour."""
 
 _MOST_EDGES = 500
-_PLAIN = " _:,×≥≤–…"  # beside letters and digits
+_PLAIN = " _:,×≥≤–…"  # characters that need no escape, besides letters and digits
 
 
 def mermaid(diagram: Diagram) -> str:
@@ -79,7 +79,7 @@ def _label(node: Node) -> str:
 def _words(edge: Edge) -> str:
     words = _WORDS.get(edge.kind, "")
     if edge.kind == "condition_detached" and edge.label.startswith("until"):
-        words = ""  # an interruption never holds spikes
+        words = ""  # an interruption holds no spikes, so it is not called detached
     return ", ".join(word for word in (words, edge.label) if word)
 
 

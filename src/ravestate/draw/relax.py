@@ -1,8 +1,8 @@
 """Coordinates that keep lines short: each layer in turn moves as near as possible to its neighbours.
 
 Within one layer, the best coordinates under minimum distances are a weighted isotonic regression, solved by pooling
-adjacent violators. Forward and backward sweeps repeat it for all layers. Crowded pictures become far more compact than
-with alignment, because straight lines need empty space.
+adjacent violators. Forward and backward sweeps repeat this for all layers. Crowded pictures become far more compact
+than with alignment, because straight lines need empty space.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ def relax(graph: LayeredGraph, spread: float, room: float | None = None) -> list
         for v, gap in zip(layer, [*gaps[-1], 0.0], strict=True):
             middle[v] = y
             y += gap
-    before: list[list[tuple[int, float, float]]] = [[] for _ in middle]  # neighbour, its port against ours, weight
+    before: list[list[tuple[int, float, float]]] = [[] for _ in middle]  # neighbour, offset of its port, weight
     after: list[list[tuple[int, float, float]]] = [[] for _ in middle]
     for low, high in graph.segments:
         p, q = graph.ports[low], graph.ports[high]

@@ -1,8 +1,8 @@
 """Layer assignment with short edges: the network simplex of Gansner, Koutsofios, North and Vo (1993).
 
-A spanning tree of tight arcs fixes all ranks. A tree arc with a negative cut value should be longer: it leaves the tree,
-and the tightest arc that crosses the cut in the other direction enters. The cut value of a tree arc is the sum of
-(weight out - weight in) over the vertices on the side of its tail. Arcs within that side cancel out.
+A spanning tree of tight arcs fixes all ranks. A tree arc with a negative cut value should be longer: it leaves the
+tree, and the tightest arc that crosses the cut in the other direction takes its place. The cut value of a tree arc is
+the sum of (weight out - weight in) over the vertices on the side of its tail. Arcs within that side cancel out.
 """
 
 from __future__ import annotations
@@ -15,12 +15,12 @@ from ravestate.draw.acyclic import topological
 Arc = tuple[int, int, int, int]
 """Tail, head, weight, and minimum length in layers."""
 
-_SAMPLE = 30  # leaving arcs to compare before one is chosen
+_SAMPLE = 30  # candidates for the leaving arc to compare before one is chosen
 _WORK = 2_000_000  # exchanges x vertices
 
 
 def network_simplex(count: int, arcs: Sequence[Arc]) -> list[int]:
-    """Return the rank of each vertex of an acyclic, connected graph with `count` vertices, from 0.
+    """Return the rank, from 0, of each vertex of an acyclic, connected graph with `count` vertices.
 
     Each arc spans at least its length, and the sum of weight x span is minimal. The number of exchanges is bounded: in
     large graphs the sum may be slightly above the minimum.
@@ -47,11 +47,11 @@ class _Simplex:
             self.surplus[u] += weight
             self.surplus[v] -= weight
         self.rank = _longest_paths(count, arcs)
-        self.tree_arcs: list[list[int]] = [[] for _ in range(count)]  # by vertex
+        self.tree_arcs: list[list[int]] = [[] for _ in range(count)]  # the tree arcs of each vertex
         self.parent = [-1] * count  # the arc towards the root
         self.low = [0] * count  # the least number in the subtree, in postorder
         self.number = [0] * count
-        self.vertex = [0] * count  # by number
+        self.vertex = [0] * count  # the vertex with each number
         self.total = [0] * count  # surplus of the subtree
         self.tree: list[int] = []
         self.tight_tree()
@@ -63,7 +63,7 @@ class _Simplex:
 
     def tight_tree(self) -> None:
         """Find a spanning tree of tight arcs: for each new arc, shift the whole tree until the arc is tight."""
-        moved = 0  # the shift of the tree so far; the ranks inside are stored without it
+        moved = 0  # the shift of the tree so far; ranks in the tree are stored without it
         inside = [False] * self.count
         ahead: list[tuple[int, int]] = []  # arcs out of the tree, by slack + moved
         behind: list[tuple[int, int]] = []  # arcs into the tree, by slack - moved

@@ -11,7 +11,7 @@ from itertools import pairwise
 from ravestate.draw.brandes_koepf import separation
 from ravestate.draw.layered import LayeredGraph
 
-_BEND = 60.0  # pixels of length that count as much as a step
+_BEND = 60.0  # the cost of a step, in pixels of length
 _ROUNDS = 4
 _LEVEL = 0.01
 
@@ -30,7 +30,7 @@ class _Straightener:
         for layer in graph.order:
             for u, v in pairwise(layer):
                 self.above[v], self.below[u] = u, v
-        self.lines: list[list[tuple[int, float]]] = [[] for _ in middle]  # (neighbour, its port against ours)
+        self.lines: list[list[tuple[int, float]]] = [[] for _ in middle]  # (neighbour, offset of its port from ours)
         for low, high in graph.segments:
             p, q = graph.ports[low], graph.ports[high]
             self.lines[p.vertex].append((q.vertex, q.offset - p.offset))

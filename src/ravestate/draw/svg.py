@@ -16,7 +16,7 @@ from ravestate.draw.style import stylesheet
 from ravestate.draw.text import clean
 
 _MARGIN = 24.0
-_SENTENCES = 60  # edges in the description
+_SENTENCES = 60  # the maximum number of edges in the description
 
 
 def svg(diagram: Diagram) -> str:

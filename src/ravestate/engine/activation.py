@@ -4,11 +4,11 @@ An activation is a clause plus the spikes that it has acquired. Once it has cons
 clause also has an activation in stand-by, which holds nothing. Stand-by needs no object: the engine creates one for the
 first spike.
 
-- `GATHERING`: it holds some of its spikes, or some are too young.
-- `READY`: it holds all, old enough, and asks for consent.
+- `GATHERING`: it lacks a spike, a spike is too young, or a predicate on a slot is false.
+- `READY`: it holds all its spikes, all are old enough, and it asks for consent.
 - `WAITING`: it was refused consent, and asks again when something changes.
 - `RUNNING`: the rule's function runs.
-- `CANCELLING`: the engine has cancelled the function, which cleans up.
+- `CANCELLING`: the engine has cancelled the function, which is cleaning up.
 - `ENDED`: it holds nothing.
 
 A step that is not in the table of transitions is a bug in the engine.
@@ -81,18 +81,18 @@ COMPLETE, LOSE, REFUSE, GRANT, CANCEL, END = Step
 class Activation:
     """A clause plus the spikes that it has acquired.
 
-    Most activations end before they run or wait. Attributes that only the others need are defaults on the class.
+    Most activations end before they run or wait. So attributes for running or waiting are defaults on the class.
 
     Attributes:
-        id: A number that grows with age; also the number of its run.
+        id: A number that grows with each new activation; also the number of its run.
         spikes: The spike for each need of the clause.
         missing: The bits of the needs without a spike.
     """
 
     ripens: float = NEVER
-    """When its youngest spike will be old enough (seconds), while it is not."""
+    """While a spike is too young: when all its spikes will be old enough (seconds)."""
     pressed: float = NEVER
-    """The end of its patience (seconds), while others wait for it (L16)."""
+    """While others wait for it: the end of its patience (seconds; L16)."""
     waits_for: tuple[str, ...] = ()
     """While it waits: the names of the rules that it waits for."""
     blockers: tuple[Activation, ...] = ()
@@ -100,7 +100,7 @@ class Activation:
     interests: tuple[Group, ...] = ()
     """While it waits: the groups whose changes concern it."""
     speculative: bool = False
-    """Whether it waits for a rival whose patience is the only bound."""
+    """Whether it waits for a rival that may never become ready, so that only the rival's patience ends the wait."""
     recheck: float = NEVER
     """While it waits: when recovering utilities change the order (L9; seconds)."""
     stands_on: tuple[Spike, ...] = ()
@@ -114,7 +114,7 @@ class Activation:
     told: str = ""
     """Why the engine cancelled the run."""
     lineage: Lineage | None = None
-    """The rules that led to the run, its own included, when an instant has many runs (L23)."""
+    """In an instant with many runs: the rules that led to the run, its own included (L23)."""
 
     def __init__(self, id: int, clause: Clause) -> None:
         self.id = id
@@ -127,7 +127,7 @@ class Activation:
         """Make a transition.
 
         Raises:
-            EngineError: The table has none.
+            EngineError: The table has no such transition.
         """
         state = _TABLE[self.state][step]
         if state is None:

@@ -1,11 +1,11 @@
 """The agenda: the order in which ready activations start, ask for consent, or wait (L15-L17, L22).
 
 1. Rules that write no slot start at once.
-2. When none of them is left, ready writers ask for consent, the greatest utility first (``consent.py``). By then, runs
-   that never suspend have ended.
+2. When none of them is left, ready writers ask for consent (``consent.py``): older causes first, and the greatest
+   utility first within a cause. By then, runs that never suspend have ended.
 3. When no writer may start either, the engine updates the built-in flags.
 
-So a waiting activation asks again in the same instant in which a classifier ends, and only after everything that ends
+So when a classifier ends, a waiting activation asks again in the same instant, but only after everything else that ends
 in this instant.
 """
 
@@ -33,7 +33,7 @@ ASKABLE = (READY, WAITING)
 
 
 class Agenda(Slots):
-    """The slots and their signals, and the order of ready activations."""
+    """The layer of the engine that decides which ready activations start."""
 
     def __init__(self, policy: Policy, patience: float) -> None:
         super().__init__(policy)
@@ -58,7 +58,7 @@ class Agenda(Slots):
                     self._refuse(other, Refusal.by(best, other))
 
     def horizon(self) -> Horizon:
-        """Return what may yet come; it stays valid until an activation starts or changes."""
+        """Return the horizon, which stays valid until an activation starts or changes."""
         if self._horizon is None:
             self._horizon = Horizon(self)
         return self._horizon
@@ -102,8 +102,7 @@ class Agenda(Slots):
             self._start(activation)
 
     def _claimed(self, activation: Activation) -> Activation | None:
-        """Return a run of the same rule on one of the same spikes. Only such a run excludes a rule without slots
-        (L10)."""
+        """Return a run of the same rule on a common spike. Only such a run excludes a rule without slots (L10)."""
         for spike in activation.firm_spikes():
             if spike.claims is not None:
                 other = spike.claims.get(activation.clause.rule.index)
@@ -124,8 +123,8 @@ class Agenda(Slots):
     def _consent_round(self) -> None:
         """Ask for consent: older causes first, and the best first within a cause.
 
-        An activation that would read a slot of a rule that has just started asks in the next round. So it sees what
-        that rule writes before it suspends.
+        If a rule has just started, an activation that reads one of its slots asks in the next round instead. So the
+        activation sees the values that this rule writes before it suspends.
         """
         queue = self._queue
         self._horizon = None
@@ -158,7 +157,7 @@ class Agenda(Slots):
                 continue
             if written and not rule.readable.isdisjoint(written):
                 if self._is_taken(activation):
-                    later.append(entry)  # it will wait then, or will have lost
+                    later.append(entry)  # in the next round it waits, or has lost its spike
                 elif self._ask(activation, start=False):
                     later.append(entry)
                     break
@@ -234,8 +233,8 @@ class Agenda(Slots):
         return max(times, default=None)
 
     def _press(self, group: Group, rival: Clause, member: Activation | None, by: Activation) -> None:
-        """Put a rival under pressure, unless it already is (L16). The rival is an activation, or (None) the clause in
-        stand-by."""
+        """Put a rival under pressure, unless it already is (L16). `member` is the rival's activation, or None if the
+        clause is in stand-by."""
         patience = self.patience if rival.rule.patience is None else rival.rule.patience
         until = self.now + patience
         if member is not None:

@@ -1,10 +1,10 @@
 """Conflict sets: clauses that the same spike makes ready, although only one of them can run.
 
-A thousand rules on one signal that write one slot would be a thousand activations: one runs, and the rest give up. So
-only the best clause gets an activation; the other clauses are its queue of alternatives. If it resigns or fails, the
-next clause takes its place. The queue is *unfolded* into ordinary activations where it could make a difference: to
-judge a rival, to explain something, to retire or add a rule. The number of each activation is fixed from the start, so
-it does not matter when a queue unfolds.
+A thousand rules that hear the same signal and write the same slot would need a thousand activations. One would run, and
+the rest would give up. So only the best clause gets an activation; the other clauses are its queue of alternatives. If
+it resigns or fails, the next clause takes its place. The queue is *unfolded* into ordinary activations where that could
+make a difference: to judge a rival, to explain something, to retire or add a rule. The number of each activation is
+fixed from the start, so it does not matter when a queue unfolds.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from ravestate.policy.model import Clause, SignalPlan
 
 
 class ConflictSets(Holdings):
-    """The holdings, and the queues of alternatives."""
+    """The layer of the engine that keeps the queues of alternatives."""
 
     def unfold(self, activation: Activation) -> None:
         """Create the activations for all alternatives of one activation."""

@@ -1,8 +1,8 @@
 """Consent (L15): whether a ready activation may run now, and if not, which activations it waits for.
 
 A group refuses while one of the activation's slots is taken in it, or while there is a rival. A rival is another clause
-that writes one of these slots with greater effective utility. It has a stake in the group, and is still viable there.
-A rival with a stake holds a spike of the group, or is in stand-by, downstream of a live rule of the group.
+that writes one of these slots and has greater effective utility. It has a stake in the group, and is still viable
+there. A rival with a stake holds a spike of the group, or is in stand-by, downstream of a live rule of the group.
 """
 
 from __future__ import annotations
@@ -20,12 +20,12 @@ if TYPE_CHECKING:
 
 
 class Refusal:
-    """The reasons for which an activation waits; without any it has consent.
+    """The reasons for which an activation must wait. Without a reason, the activation has consent.
 
     Attributes:
         names: The names of the rules that it waits for.
         blockers: The live activations on whose progress the refusal depends.
-        pressed: The rivals that only patience bounds, each with the group.
+        pressed: The rivals that may never become ready, so that only their patience ends the wait; each with the group.
         hopes: Whether the refusal depends on live rules of other groups.
         interests: The groups whose changes may lift the refusal.
         recheck: The earliest time at which recovering utilities change the order (seconds).
@@ -43,7 +43,7 @@ class Refusal:
 
     @classmethod
     def by(cls, holder: Activation, activation: Activation) -> Refusal:
-        """Return a refusal because of a run beside which `activation` must not run."""
+        """Return the refusal of `activation` because `holder` runs and excludes it."""
         refusal = cls()
         refusal.names[holder.clause.rule.name] = None
         refusal.blockers[holder] = None
@@ -93,7 +93,7 @@ def ask(engine: Engine, activation: Activation) -> Refusal:
 
 
 def _rivals(engine: Engine, activation: Activation, group: Group) -> Iterator[tuple[Clause, Activation | None]]:
-    """Yield the clauses that write one of the same slots, are worth more, and have a stake in the group."""
+    """Yield the clauses that write one of the same slots, take precedence, and have a stake in the group."""
     clause = activation.clause
     slots = clause.rule.slotset
     worth = engine.effective(clause)
@@ -109,7 +109,7 @@ def _rivals(engine: Engine, activation: Activation, group: Group) -> Iterator[tu
     for rule in rules:
         for theirs in engine.policy.causes.downstream(rule):
             if theirs.base < worth:
-                break  # they come best first, and recovery only lowers
+                break  # the best come first, and recovery only lowers a utility
             if theirs in seen or theirs.rule.slotset.isdisjoint(slots):
                 continue
             seen.add(theirs)
@@ -125,7 +125,7 @@ def _beats(engine: Engine, theirs: Clause, mine: Clause, worth: float) -> bool:
 
 
 def _crossing(engine: Engine, mine: Clause, theirs: Clause) -> float:
-    """Return the earliest time at which `mine` overtakes `theirs`: both climb linearly until they have recovered."""
+    """Return the earliest time at which `mine` overtakes `theirs`: both utilities climb linearly to recovery."""
     now = engine.now
     my_worth, my_slope, my_end = engine.recovery(mine)
     their_worth, their_slope, their_end = engine.recovery(theirs)

@@ -1,4 +1,4 @@
-"""The deadlines: one heap. An entry is stale once its owner has another deadline, or none."""
+"""The deadlines, in one heap. An entry becomes stale when its owner gets another deadline or needs none."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from typing import Any
 
 
 class Kind(enum.IntEnum):
-    """A kind of deadline. At one moment they fall due in this order: first gains, then losses."""
+    """A kind of deadline. Deadlines of the same time fall due in this order: gains before losses."""
 
     RIPEN = 0  # an activation's spikes are old enough
-    RECHECK = 1  # recovering utilities change places
+    RECHECK = 1  # the order of recovering utilities changes
     PATIENCE = 2  # the patience of a pressured activation ends
     STANDBY = 3  # the patience of a pressured stand-by rival ends
-    EXPIRE = 4  # an activation gives a spike up for age
+    EXPIRE = 4  # a spike is too old for an incomplete activation
     FORGET = 5  # a spike is too old for every detached need
     TIMEOUT = 6  # a run times out
     WATCH = 7  # the spikes of an `until` are old enough
@@ -42,7 +42,7 @@ class Deadlines:
         self._valid = valid
 
     def add(self, time: float, kind: Kind, owner: Any) -> None:
-        """Add an entry (seconds)."""
+        """Add an entry that is due at a time (seconds)."""
         self._count += 1
         if time < self.earliest:
             self.earliest = time

@@ -18,8 +18,8 @@ class Run:
     Attributes:
         run: The number of the run, which every event of the run carries.
         rule: The rule.
-        payloads: The payload of each signal that it holds, by qualified name.
-        values: The current values of the slots that it may read (L13), by qualified name.
+        payloads: The payload of each signal that the run holds, by qualified name.
+        values: The current values of the slots that the run may read (L13), by qualified name.
     """
 
     run: int
@@ -54,7 +54,8 @@ class Spiked:
 
 @dataclass(slots=True)
 class Ended:
-    """Report the outcome of a run: ``fired`` unless it resigned, or failed before a write. Only on request."""
+    """Report the outcome of a run, if the engine has `report_ends`. ``fired`` is false if the run resigned, or if it
+    failed or was wiped before it wrote a slot."""
 
     run: int
     rule: str

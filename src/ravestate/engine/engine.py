@@ -1,6 +1,6 @@
 """The Signal-Rule-Slot automaton as a pure state machine.
 
-Four verbs: `receive` an event, `advance` to a time, ask for the `next_deadline`, take the `effects`.
+The engine has four verbs: `receive` an event, `advance` to a time, ask for the `next_deadline`, take the `effects`.
 Time is an argument, in seconds from any origin. Nothing here knows a clock, a thread or a loop.
 
 This file has the handlers of events, the outcomes of runs, and the handling of deadlines. The rest is in the layers
@@ -34,11 +34,11 @@ DEFAULT_PATIENCE = 1.0
 
 
 class Engine(Agenda):
-    """A running automaton. Any number of them share one policy.
+    """A running automaton. Any number of engines may share one policy.
 
     Args:
         policy: A policy from ``rs.compile``.
-        patience: The patience of rivals under pressure, in seconds, where their rule does not say (L16).
+        patience: The patience of rivals under pressure, in seconds, unless their rule sets its own (L16).
         report_ends: Whether each run ends with an `Ended` effect.
 
     Example:
@@ -57,7 +57,7 @@ class Engine(Agenda):
     # ------------------------------------------------------------------------------------ the four verbs
 
     def receive(self, event: Event, now: float) -> None:
-        """Take an event at a time (seconds, not before the last one).
+        """Handle an event at a time (seconds). A time before the last one counts as the last one.
 
         Raises:
             UndeclaredError: The event names a signal or slot that the policy does not have.
@@ -85,7 +85,7 @@ class Engine(Agenda):
         self.now = max(self.now, now)
 
     def next_deadline(self) -> float | None:
-        """Return when to call `advance` next (seconds), if no event comes before."""
+        """Return the time (seconds) at which to call `advance` next, unless an event comes first."""
         return self._deadlines.next()
 
     @property
@@ -227,7 +227,7 @@ class Engine(Agenda):
             self.ran[rule.index] = self.now
             self._asking.update(
                 (a, None) for a in self.waiting if rule.name in a.waits_for
-            )  # the rule is worth less now
+            )  # the rule's utility is lower now
         spikes = run.stands_on
         for clause in rule.until:
             watch = self._watches[clause].pop(run)
@@ -284,7 +284,7 @@ class Engine(Agenda):
     # ------------------------------------------------------------------------------------ outcomes
 
     def _consume(self, run: Activation, spikes: tuple[Spike, ...]) -> None:
-        """Settle Done: the slots are consumed in its groups, and other activations give these spikes up for them (L18)."""
+        """Settle Done: consume the slots in the run's groups; take the spikes from the slots' other writers (L18)."""
         rule = run.clause.rule
         if rule.slots:
             groups = _roots(run)
@@ -316,7 +316,7 @@ class Engine(Agenda):
     def _give_up(self, run: Activation, spikes: tuple[Spike, ...], reason: str) -> None:
         """Make the rule give up spikes for good, in all its other activations."""
         rule = run.clause.rule
-        for spike in spikes:  # mark all of them first: an activation that loses one looks for others at once
+        for spike in spikes:  # mark all of them first: an activation that loses a spike looks for another at once
             if spike.claims is not None and rule.index in spike.claims:
                 spike.claims[rule.index] = None
             spike.refuse(rule.index)

@@ -61,8 +61,8 @@ class Explanation:
         retired: Whether the rule has left the context.
         clauses: Its clauses.
         activations: Its live activations.
-        missing: A sentence for each of its signals that the trace lacks: the rules that may raise it, and how each one
-            last ended. Empty without a trace.
+        missing: A sentence for each of its signals that did not occur in the trace: the rules that may raise the
+            signal, and how each rule last ended. Empty without a trace.
         history: Its latest records in the trace, as text. Empty without a trace.
     """
 
@@ -103,7 +103,7 @@ class Explanation:
 
 
 def explain(engine: Engine, rule: RulePlan, records: Iterable[Record] = (), limit: int = 12) -> Explanation:
-    """Explain a rule of an engine. `records` is the trace, for the rule's history; `limit` is the most lines of it."""
+    """Explain a rule of an engine, with at most `limit` lines of its history from `records`, the trace."""
     engine.look()
     records = [*records]
     return Explanation(
@@ -163,9 +163,9 @@ def _activation(engine: Engine, activation: Activation) -> ActivationState:
 
 
 def words_of(record: Record, others: str = "", behind: str = "") -> str:
-    """Say what a record means for its rule; empty for a record without a rule.
+    """Return what a record means for its rule, in words; empty for a record without a rule.
 
-    `others` describes the rules that it waits for, and `behind` is the rule that raised the answering rule's input.
+    `others` describes the rules that the rule waits for; `behind` is the rule that raised the answering rule's input.
     """
     match record:
         case Held():

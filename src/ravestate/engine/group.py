@@ -16,13 +16,13 @@ class Group:
     """The slots that are taken in a group, and the activations that have a stake in it.
 
     Attributes:
-        taken: For each slot taken here: the runs that hold it, or None once a run has finished on it.
-        members: The activations that hold non-detached spikes of the group, oldest first, and how many.
+        taken: For each slot taken here: the runs that hold it, or None once a run has finished with it.
+        members: The activations that hold non-detached spikes of the group, oldest first, each with the number of them.
         interested: The waiting activations that ask again when something ends in the group.
         pressed: The stand-by rivals under pressure (numbers of clauses), and the end of their patience (seconds).
         eliminated: The stand-by rivals whose patience has run out.
-        answers: The rule that first finished on each slot, and the number of its run. Kept for the trace, and only
-            while there is a tracer.
+        answers: The rule that first finished with each slot, and the number of its run. The engine notes them for the
+            trace, while there is a tracer.
     """
 
     __slots__ = ("answers", "eliminated", "id", "interested", "into", "members", "pressed", "taken")
@@ -67,11 +67,11 @@ class Group:
         return bool(taken) and any(slot in taken and taken[slot] is None for slot in slots)
 
     def note(self, slots: tuple[int, ...], rule: str, run: int) -> None:
-        """Note the rule and the run that finish on slots; an earlier note stays."""
+        """Note the rule and the run that have finished with some slots; an earlier note stays."""
         self.answers = {**dict.fromkeys(slots, (rule, run)), **self.answers}
 
     def answer(self, slots: tuple[int, ...]) -> tuple[str, int]:
-        """Return the rule that finished on one of the slots, and the number of its run; ``""`` and 0 without a note."""
+        """Return the rule that finished with one of the slots, and the number of its run; or ``""`` and 0."""
         return next((self.answers[slot] for slot in slots if slot in self.answers), ("", 0))
 
     def concern(self, activation: Activation) -> None:

@@ -25,7 +25,7 @@ from ravestate.policy.model import Clause, Need, SignalPlan
 
 
 class Holdings(State):
-    """The state, and the changes of what activations hold."""
+    """The layer of the engine that gives spikes to activations and takes them away."""
 
     def _look(self, activation: Activation) -> None:
         """Give each detached need that lacks a spike the newest live one that is old enough."""
@@ -39,7 +39,7 @@ class Holdings(State):
                 best: Spike | None = None
                 for spike in reversed(live):
                     if self._fits(need, spike):
-                        best = spike  # of those that are too young, the oldest ripens first
+                        best = spike  # if all are too young, the oldest ripens first
                         if spike.born + need.min_age <= self.now:
                             break
                 if best is not None:
@@ -56,7 +56,7 @@ class Holdings(State):
                     return
 
     def _coherent(self, activation: Activation, need: Need, spike: Spike) -> bool:
-        """Return whether a spike is in the causal group that meets the related needs (L12)."""
+        """Return whether a spike belongs to the causal group whose spikes meet the related needs (L12)."""
         if need.kin == need.bit:
             return True
         held = activation.held(need.kin & ~need.bit)
@@ -129,16 +129,16 @@ class Holdings(State):
             self._deadlines.add(due, EXPIRE, spike)
 
     def _expire(self, spike: Spike, time: float) -> None:
-        """Let incomplete holders give a spike up that is too old for them (L14)."""
+        """Make incomplete holders give up a spike that is too old for them (L14)."""
         for holder in list(spike.holders):
             if holder.state is GATHERING:
                 old = [need for need in self._of_spike(holder, spike) if spike.born + need.max_age <= time]
                 self._lose(holder, old, "age")
 
     def _complete(self, activation: Activation, *, late: bool = False) -> None:
-        """Make an activation ready and queue it: a writer asks for consent, any other starts without.
+        """Make an activation ready and queue it: a writer asks for consent, and any other activation starts without it.
 
-        If its loop has had too many turns (L23), only a second call queues it, a `late` one.
+        If its loop has had too many turns (L23), the activation is queued only by a second call, with `late`.
         """
         if not late:
             activation.step(COMPLETE)
@@ -185,7 +185,7 @@ class Holdings(State):
             )
 
     def _lose(self, activation: Activation, needs: Iterable[Need], reason: str, by: Activation | None = None) -> None:
-        """Let an activation give spikes up; without any left it ends."""
+        """Make an activation give spikes up, and end it if no spike is left."""
         needs = [need for need in needs if not need.bit & activation.missing]
         if not needs:
             return
@@ -205,7 +205,7 @@ class Holdings(State):
         kin = 0
         for need in needs:
             kin |= need.kin
-        # The lost spike may have excluded spikes of other groups; related needs may now find theirs.
+        # The lost spike may have excluded spikes of other groups, which may now meet the related needs.
         for need in (*needs, *(n for n in clause.needs if n.bit & kin)):
             if need.bit & activation.missing:
                 self._rematch(activation, need)
@@ -227,8 +227,7 @@ class Holdings(State):
         self.gated.pop(activation, None)
 
     def _end(self, activation: Activation, reason: str = "", by: Activation | None = None) -> None:
-        """End an activation and remove every reference to it. With a `reason`, it counts as having given its spikes
-        up."""
+        """End an activation and remove every reference to it. With a `reason`, trace that it gave its spikes up."""
         before = activation.state
         activation.step(END)
         clause = activation.clause
@@ -306,7 +305,7 @@ class Holdings(State):
             if holder.state < RUNNING:
                 self._lose(holder, self._of_spike(holder, spike), "withdrawn")
             else:
-                self.alternatives.pop(holder, None)  # each of them would have given the spike up
+                self.alternatives.pop(holder, None)  # each alternative would have given the spike up
 
     def _withdraw(self, signal: SignalPlan, reason: str) -> None:
         """Withdraw all live spikes of a signal."""

@@ -1,21 +1,21 @@
 """The horizon (L16): whether the missing constraints of a rival may yet be met.
 
 A signal is in the horizon of a group if some rule of the group may yet cause it. Such a rule runs, or its own
-constraints are met or may still be met. This is a least fixed point over an and-or graph. Few signals matter at a
-time, so each is derived backwards: over its causes, to live activations. A static closure (`Causes.ancestors`) cuts
-off the causes that no live rule of the group can reach.
+constraints are met or may still be met. This is a least fixed point over an and-or graph. Few signals matter at a time,
+so the engine derives each one backwards, from its causes to live activations. A static closure (`Causes.ancestors`)
+cuts off the causes that no live rule of the group can reach.
 
 A derivation has one of three strengths:
 
 ``FIRM``         it rests on work in progress: runs, ripening spikes, ready activations
-``SPECULATIVE``  some step of it needs an input, or a live rule of another group: it may never come, and
-                 only patience bounds it
+``SPECULATIVE``  a step needs an input, or a live rule of another group: the signal may never come, and
+                 only patience ends the wait
 ``NO``           nothing leads to the signal
 
-A rule that would take one of the rival's own slots cannot help it: in one group a slot is written once (L19).
+A rule that would take one of the rival's own slots cannot help the rival: in one group a slot is written once (L19).
 
-A derivation may be as deep as the policy has signals. So each of its steps is a generator, a `Step`: it yields the
-steps whose strengths it needs, and `_solve` keeps those that wait on a stack of its own.
+A derivation may have as many steps as the policy has signals. So each of its steps is a generator, a `Step`: it yields
+the steps whose strengths it needs, and `_solve` keeps those that wait on a stack of its own.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ class Horizon:
     Attributes:
         roots: The live activations on which the latest firm derivation rests.
         visited: The groups that were looked at.
-        hopes: Whether a live rule of another group is the only one that may bring something.
+        hopes: Whether a needed signal may come only from a live rule of another group.
     """
 
     __slots__ = ("_by_rule", "_cuts", "_judged", "_known", "_path", "engine", "hopes", "roots", "visited")
@@ -61,15 +61,14 @@ class Horizon:
         self._judged: dict[tuple[Clause, Activation | None, Group], tuple[int, dict[Activation, None]]] = {}
 
     def viable(self, clause: Clause, activation: Activation | None, group: Group, slots: Slots) -> int:
-        """Return how firmly a clause may still become ready in a group: an activation of it, or (None) one in stand-by.
+        """Return how firmly a clause may still become ready in a group. `activation` is None for a clause in stand-by.
 
         A clause in stand-by has a stake in the group only if a signal of the group's horizon is among its needs.
         """
         return _solve(self._viable(clause, activation, group, slots))
 
     def judge(self, clause: Clause, activation: Activation | None, group: Group) -> tuple[int, dict[Activation, None]]:
-        """Return how viable a rival is, and which activations that depends on. The answer does not depend on who
-        asks."""
+        """Return how viable a rival is, and the activations on which this depends, whichever activation asks."""
         known = self._judged.get((clause, activation, group))
         if known is None:
             self.roots.clear()
@@ -90,8 +89,7 @@ class Horizon:
             missing = activation.missing
             if not missing:
                 self.roots.append(activation)  # it is ready, or will ripen
-        # For each need, or set of needs that one group must meet: how firmly this group may meet it, and how firmly any
-        # may.
+        # For each need, or set of needs that one group must meet: how firmly this group and any group may meet it.
         here: list[int] = []
         best: list[int] = []
         answered = 0
@@ -114,7 +112,7 @@ class Horizon:
             here.append(mine)
             best.append(max(mine, other))
         strength = min(best, default=FIRM)
-        if activation is None:  # the group must meet one of them itself: help from elsewhere creates no stake
+        if activation is None:  # the group must meet one need itself: help from elsewhere creates no stake
             strength = max(
                 (min(mine, *best[:k], *best[k + 1 :]) if len(best) > 1 else mine for k, mine in enumerate(here)),
                 default=NO,
@@ -139,8 +137,7 @@ class Horizon:
     def _kin(
         self, need: Need, activation: Activation | None, missing: int, group: Group, slots: Slots
     ) -> Generator[Any, int, tuple[int, int]]:
-        """Return how firmly this group, and how firmly any group, may meet needs that one group must meet together
-        (L12)."""
+        """Return how firmly this group, and any group, may meet needs that one group must meet together (L12)."""
         kin = [n for n in need.clause.needs if n.bit & need.kin & missing]
         held = activation.held(need.kin) if activation is not None else None
         home = group if held is None else held.group.root()

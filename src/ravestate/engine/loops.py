@@ -2,8 +2,8 @@
 
 An instant lasts until the engine has nothing left to do. After `MANY` runs in one instant the engine notes, for each
 new spike, which rules led to it. If a run's own rule led to it, the run is another turn of a loop. After `TURNS` turns
-of all loops together, each further turn waits until nothing else is ready. The engine names a loop once it has had so
-many turns of its own.
+of all loops together, each further turn waits until nothing else is ready. Once a single loop has had `TURNS` turns,
+the engine names it in an error.
 
 A rule that triggers two runs of itself turns one loop into thousands. So the turns of all loops count together. The
 engine judges a turn when it becomes ready, and again when it is to start: thousands may be ready by then.
@@ -24,10 +24,10 @@ if TYPE_CHECKING:
     from ravestate.policy.model import RulePlan
 
 MANY = 500
-"""Runs in one instant that are not traced; most instants have fewer, so tracing costs them nothing."""
+"""The number of runs in one instant before the engine traces further runs; most instants have fewer."""
 
 TURNS = 500
-"""Turns in one instant that start like any other run; together with the runs before them, 1,000."""
+"""The number of turns in one instant that start like any other run. `MANY` and `TURNS` make the 1,000 runs of L23."""
 
 
 @dataclass(slots=True, eq=False)

@@ -17,7 +17,7 @@ from ravestate.policy.model import Need, SignalPlan
 
 
 class Matching(ConflictSets):
-    """The conflict sets, and the births, groups and offers of spikes."""
+    """The layer of the engine that creates spikes, groups them, and offers them to activations."""
 
     def _parents(self, run: Activation | None) -> tuple[Spike, ...]:
         """Return the parents of the spikes that a run raises; none for a detached rule or from outside (L19)."""
@@ -146,7 +146,7 @@ class Matching(ConflictSets):
             for activation in sorted(lacking, key=_age) if len(lacking) > 1 else tuple(lacking):
                 if need.kin != need.bit and not self._coherent(activation, need, spike):
                     continue
-                if activation.missing & need.bit:  # an earlier offer may have changed that
+                if activation.missing & need.bit:  # an earlier offer may have met the need
                     self._acquire(activation, need, spike)
                     self._stir(activation)
                     self._update(activation)
@@ -187,7 +187,7 @@ class Matching(ConflictSets):
             self._watched_by.pop(spike, None)
 
     def _judge(self, watch: Watch) -> None:
-        """Interrupt the run of a watch whose condition is met, or set the time at which it will be (L21)."""
+        """Interrupt the run of a watch whose condition is met, or set the time at which it will be met (L21)."""
         due = watch.met_at(self.now)
         if due is None or watch.run.state != RUNNING:
             return
@@ -198,7 +198,7 @@ class Matching(ConflictSets):
             self._cancel(watch.run, "interrupted")
 
     def _cancel(self, run: Activation, reason: CancelReason) -> None:
-        """Ask for the end of a run."""
+        """Cancel a run, and have the runtime stop its function."""
         run.step(CANCEL)
         run.told = reason
         run.deadline = NEVER

@@ -16,7 +16,7 @@ from ravestate.policy.model import SlotPlan
 
 
 class Slots(Matching):
-    """The matching, and the slots whose changes feed it."""
+    """The layer of the engine that writes slots and raises their signals."""
 
     def _mark_write(self, slot: SlotPlan, run: Activation | None) -> None:
         """Note that a run writes a slot, which it must have declared (L3)."""
@@ -31,7 +31,7 @@ class Slots(Matching):
         if self.tracer is not None:
             self.tracer(trace.Set(self.now, slot.name, value, 0 if run is None else run.id))
         if len(parents) > 1:
-            self._group_of(parents)  # they merge (L11), even if no rule hears the slot
+            self._group_of(parents)  # their groups merge (L11), even if no rule hears the slot
         if slot.heard or self.tracer is not None or (self.watched and self._watched(slot)):
             if slot.keep_latest:
                 for signal in slot.signals:

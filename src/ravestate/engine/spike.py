@@ -26,7 +26,7 @@ class Spike:
         claims: For each rule without slots: the activation that runs on the spike, or None after the run (L10).
         expiring: The times at which incomplete holders give it up for age (seconds).
         refused: The rules that gave it up for good.
-        lineage: The rules that led to it, when an instant has many runs (L23).
+        lineage: In an instant with many runs: the rules that led to the spike (L23).
     """
 
     id: int

@@ -47,8 +47,7 @@ class State:
         self.values: dict[int, Any] = {}
         """The slots that were written or read: index to value."""
         self._unseen: dict[int, dict[str, Any]] = {}
-        """The items of each collection that no code has read since its last change. They can change again without a
-        copy."""
+        """The items of each collection that no code has read since the last change. Changing them needs no copy."""
         self.live: dict[int, dict[Spike, None]] = {}
         """Live spikes by signal, oldest first."""
         self.active: dict[int, dict[Activation, None]] = {}
@@ -61,9 +60,9 @@ class State:
         """Ready activations that were refused consent."""
         self.alternatives: dict[Activation, tuple[tuple[Clause, ...], int, int]] = {}
         """Activations with a queue of alternatives (``conflict_sets.py``): the clauses of the conflict set, how many of
-        them have an activation, and the number before the first of these."""
+        them have an activation, and the activation number just before theirs."""
         self.hoping: dict[Activation, None] = {}
-        """Waiting activations whose rival may yet be helped by a live rule of another causal group."""
+        """Waiting activations with a rival that a live rule of another causal group may yet help."""
         self.running: dict[int, Activation] = {}
         """Activations whose function runs, by the number of the run."""
         self.retired: set[int] = set()
@@ -74,9 +73,9 @@ class State:
         """Signals whose spikes are reported as effects."""
         self._out: list[Effect] = []
         self._acts = False  # whether one of these effects starts or cancels a run
-        self._free: list[Activation] = []  # ready, without need of consent
-        self._asking: dict[Activation, None] = {}  # ready, and about to ask for consent
-        self._refused: dict[Activation, None] = {}  # refused since the last search for a stalemate
+        self._free: list[Activation] = []  # ready activations that need no consent
+        self._asking: dict[Activation, None] = {}  # ready activations that are about to ask for consent
+        self._refused: dict[Activation, None] = {}  # activations refused since the last search for a stalemate
         self._dirty: dict[Group, None] = {}  # groups in which something ended
         self._stirred = False  # whether something ended that the `hoping` activations may have hoped for
         self._watches: dict[Clause, dict[Activation, Watch]] = {}
@@ -142,7 +141,7 @@ class State:
         return next((spike for spike in self.live.get(need.signal.index, ()) if self._fits(need, spike)), None)
 
     def _fits(self, need: Need, spike: Spike) -> bool:
-        """Return whether a live spike may meet a need: young enough, not given up, not consumed, of a fitting payload."""
+        """Return whether a live spike may meet a need: age and payload fit, and it was not given up or consumed."""
         rule = need.clause.rule
         if spike.born + need.max_age <= self.now and need.max_age:
             return False
@@ -162,7 +161,7 @@ class State:
         return self._test(guard.predicate, self.read(slot.index), rule)
 
     def opens(self, slot: SlotPlan, guard: Holds) -> bool:
-        """Return the same for a debugger: a predicate that raises counts as false, and is not reported."""
+        """Return the result of `holds` for a debugger: a predicate that raises counts as false, but is not reported."""
         try:
             return bool(guard.predicate(self.read(slot.index)))
         except Exception:  # a predicate of the designer may raise anything; the guard then counts as false

@@ -1,4 +1,4 @@
-"""The trace (L25): a closed union of records, from which the debugger, the recorder and the tests live.
+"""The trace (L25): a closed union of records for the debugger, the recorder and the tests.
 
 The engine makes a record only while it has a tracer.
 """
@@ -25,7 +25,7 @@ class Born:
 
 @dataclass(frozen=True, slots=True)
 class Dropped:
-    """A spike was withdrawn: by overflow, a wipe, or a later one (L20, L23)."""
+    """A spike was withdrawn, by overflow, a wipe, or a later spike (L20, L23)."""
 
     time: float
     spike: int
@@ -75,7 +75,7 @@ class GaveUp:
     spike: int
     signal: str
     reason: str
-    by: str = ""  # the rule that consumed it, or resigned on it
+    by: str = ""  # the rule that consumed the spike, or resigned
     run: int = 0  # the number of its run; 0 if there is none, or it is unknown
 
 
@@ -149,7 +149,7 @@ class Settled:
     outcome: str
     reason: str
     fired: bool
-    error: BaseException | str | None = field(default=None, repr=False, compare=False)  # in a file: its traceback
+    error: BaseException | str | None = field(default=None, repr=False, compare=False)  # in a trace file: the traceback
 
 
 Record = Born | Dropped | Merged | Set | Held | GaveUp | Passed | Waits | Pressed | Started | Told | Settled

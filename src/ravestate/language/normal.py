@@ -1,12 +1,21 @@
-"""The normal form of a text: typed English as written English, with offsets into the original."""
+"""The normal form of a text: typed English as written English, with offsets into the original.
+
+Each step changes only what written English would not have, so a well-written sentence stays as it is:
+
+1. words: short forms and slips of `WRITTEN`; letters repeated for emphasis; slips of the pen, and the capitals of names,
+   by the `Lexicon`;
+2. punctuation: a space after a comma, a comma after an interjection, a full stop between a statement and a question;
+3. the start and end of each sentence: a capital, and a full stop or question mark.
+"""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
-from .contractions import WRITTEN
+from .contractions import CONTRACTIONS, WRITTEN
+from .lexicon import Lexicon, loaded_lexicon
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,42 +30,92 @@ class Normal:
     """For each character of `text`, and for its end, the position in `original`. It never decreases."""
 
     def span(self, start: int, end: int) -> tuple[int, int]:
-        """Return the span of `original` that ``text[start:end]`` stands for."""
+        """Return the span of `original` that ``text[start:end]`` stands for; an added mark has an empty one."""
         return self.origin[start], self.origin[end]
+
+    def adds(self, start: int, end: int) -> bool:
+        """Return whether the original has nothing that ``text[start:end]`` stands for."""
+        return start < end and self.origin[start] == self.origin[end]
+
+    @property
+    def typed(self) -> str:
+        """The normal form with the capitals as typed, wherever a word differs from the typed one only in them."""
+        if self.text == self.original:
+            return self.text
+        parts: list[str] = []
+        last = 0
+        for found in _WORD.finditer(self.text):
+            start, end = self.span(*found.span())
+            written = self.original[start:end]
+            same = written.lower() == found[0].lower() and len(written) == len(found[0])
+            parts += [self.text[last : found.start()], written if same else found[0]]
+            last = found.end()
+        return "".join([*parts, self.text[last:]])
+
+
+@dataclass(slots=True)
+class _Piece:
+    """A word as written, the span of the original that it stands for, and the text before it."""
+
+    start: int
+    end: int
+    text: str
+    gap: str = ""
+    """The punctuation and white space before the word."""
+    first: bool = False
+    """Whether the word begins a sentence."""
+
+    @property
+    def low(self) -> str:
+        return self.text.lower()
 
 
 _WORD = re.compile(r"[^\W_]+(?:['’-][^\W_]+)*")
+_STOP = re.compile(r"[.!?…\n]")
+_CROWDED = re.compile(r"[,;:!?]")
+_NO_WORD = re.compile(r"\d|^[^a-z]", re.IGNORECASE)
+
+_DOMAINS = frozenset("com org net info gov uk us de at eu html txt".split())
+
+_WH = frozenset("what who where when why how which whose whom what's who's where's when's why's how's".split())
+_BE = frozenset("is are was were am isn't aren't wasn't weren't".split())
+_AUX = _BE | frozenset(
+    "do does did don't doesn't didn't can could will would shall should may might have has had can't couldn't won't wouldn't "
+    "shouldn't haven't hasn't hadn't".split()
+)
+_AMBIGUOUS = frozenset("do don't have may might".split())
+"""Auxiliaries that also begin requests and statements: *do it*, *have a nice day*."""
+_SUBJECT = frozenset("i you he she it we they".split())
+_STARTER = _SUBJECT | _WH | _AUX | frozenset("there that this my your let's i'm you're it's that's he's she's we're they're".split())
+_INTERJECTION = frozenset("hi hello hey yes yeah yep no nope ok okay thanks sorry wow oh well bye".split())
+_GOVERNS = frozenset("know tell me ask wonder see say guess remember forget forgot about of and or but so nor neither as than that if".split())
+"""Words that a clause may follow without a full stop."""
+_NAMING = frozenset("called named name is am i'm from in".split())
+"""Words that a name may follow: an unknown word after one of them is hardly a slip."""
 
 
 def normalise(text: str, names: Collection[str] = ()) -> Normal:
-    """Return the normal form of `text`.
+    """Return the normal form of `text`. Takes less than a millisecond for a sentence.
+
+    Slips of the pen and the capitals of names need `load_lexicon` before.
 
     Args:
         text: The text as typed.
         names: Names that keep or get their capitals, such as the agent's and the user's.
 
     Example:
-        >>> normalise("u cant do that, can u?").text
-        'you can not do that, can you?'
+        >>> normalise("u cant do that can u").text
+        "You can't do that can you."
     """
+    lexicon = loaded_lexicon()
+    pieces = _pieces(text, lexicon)
     known = {name.lower(): name for name in names}
-    parts: list[str] = []
-    origin: list[int] = []
-    last = 0
-    for found in _WORD.finditer(text):
-        parts.append(text[last : found.start()])
-        origin += range(last, found.start())
-        word = found[0].replace("’", "'")
-        written = known.get(word.lower()) or WRITTEN.get(word.lower(), word)
-        if written != word and word[0].isupper():
-            written = written[0].upper() + written[1:]
-        parts.append(written)
-        size, wide = len(found[0]), len(written)
-        origin += (found.start() + min(size * place // wide, size) for place in range(wide))
-        last = found.end()
-    parts.append(text[last:])
-    origin += range(last, len(text) + 1)
-    return Normal("".join(parts), text, tuple(origin))
+    if _shouted(pieces):
+        for piece in pieces:
+            piece.text = piece.low
+    pieces = _mended(pieces, known, lexicon)
+    _punctuate(pieces)
+    return _joined(pieces, text)
 
 
 def plain(text: str) -> str:
@@ -66,5 +125,200 @@ def plain(text: str) -> str:
         >>> plain("What's up, Doc?")
         'what is up doc'
     """
-    words: list[str] = [found[0].replace("’", "'").lower() for found in _WORD.finditer(text)]
-    return " ".join(WRITTEN.get(word, word) for word in words).lower()
+    words = [found[0].replace("’", "'").lower() for found in _WORD.finditer(text)]
+    words = " ".join(WRITTEN.get(word, word).lower() for word in words).split()
+    return " ".join(CONTRACTIONS.get(word, word) for word in words)
+
+
+def _pieces(text: str, lexicon: Lexicon | None) -> list[_Piece]:
+    """Return the words of a text with what stands before them; the last piece is empty."""
+    pieces: list[_Piece] = []
+    last = 0
+    for found in _WORD.finditer(text):
+        gap = text[last : found.start()]
+        if pieces and _crowded(pieces[-1].text, gap, found[0], lexicon):
+            gap += " "
+        pieces.append(_Piece(found.start(), found.end(), found[0].replace("’", "'"), gap, not pieces or bool(_STOP.search(gap))))
+        last = found.end()
+    pieces.append(_Piece(len(text), len(text), "", text[last:]))
+    return pieces
+
+
+def _crowded(before: str, mark: str, after: str, lexicon: Lexicon | None) -> bool:
+    """Return whether a space is missing between two words. A dot may also belong to a name: *example.org*."""
+    if _NO_WORD.search(after) or len(before) < 2:
+        return False
+    if mark == ".":
+        words = before.lower(), after.lower()
+        return after not in _DOMAINS and lexicon is not None and all(map(lexicon.known, words))
+    return bool(_CROWDED.fullmatch(mark)) and "." not in before
+
+
+def _shouted(pieces: Sequence[_Piece]) -> bool:
+    """Return whether everything is in capitals."""
+    words = [piece.text for piece in pieces if any(map(str.isalpha, piece.text))]
+    return len(words) > 1 and all(word.isupper() for word in words) and sum(len(word) > 2 for word in words) > 1
+
+
+def _mended(pieces: Sequence[_Piece], known: dict[str, str], lexicon: Lexicon | None) -> list[_Piece]:
+    """Return the pieces with every word as written English has it; two words may become one piece."""
+    mended: list[_Piece] = []
+    index = 0
+    while index < len(pieces):
+        piece = pieces[index]
+        after = pieces[index + 1] if index + 1 < len(pieces) else None
+        index += 1
+        before = mended[-1].low if mended else ""
+        pair = f"{piece.low} {after.low}" if after and after.gap.isspace() else ""
+        if pair in WRITTEN and not (piece.text.isdigit() and before in _AT):
+            assert after is not None
+            piece.text, piece.end = _cased(WRITTEN[pair], piece), after.end
+            index += 1
+        elif piece.low in known:
+            piece.text = piece.text if piece.text != piece.low else known[piece.low]
+        elif _stands_for(piece, pieces[index : index + 4], before, lexicon):
+            piece.text = _cased(WRITTEN.get(piece.low, "it's"), piece)
+        elif lexicon is not None and piece.text == piece.low:
+            piece.text = _by_lexicon(piece.text, before, lexicon)
+        mended.append(piece)
+    return mended
+
+
+_AT = frozenset("at by until till before after from since around about is and".split())
+"""Words after which a figure is a time or a number."""
+_OFTEN_RIGHT = frozenset("lets its cant wont k".split())
+
+
+def _stands_for(piece: _Piece, following: Sequence[_Piece], before: str, lexicon: Lexicon | None) -> bool:
+    """Return whether the table has the word, and it means that here."""
+    word = piece.text
+    opens = piece.first or before in _INTERJECTION or before in ("and", "but", "so", "then", "now")
+    if piece.low == "its":
+        finite = any(part.low in _AUX for part in following)
+        return opens and not finite and bool(following) and not piece.text.isupper()
+    if piece.low not in WRITTEN:
+        return False
+    if piece.low in ("lets", "k"):
+        return opens and word != "K"
+    if word == piece.low or word == "I":
+        return True
+    if word.isupper():
+        return len(word) > 2
+    return piece.first and (len(word) > 2 or lexicon is None or lexicon.name(piece.low) == piece.low)
+
+
+def _by_lexicon(word: str, before: str, lexicon: Lexicon) -> str:
+    """Return a word in lower case with its slips mended, and a name with its capital."""
+    stem, mark, end = word.partition("'")
+    named = lexicon.name(stem)
+    if named != stem or mark or not stem.isalpha():
+        if mark and stem == "i":
+            named = "I"
+        return named + mark + end
+    short = lexicon.unstretched(stem)
+    if short != stem:
+        return WRITTEN.get(short, lexicon.name(short))
+    if before in _NAMING and len(stem) < 7:
+        return stem
+    return lexicon.correction(stem)
+
+
+def _cased(written: str, piece: _Piece) -> str:
+    """Return a written form with a capital where the typed word begins with one."""
+    return written[0].upper() + written[1:] if piece.text[0].isupper() else written
+
+
+def _punctuate(pieces: Sequence[_Piece]) -> None:
+    """Add the capitals, commas and final marks that are missing."""
+    start = 0
+    for index, piece in enumerate(pieces):
+        if index and (piece.first or index == len(pieces) - 1):
+            _end(pieces[start:index], piece)
+            start = index
+        elif index and piece.gap.isspace() and "\n" not in piece.gap:
+            if index == start + 1 and pieces[start].low in _INTERJECTION and piece.low in _STARTER:
+                piece.gap = "," + piece.gap
+            elif _asks_anew(pieces, start, index):
+                _end(pieces[start:index], piece, ".")
+                piece.first, start = True, index
+        if piece.first and piece.text[:1].islower():
+            piece.text = piece.text[0].upper() + piece.text[1:]
+
+
+def _end(sentence: Sequence[_Piece], following: _Piece, mark: str = "") -> None:
+    """Add the mark at the end of a sentence, unless it has one."""
+    gap = following.gap
+    if gap.strip() and not gap.lstrip().startswith((")", '"', "'")):
+        return
+    if gap.strip() or not any(letter.isascii() for piece in sentence for letter in piece.text):
+        return
+    following.gap = (mark or ("?" if _asks([piece.low for piece in sentence]) else ".")) + gap
+
+
+def _asks(words: list[str]) -> bool:
+    """Return whether the words of a sentence without a mark are those of a question."""
+    while len(words) > 1 and words[0] in _INTERJECTION | {"and", "but", "so"}:
+        words = words[1:]
+    first, second = words[0], words[1] if len(words) > 1 else ""
+    if words in (["and", "you"], ["you"]):
+        return True
+    if first in ("what", "how") and second == "about":
+        return True
+    if "'" in first and first in _WH:
+        return True
+    if first in ("what", "who", "why", "which", "whose"):
+        return second not in _SUBJECT and second not in ("a", "an")
+    if first in _WH:
+        until = next((place for place, word in enumerate(words) if word in _SUBJECT), len(words))
+        return any(word in _AUX for word in words[1 : min(until, 4)])
+    if first in _AMBIGUOUS:
+        return second in _SUBJECT - {"it"}
+    return first in _AUX and second not in ("", "not")
+
+
+def _asks_anew(pieces: Sequence[_Piece], start: int, index: int) -> bool:
+    """Return whether a question without any mark begins at `index`, after a statement."""
+    before, words = [piece.low for piece in pieces[start:index]], [piece.low for piece in pieces[index : index + 4]]
+    if len(before) < 2 or before[-1] in _GOVERNS or before[-1] in _AUX or any(word in _WH or word in _AUX - _BE for word in before[:1]):
+        return False
+    if any(word in _WH for word in before):
+        return False
+    first, second, third, *_ = [*words, "", "", ""]
+    if first in _WH:
+        inverted = (second in _AUX and (third in _SUBJECT or third in ("your", "my"))) or (
+            first == "how" and third in _AUX and words[3:4] and words[3] in _SUBJECT
+        )
+        return bool(inverted) or (first in ("what", "how") and second == "about" and third == "you")
+    return first in ("do", "are", "can", "did", "would", "will", "have", "could") and second == "you" and third != ""
+
+
+def _joined(pieces: Sequence[_Piece], original: str) -> Normal:
+    """Return the pieces as a text with its offsets."""
+    parts: list[str] = []
+    origin: list[int] = []
+    last = 0
+    for piece in pieces:
+        _align(piece.gap, original[last : piece.start], last, origin)
+        _align(piece.text, original[piece.start : piece.end], piece.start, origin)
+        parts += [piece.gap, piece.text]
+        last = piece.end
+    return Normal("".join(parts), original, (*origin, len(original)))
+
+
+def _align(written: str, typed: str, start: int, origin: list[int]) -> None:
+    """Append the origin of each written character: equal beginnings and ends match, and the rest is spread between."""
+    size, wide = len(typed), len(written)
+    if size == wide:
+        origin += range(start, start + size)
+        return
+    low, typed_low = written.lower(), typed.lower()
+    head = 0
+    while head < min(size, wide) and low[head] == typed_low[head]:
+        head += 1
+    tail = 0
+    while tail < min(size, wide) - head and low[-tail - 1] == typed_low[-tail - 1]:
+        tail += 1
+    inner, width = size - head - tail, wide - head - tail
+    origin += range(start, start + head)
+    origin += (start + head + min(inner * place // max(width, 1), inner) for place in range(width))
+    origin += range(start + size - tail, start + size)

@@ -21,7 +21,7 @@ def load_module(name: str, folder: Path = Path()) -> Module:
 
     Args:
         name: ``rawio``, the entry point of an installed package, ``pkg.mod``, ``pkg.mod:module`` or ``./hello.py``.
-        folder: The folder that a relative file starts from.
+        folder: The folder against which a relative path is resolved.
 
     Raises:
         UsageError: There is no such module, or importing it fails.
@@ -86,7 +86,7 @@ def _from_file(name: str, path: Path) -> Module:
 def _loading(failure: str) -> Generator[None]:
     """Turn an exception of a user's module into a message that begins with `failure`.
 
-    ``sys.exit`` counts as one: it would end the command without a message.
+    ``sys.exit`` counts as an exception, because it would end the command without a message.
     """
     try:
         yield

@@ -97,7 +97,7 @@ class AgentSpec:
         return [(name, path.parent) for name in cast("list[str]", modules)]
 
     def load(self, names: Iterable[tuple[str, Path]]) -> None:
-        """Load modules, each by its name and the folder that a relative file starts from.
+        """Load modules, each by its name and the folder against which a relative path is resolved.
 
         Raises:
             UsageError: A module cannot be loaded, and there is no earlier fault.
@@ -114,7 +114,7 @@ class AgentSpec:
                 self.modules.append(module)
 
     def set(self, text: str) -> None:
-        """Take ``module.key=value``, and note its faults. The settings themselves check the value."""
+        """Apply ``module.key=value``, and note its faults. The settings class checks the value later."""
         name, equals, said = text.partition("=")
         module, dot, key = name.strip().partition(".")
         if not equals or not dot or not module or not key:
@@ -138,7 +138,7 @@ class AgentSpec:
     def check(self) -> None:
         """Raise all faults at once, together with those of the settings.
 
-        Settings alone raise nothing here: compiling the modules finds their faults.
+        If there are no other faults, this does not check the settings: compiling the modules finds their faults.
 
         Raises:
             UsageError: There are faults.
@@ -188,6 +188,6 @@ def _filled(value: Any, wrong: list[str]) -> Any:
 def with_required(modules: Iterable[Module]) -> list[Module]:
     """Return the modules and all that they require."""
     found = list(modules)
-    for module in found:  # grows on the way
+    for module in found:  # the list grows during the loop
         found += [required for required in module.requires if required not in found]
     return found

@@ -1,10 +1,10 @@
 """The static graph of causes (L7) and its closures.
 
-An edge leads from a signal, through a rule that hears it, to a signal that the rule raises. Effects of a detached
-rule have no causes: they appear in the wide closures only.
+An edge leads from a signal, through a rule that hears it, to a signal that the rule raises. Effects of a detached rule
+have no causes, so only the wide closures contain them.
 
-A closure is an integer with bit *n* for signal *n*: a thousand signals take about a hundred bytes, and intersections
-are fast.
+A closure is an integer with bit *n* for signal *n*. A closure over a thousand signals takes about a hundred bytes, and
+intersections are fast.
 """
 
 from __future__ import annotations
@@ -49,10 +49,10 @@ class Causes:
         self._downstream: dict[int, tuple[Clause, ...]] = {}
 
     def roots(self, signal: int) -> int:
-        """Return the roots of the signal's pathways, as bits; roots have numbers of their own.
+        """Return the roots of the signal's pathways, as bits; roots are numbered separately from signals.
 
-        A root is a signal without causes, or a cycle without causes from outside. Two signals share a signal of their
-        pathways if and only if they share a root.
+        A root is a signal without causes, or a cycle without causes from outside. The pathways of two signals have a
+        signal in common if and only if the two share a root.
         """
         return self._roots[self.components.of[signal]]
 
@@ -73,7 +73,7 @@ class Causes:
         return found
 
     def closure(self, signal: int) -> int:
-        """Return the signal and all signals that lead to it without detachment, as bits: the content of its pathways."""
+        """Return the signals on a signal's pathways, as bits: itself, and all that lead to it without detachment."""
         return self._closures[self.components.of[signal]]
 
     @cached_property
@@ -100,7 +100,8 @@ class Causes:
         return found
 
     def wide_ancestors(self, signal: int) -> frozenset[int]:
-        """Return the same including detached effects, but not through an input, which may come at any time anyway."""
+        """Return the rules from which any chain of effects leads to the signal. A chain does not pass through an input,
+        because an input may occur at any time anyway."""
         found = self._wide.get(signal)
         if found is None:
             found = self._wide[signal] = self._climb(signal, self.all_causes, wide=True)
@@ -124,7 +125,7 @@ class Causes:
         return frozenset(rules)
 
     def downstream(self, rule: RulePlan) -> tuple[Clause, ...]:
-        """Return the clauses in the non-detached reach of the rule that write a slot, the best first."""
+        """Return the slot-writing clauses that the rule may trigger by non-detached effects, the best first."""
         found = self._downstream.get(rule.index)
         if found is None:
             clauses: dict[Clause, None] = {}

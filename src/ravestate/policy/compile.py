@@ -61,11 +61,11 @@ def build(
     Args:
         modules: The modules, in order.
         rules: The rules, in order. A rule that a context added is in none of the modules.
-        settings: The values of each module's settings, by the module's name; a missing module has the defaults.
+        settings: The values of each module's settings, by the module's name; other modules have their defaults.
         faults: Faults found earlier.
 
     Raises:
-        DeclarationErrors: There are faults, new ones or old ones.
+        DeclarationErrors: There is a fault, found here or earlier.
     """
     found = list(faults)
     names = Names(modules, found)

@@ -1,11 +1,11 @@
-"""The graph in which clauses are completed (L8), in bits.
+"""The graph in which clauses are completed (L8).
 
-One of its *alternatives* completes each signal: a conjunction of signals that may cause it, or nothing, if it is an
-input or has no causes. A pathway of a clause is a set of signals. It holds the clause's own signals, and with each
-signal one of its alternatives. Where a cycle closes, the set already holds these signals.
+Each signal is completed by one of its *alternatives*: a conjunction of signals that may cause it, or nothing, if it is
+an input or has no causes. A pathway of a clause is a set of signals. It holds the clause's own signals, and with each
+signal one of its alternatives. In a cycle, the alternative's signals may already be in the set.
 
 Sets of signals are integers here. Bit *n* stands for the *n*-th signal in an order with causes before their effects.
-Except in cycles, no other signal of a set leads to the signal of its highest bit.
+Except in cycles, nothing else in a set causes the signal of its highest bit.
 """
 
 from __future__ import annotations
@@ -19,19 +19,19 @@ from ravestate.policy.components import components
 from ravestate.policy.model import RulePlan, SignalPlan
 
 UNIT = 1 << 60
-"""The unit of information: sums are integers of nats / `UNIT`, so that the order of summation does not matter."""
+"""Units per nat. Information is stored as integers, so summation order does not matter."""
 
 
 class Completion:
     """The alternatives and the information of every signal.
 
     Attributes:
-        place: The place in the order, by the index of a signal.
-        alternatives: The alternatives by place, each as places.
-        bare: Whether a signal may be on a pathway without causes, by place.
-        information: The self-information in nats / `UNIT`, by place (L9).
-        components: The places that lead to each other without passing a bare signal; causes first.
-        cycle: The set of signals on a cycle with the signal, by place; 0 if the signal is on no cycle.
+        place: The place of each signal in the order, by the signal's index.
+        alternatives: For each place its alternatives, each as a tuple of places.
+        bare: For each place, whether a pathway may hold the signal without its causes.
+        information: For each place the self-information of the signal (L9), in units (`UNIT`).
+        components: Groups of places that lead to each other without passing a bare signal; causes come first.
+        cycle: For each place the set of signals on a cycle with the signal; 0 if the signal is on no cycle.
     """
 
     def __init__(self, signals: Sequence[SignalPlan], rules: Sequence[RulePlan], causes: Causes) -> None:
@@ -49,7 +49,7 @@ class Completion:
         ]
         counts = _counts(signals, rules, causes)
         self.information = [round(-math.log(counts[s] / len(rules)) * UNIT) if counts[s] else 0 for s in order]
-        self._alike: dict[int, int] = {}  # sets of signals by the information of each
+        self._alike: dict[int, int] = {}  # information value -> the set of signals that have it
         for place, information in enumerate(self.information):
             self._alike[information] = self._alike.get(information, 0) | 1 << place
         self._signals: list[Signal[object]] = [signals[s].signal for s in order]
@@ -90,7 +90,7 @@ def _alternatives(signal: SignalPlan, causes: Causes) -> dict[frozenset[int], No
 def _counts(signals: Sequence[SignalPlan], rules: Sequence[RulePlan], causes: Causes) -> list[int]:
     """Return for each signal the number of rules with the signal on a pathway."""
     of, members = causes.components.of, causes.components.members
-    completed = [0] * len(members)  # by component, the rules to whose non-detached needs it leads, as bits
+    completed = [0] * len(members)  # per component: bit set of rules with a non-detached need it leads to
     looked_at = [0] * len(signals)
     for rule in rules:
         bit = 1 << rule.index

@@ -11,7 +11,7 @@ class Components:
     """The components of a graph.
 
     Attributes:
-        members: The nodes of each component; a component comes after the others that it leads to.
+        members: The nodes of each component. If one component leads to another, the other comes first.
         of: For each node the number of its component.
     """
 

@@ -77,7 +77,7 @@ class Conflicts:
         return found
 
     def best(self, first: RulePlan, second: RulePlan) -> tuple[Clause, Clause] | None:
-        """Return the best clauses by which two rules exclude each other, or None if they do not."""
+        """Return the best clause of each rule among those that exclude the other rule, or None if there are none."""
         if first.slotset.isdisjoint(second.slotset):
             return None
         common = self._of_rule(first) & self._of_rule(second)

@@ -31,10 +31,10 @@ def connect(signals: Sequence[SignalPlan], slots: Iterable[SlotPlan], rules: Ite
 
 
 def find_kin(rules: Iterable[RulePlan], causes: Causes) -> None:
-    """Join the needs of a clause whose pathways share a signal (coherence, L12)."""
+    """In each clause, join the needs with a common signal on their pathways (coherence, L12)."""
     for rule in rules:
         for clause in rule.clauses:
-            families: list[tuple[int, int]] = []  # the roots and the needs of each, as bits
+            families: list[tuple[int, int]] = []  # the roots and the needs of each family, as bits
             for need in clause.needs:
                 if need.detached:
                     continue
@@ -51,11 +51,11 @@ def find_kin(rules: Iterable[RulePlan], causes: Causes) -> None:
 
 
 def find_contests(signals: Iterable[SignalPlan]) -> None:
-    """Collect the clauses that compete for each spike of a signal in a fixed order.
+    """For each signal, collect the clauses that compete for every spike in a fixed order.
 
-    Such clauses are ready with one spike of the signal, write the same slots, and never change their order. Only the
-    first can have consent, until it resigns or fails. The engine makes no activations of the others before that
-    (``engine/contests.py``).
+    One spike of the signal makes such a clause ready. The clauses write the same slots, and their order never changes.
+    Only the first can get consent, unless it resigns or fails. Until then the engine makes no activations of the others
+    (``engine/conflict_sets.py``).
     """
     for signal in signals:
         contests: dict[tuple[frozenset[int], bool], list[Clause]] = {}

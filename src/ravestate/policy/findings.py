@@ -19,9 +19,9 @@ BREAKING = frozenset({"undeclared", "unknown", "await"})
 """The kinds of findings that break a rule when it runs."""
 
 MAX_PEERS = 64
-"""The maximum number of other rules that the search for ties compares with a rule: those declared first.
+"""The search for ties compares each rule with at most this many others, those declared first.
 
-Without a limit the time would grow with the square of the number of rules; ``policy.conflicts()`` compares them all.
+Without a limit the time would grow with the square of the number of rules; ``policy.conflicts()`` compares all rules.
 """
 
 
@@ -34,7 +34,7 @@ class Finding:
             ``"never-wins"``, ``"tie"``, ``"cooldown"`` or ``"unheard"``.
         subject: The qualified name of the rule or signal.
         message: The remark, with the text to write instead.
-        rules: The listeners of a signal that no rule raises.
+        rules: For ``"unraised"``, the rules that hear the signal.
     """
 
     kind: str
@@ -47,12 +47,12 @@ class Finding:
 
 
 def find_all(policy: Policy, source: Source | None = None) -> tuple[Finding, ...]:
-    """Return all findings, those that break an agent first; at most one of each kind for a rule.
+    """Return all findings, those that break an agent first. A rule has at most one finding of each kind.
 
     Args:
         policy: The policy.
-        source: Returns the source of a rule's function, such as ``inspect.getsource``; without it, no finding rests on
-            source.
+        source: A function that returns the source of a rule's function, such as ``inspect.getsource``. Without it, the
+            findings that need source code are left out.
     """
     return (
         *(_in_source(policy, source) if source else ()),
@@ -166,7 +166,7 @@ def _never_wins(policy: Policy) -> Iterator[Finding]:
 
 
 def _winners(policy: Policy) -> dict[tuple[int, int], list[Clause]]:
-    """Return the clauses that wait only for their signals, by slot and rarest signal; the best first."""
+    """Return, by slot and rarest signal, the clauses that wait for nothing but their signals; the best first."""
     found: dict[tuple[int, int], list[Clause]] = {}
     for rule in policy.rule_plans:
         for clause in rule.clauses:

@@ -7,8 +7,8 @@ independent choices do not multiply. In a chain, a ring or a tree, a step or two
 causes to that of the effect.
 
 A choice among causes with common causes is the weighted set cover problem, for which no quick method is known. If a
-step leaves more sets than there is room for, the search follows the cheapest. Otherwise the result is exact: for
-policies of any size, unless dozens of their choices depend on each other.
+step leaves more sets than there is room for, the search follows only the cheapest ones. Otherwise the result is exact:
+for policies of any size, unless dozens of their choices depend on each other.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from ravestate.policy.components import components
 EFFORT = 100_000
 """The number of sets that all searches of a policy may examine beyond the first `FREE` of each.
 
-A search divides a tenth of the rest among its steps.
+One search may use a tenth of the remaining number, divided among its steps.
 """
 
 FREE = 100
@@ -77,7 +77,7 @@ class Least:
                 self._whole[place], self._price[place] = whole, price
 
     def _settle(self, members: list[int]) -> None:
-        """Find the least pathways of signals that lead to each other, after those of all other causes."""
+        """Find the least pathways of signals that lead to each other. Those of all other causes must be known."""
         graph = self.completion
         choices = [place for place in members if len(graph.alternatives[place]) > 1]
         causes = {cause for place in members for found in graph.alternatives[place] for cause in found}
@@ -131,7 +131,7 @@ class Least:
                     more, price = self._joined(found, cost, alternative, free)
                     steps.append((price, more, self._lacking(lacking ^ 1 << place, found, more)))
         self._effort = max(0, self._effort - max(0, looked - FREE))
-        assert best is not None  # every signal has an alternative, and sets grow until they hold all
+        assert best is not None  # every signal has an alternative, and each step adds signals until none lacks one
         return best
 
     def _joined(self, found: int, cost: int, places: Iterable[int], free: int) -> tuple[int, int]:

@@ -99,7 +99,7 @@ def _takes_time(rule: RulePlan) -> bool:
     if rule.rule.is_async:
         return any(step.opname == "GET_AWAITABLE" for step in steps)
     cells = dict(zip(function.__code__.co_freevars, function.__closure__ or (), strict=True))
-    for step in steps:  # a thread may wait for whatever else it uses: a camera, a queue, a server
+    for step in steps:  # a plain function may block on anything else: a camera, a queue, a server
         if step.opname == "LOAD_DEREF" and step.argval in cells:
             used = next(iter(_content(cells[step.argval])), None)
         elif step.opname in ("LOAD_GLOBAL", "LOAD_NAME"):

@@ -1,8 +1,8 @@
 """The records of a policy: the numbered form of what a designer declares.
 
 Compiling numbers signals, slots, rules and clauses once, in declaration order, and fills the records in.
-Nothing changes them afterwards, so any number of engines share them. A signal's record lists the needs that
-hear it: the cost of a spike depends on the rules that it concerns, never on the number of all rules.
+Nothing changes them afterwards, so any number of engines share them. A signal's record lists the needs that hear it. So
+the cost of a spike depends on the rules that hear its signal, never on the number of all rules.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ class ClauseView:
 
 @dataclass(slots=True, eq=False, repr=False)
 class SignalPlan:
-    """A signal: its listeners, and how it is kept."""
+    """A signal, with its listeners and its limits."""
 
     index: int
     signal: Signal[Any]
@@ -54,7 +54,7 @@ class SignalPlan:
     watchers: tuple[Need, ...] = ()
     """The needs of `until` conditions (L21)."""
     retain: float = -1.0
-    """Seconds for which a spike stays in sight of detached needs."""
+    """Seconds for which detached needs can see a spike."""
 
     def __post_init__(self) -> None:
         self.name = self.signal.name
@@ -72,7 +72,7 @@ class SlotPlan:
     index: int
     slot: Slot[Any]
     signals: tuple[SignalPlan, ...]
-    """In the order of `Slot.signals`: changed first."""
+    """The slot's signals in the order of `Slot.signals`: `changed` first."""
     name: str = field(init=False)
     always: bool = field(init=False)
     is_flag: bool = field(init=False)
@@ -120,7 +120,7 @@ class Clause:
 
     index: int
     number: int
-    """Its place within its rule."""
+    """The clause's place within its rule."""
     rule: RulePlan
     source: str
     """The conjunction as text."""
@@ -129,18 +129,18 @@ class Clause:
     signals: tuple[Signal[Any], ...] = ()
     """The signals of its constraints, as declared."""
     least: int = 0
-    """The pathway with the least information, as bits of places (`Completion`)."""
+    """The pathway with the least information, as a set of places (`Completion`)."""
     utility: float = 0.0
     """The information of that pathway, in nats (L9)."""
     base: float = 0.0
-    """Its utility, or `NO_INFORMATION`, times the rule's weight."""
+    """The utility, or `NO_INFORMATION` if that is 0, times the rule's weight."""
     all_bits: int = 0
     firm_bits: int = 0
     """The bits of its non-detached needs."""
     asks_detached: bool = False
     """Whether some, but not all, of its needs are detached."""
     simple: bool = False
-    """Whether it has one need of any age and no guard: an activation with a spike is ready."""
+    """Whether it has one need without `min_age` and no guard: with a spike, an activation is ready at once."""
     reflexive: bool = False
     """Whether it hears the built-in flags; its activations change neither of them (L22)."""
     cyclic: bool = False

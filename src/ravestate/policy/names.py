@@ -20,7 +20,7 @@ class Names:
     Attributes:
         signals: The numbered signals, including those of slots.
         slots: The numbered slots.
-        faults: The list for faults: names that occur twice, and unknown names.
+        faults: The list that receives the faults: names that occur twice, and unknown names.
     """
 
     def __init__(self, modules: Sequence[Module], faults: list[str]) -> None:
@@ -64,7 +64,7 @@ class Names:
         return plan
 
     def twice(self, what: str, name: str, first: str, second: str) -> None:
-        """Add the fault that two signals, slots or rules (`what`) have one name, with the places of both."""
+        """Add the fault that two signals, slots or rules (`what`) have the same name, with the places of both."""
         if self._modules[name.split(":")[0]] < 2:  # otherwise the fault is that two modules have one name
             self.faults.append(f"two {what}s are named {name!r}: {first} and {second}; rename one")
 
@@ -77,7 +77,7 @@ class Names:
         return None
 
     def slot(self, slot: Slot[Any], where: str) -> SlotPlan | None:
-        """Return the record of a slot; arguments and faults as for `signal`."""
+        """Return the record of a slot. For the arguments and faults, see `signal`."""
         plan = self._slot_of.get(slot.name)
         if plan is not None and plan.slot is slot:
             return plan

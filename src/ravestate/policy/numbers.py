@@ -1,4 +1,4 @@
-"""The numbers of rules: checks, and the values of settings that stand for numbers."""
+"""The numbers in rules: checks of their range, and the values of settings that stand for numbers."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ class Numbers:
 
     Attributes:
         refers: Whether any number so far was a setting.
-        faults: The list for faults: numbers out of range, and missing settings.
+        faults: The list that receives the faults: numbers out of range, and missing settings.
     """
 
     def __init__(self, modules: Sequence[Module], settings: Mapping[str, Any], faults: list[str]) -> None:
@@ -55,8 +55,7 @@ class Numbers:
         return float(number)
 
     def _setting(self, rule: Rule[Any, Any], ref: SettingRef, where: str) -> float | None:
-        """Return the value of a setting. It belongs to the settings class that it names, otherwise to the rule's own
-        module."""
+        """Return the value of a setting. A reference without a settings class means the rule's own module."""
         own = self._named.get(rule.name.split(":")[0])
         module = own
         if ref.owner is not None and (own is None or own.settings is not ref.owner):

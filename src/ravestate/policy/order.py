@@ -1,4 +1,4 @@
-"""The order of modules: core first, then each module after those that it requires; otherwise as given."""
+"""The order of modules: core first, then each module after those that it requires; otherwise the given order."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ def in_order(given: Iterable[Module], faults: list[str]) -> list[Module]:
 
     Args:
         given: The modules in the user's order.
-        faults: The list for faults: cycles of `requires`, and names that two modules share.
+        faults: The list that receives the faults: cycles of `requires`, and names that two modules share.
     """
     ordered: dict[Module, None] = {core: None}
     names = {core.name: core}
     for wanted in given:
-        way = {wanted: iter(wanted.requires)}  # each requires the next one
+        way = {wanted: iter(wanted.requires)}  # a chain of modules, each of which requires the next
         while way:
             module, ahead = next(reversed(way.items()))
             required = next(ahead, None)

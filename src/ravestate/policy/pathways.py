@@ -17,7 +17,7 @@ from ravestate.policy.completion import Completion
 from ravestate.policy.model import Clause, Need
 
 MAX_PATHWAYS = 256
-"""The maximum number of pathways of a clause, and of a signal: the cheapest. There may be exponentially many."""
+"""The maximum number of pathways listed for a clause or a signal: the cheapest of perhaps exponentially many."""
 
 MAX_UNIONS = 200_000
 """The maximum number of unions for one clause. A clause that needs more shows its least pathway alone."""
@@ -26,11 +26,11 @@ Costs = dict[int, int]
 """Sets of signals, with the information of each."""
 
 Search = Generator["Search", Costs, Costs]
-"""A computation that yields others and receives their results, so that deep causes need no deep recursion."""
+"""A computation that yields other computations and receives their results. So deep causes need no deep recursion."""
 
 
 class _Entangled(Exception):
-    """More unions than `MAX_UNIONS`."""
+    """A clause needs more than `MAX_UNIONS` unions."""
 
 
 class Pathways:
@@ -40,7 +40,7 @@ class Pathways:
         self.completion = completion
         self._of_clauses: dict[Clause, tuple[frozenset[Signal[Any]], ...]] = {}
         self._known: dict[int, Costs] = {}
-        self._within: dict[tuple[int, int], Costs] = {}  # by place and the part of its cycle on the way
+        self._within: dict[tuple[int, int], Costs] = {}  # by place, and the part of its cycle already on the path
         self._unions = 0
 
     def of_clause(self, clause: Clause) -> tuple[frozenset[Signal[Any]], ...]:
@@ -64,7 +64,7 @@ class Pathways:
         found: Costs = {0: 0}
         for need in needs:
             place = self.completion.place[need.signal.index]
-            if need.detached:  # it needs no completion
+            if need.detached:  # a detached need is not completed
                 found = self._product(found, {1 << place: self.completion.information[place]})
             else:
                 found = self._product(found, (yield self._of_signal(place, 0)))

@@ -132,11 +132,11 @@ class Policy:
     def findings(self, source: Source | None = None) -> tuple[Finding, ...]:
         """Return remarks on probable mistakes: rules that cannot run or win, endless loops, ties, signals without listeners.
 
-        A rule has at most one finding of each kind; of several ties, the one with the rule declared first.
+        A rule has at most one finding of each kind; of several ties, that with the first declared rule.
 
         Args:
-            source: Returns the source of a rule's function, such as ``inspect.getsource``. With it, the findings name
-                undeclared reads, writes and emits, and a forgotten ``await``.
+            source: A function that returns the source of a rule's function, such as ``inspect.getsource``. With it, the
+                findings name undeclared reads, writes and emits, and a forgotten ``await``.
         """
         from ravestate.policy.findings import find_all
 
@@ -153,10 +153,10 @@ class Policy:
         return draw(self, format)
 
     def with_settings(self, settings: Mapping[str, Any]) -> Policy:
-        """Return this policy with the values of settings in place of the defaults; itself if no rule names a setting.
+        """Return this policy with the given settings; if no rule names a setting, return it unchanged.
 
         Args:
-            settings: By a module's name, an instance of its ``rs.Settings`` subclass.
+            settings: For each module's name, an instance of the module's ``rs.Settings`` subclass.
 
         Raises:
             DeclarationErrors: The settings make a declaration impossible.
@@ -175,7 +175,7 @@ class Policy:
             settings: The values of settings, as for `with_settings`; by default those of this policy.
 
         Raises:
-            DeclarationErrors: The rule does not fit.
+            DeclarationErrors: The rule does not fit this policy.
         """
         from ravestate.policy.compile import build
 

@@ -15,10 +15,10 @@ from ravestate.policy.names import Names
 from ravestate.policy.numbers import Numbers
 
 FLAGS = (f"{activity.name}:", f"{pressure.name}:")
-"""The beginnings of the names of the built-in flags' signals.
+"""The prefixes of the names of the built-in flags' signals.
 
-An activation on one of them counts neither as activity nor as pressure. Otherwise it would withdraw its own signal,
-come back, and so on, all in one instant.
+An activation that waits for such a signal changes neither flag. Otherwise an activation on `activity.false` would set
+the flag, thereby lose its spike, clear the flag again, and so on, all in one instant.
 """
 
 
@@ -36,7 +36,7 @@ class Rules:
         self.faults = faults
         self.plans: list[RulePlan] = []
         self._named: dict[str, Rule[Any, Any]] = {}
-        self._count = 0  # of clauses
+        self._count = 0  # the number of clauses so far
 
     def add(self, rule: Rule[Any, Any]) -> None:
         """Number a rule, and add its faults to the list."""

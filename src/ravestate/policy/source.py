@@ -25,7 +25,7 @@ from ravestate.errors import nearest
 from ravestate.policy.model import RulePlan
 
 OWNERS: tuple[type[Any], ...] = (ModuleType, Module, Slot)
-"""Values whose attributes have no side effects, apart from a lazy import."""
+"""Types whose attributes can be read without side effects, apart from a lazy import."""
 
 Source = Callable[[Any], str]
 """A function that returns the source text of a function, such as ``inspect.getsource``."""
@@ -33,7 +33,7 @@ Source = Callable[[Any], str]
 
 @dataclass(slots=True)
 class Acts:
-    """The acts in a rule's function that could be resolved; for each slot or signal its first line."""
+    """The acts in a rule's function that could be resolved. Each slot or signal has the line of its first act."""
 
     reads: dict[Slot[Any], int] = field(default_factory=dict[Slot[Any], int])
     writes: dict[Slot[Any], int] = field(default_factory=dict[Slot[Any], int])
@@ -115,7 +115,7 @@ class _Reader:
         for node in ast.walk(tree):
             for name in _bound(node):
                 if name == self._context and node is not arguments[0]:
-                    self._context = ""  # another value has taken its name
+                    self._context = ""  # the function binds the name to another value
                 self._names.pop(name, None)
                 self._known.add(name)
 
@@ -166,7 +166,7 @@ class _Reader:
                     try:
                         return getattr(owner, name)
                     except AttributeError as error:
-                        if error.name in (None, name):  # else the fault lies within a lazy import
+                        if error.name in (None, name):  # otherwise a lazy import has failed
                             self._miss(expression, nearest(name, (n for n in dir(owner) if n[0] != "_")))
                 return None
             case _:
@@ -178,7 +178,7 @@ class _Reader:
 
 
 def _own(root: ast.AST, variables: Collection[str]) -> Iterator[ast.AST]:
-    """Yield a node and all nodes in it, but for those that one of some variables decides."""
+    """Yield a node and all nodes below it, except guarded code, such as branches on one of `variables`."""
     stack = [root]
     while stack:
         node = stack.pop()
@@ -192,7 +192,7 @@ def _own(root: ast.AST, variables: Collection[str]) -> Iterator[ast.AST]:
                     stack.append(inner)
                     ends = isinstance(inner, ast.If) and isinstance(inner.body[-1], (ast.Return, ast.Raise))
                     if ends and _is_decided(inner, variables):
-                        break  # it decides what follows, too
+                        break  # the code after it depends on the variable, too
 
 
 def _is_decided(node: ast.AST, variables: Collection[str]) -> bool:

@@ -21,7 +21,7 @@ def assign_utilities(signals: Sequence[SignalPlan], rules: Sequence[RulePlan], c
     """Set the utility, the base and the least pathway of every clause, and mark cyclic clauses.
 
     Returns:
-        The graph in which clauses are completed, for all other pathways.
+        The graph in which clauses are completed, for listing their other pathways.
     """
     completion = Completion(signals, rules, causes)
     least = Least(completion)
@@ -37,7 +37,7 @@ def assign_utilities(signals: Sequence[SignalPlan], rules: Sequence[RulePlan], c
             places = [completion.place[s] for s in firm]
             looked_places = [completion.place[s] for s in looked_at]
             cost, clause.least = least.pathway(places, looked_places)
-            # Rounded, because the information of a predicate is not a multiple of the unit.
+            # The sum is rounded because the information of a predicate is not a multiple of the unit.
             clause.utility = round(cost / UNIT + predicates * PREDICATE, 12)
             clause.base = (clause.utility or NO_INFORMATION) * rule.weight
     return completion

@@ -20,7 +20,7 @@ class Agent:
         options: See `Context`.
 
     Raises:
-        DeclarationErrors: The modules, or the settings, do not fit.
+        DeclarationErrors: The modules or the settings have faults.
     """
 
     def __init__(self, *modules: Module | ModuleType | Policy, **options: Any) -> None:
@@ -30,7 +30,7 @@ class Agent:
         self._options: dict[str, Any] = {**options, "settings": self.settings}
 
     def context(self, **options: Any) -> Context:
-        """Return a new context, to be started once.
+        """Return a new context, which can be started once.
 
         Args:
             options: See `Context`, except ``settings``; they override the agent's own.

@@ -28,8 +28,8 @@ class AsyncRules:
     Args:
         loop: The context's loop.
         finish: Called with a run, its result and its exception when its function has ended.
-        give_up: Called with a run and the reason, if it does not end in time after being cancelled.
-        proceed: Called when `cleaning` is over.
+        give_up: Called with a run and the reason, if the run does not end in time after its cancellation.
+        proceed: Called when the tasks in `cleaning` have ended, or their time is over.
     """
 
     def __init__(
@@ -85,7 +85,7 @@ class AsyncRules:
         """Cancel all runs and wait for them for at most `GRACE` seconds; end those that refuse.
 
         Args:
-            reason: Why they end.
+            reason: Why the runs end.
             at_once: Whether to return without waiting.
         """
         for ctx, task in self._tasks.items():

@@ -1,4 +1,4 @@
-"""Warnings of rules that block the loop."""
+"""Warnings about rules that block the event loop."""
 
 from __future__ import annotations
 
@@ -31,8 +31,8 @@ class StepTimer:
 
     A step blocks the loop if it computes, or sleeps, for longer than `BLOCKING`. Time in which the thread waits for a
     processor or for the interpreter's lock does not count: a busy machine raises no alarm. The system counts how often
-    the thread slept voluntarily, and how often the scheduler preempted it. If it was preempted, the step gets the
-    benefit of the doubt. On systems without these counts (Windows, macOS), only computing counts.
+    the thread slept voluntarily, and how often the scheduler preempted it. If the scheduler preempted it, there is no
+    warning. On systems without these counts (Windows, macOS), only computing counts.
 
     Reading the CPU time costs as much as a short rule. One reading serves all steps that begin within `FRESH` seconds,
     so a reported time may be too long by that much.
@@ -55,7 +55,7 @@ class StepTimer:
         return now
 
     def end(self, rule: Rule[Any, Any], began: float) -> None:
-        """Warn if the step that began then has blocked the loop."""
+        """Warn if the step that began at `began` has blocked the loop."""
         took = perf_counter() - began
         if took > BLOCKING:
             seconds, manner = self._judge(took)

@@ -1,4 +1,4 @@
-"""A context's clock: it starts at zero with the loop's time, and can be halted, set forward and started again."""
+"""A context's clock. It starts at zero, follows the loop's time, and can be halted, set forward and started again."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class Clock:
         return self._loop.time() - self._origin if self._halted is None else self._halted
 
     def on_loop(self, time: float) -> float:
-        """Convert a time on this clock to the loop's time (seconds), unless this clock is halted until then."""
+        """Convert a time on this clock to the loop's time (seconds). A later halt invalidates the result."""
         return self._origin + time
 
     @property
@@ -32,7 +32,7 @@ class Clock:
         return self._halted is not None
 
     async def sleep(self, seconds: float) -> None:
-        """Wait until so many seconds have passed on this clock; 0 or less gives other tasks a turn.
+        """Wait until `seconds` have passed on this clock; with 0 or less, only give other tasks a turn.
 
         Raises:
             ValueError: The number is NaN.

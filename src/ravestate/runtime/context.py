@@ -1,4 +1,4 @@
-"""A context: one running agent over a policy that it may share with others."""
+"""A context: one running agent. Several contexts may share one policy."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ from ravestate.settings import load_settings
 T = TypeVar("T")
 
 TRACE_LIMIT = 100_000
-"""Records that a context keeps in its trace."""
+"""The maximum number of records in a context's trace."""
 
 
 class Context:
@@ -42,11 +42,11 @@ class Context:
         settings: The settings of each module, by its name; they override the environment's.
         seed: The seed of all random choices that rules make through ``ctx.random``; different every time by default.
         patience: Seconds that a rival under pressure has, unless its rule says otherwise (L16).
-        trace: Whether to keep records of what happens, for ``trace`` and ``explain``; or a function that takes them.
-        journal: A function, e.g. a `Journal`. It takes every event, and `Taken` before effects, with the time.
+        trace: Whether to keep records of what happens, for ``trace`` and ``explain``; or a function that receives them.
+        journal: A function, e.g. a `Journal`. It receives each event, and each `Taken`, with its time.
 
     Raises:
-        DeclarationErrors: The modules, or the settings, do not fit.
+        DeclarationErrors: The modules or the settings have faults.
         DeclarationError: The patience is not a number of seconds.
 
     Example:
@@ -74,7 +74,7 @@ class Context:
         journal: Callable[[Event | Taken, float], None] | None = None,
     ) -> None:
         policy = (
-            modules[0] if len(modules) == 1 and isinstance(modules[0], Policy) else compile_policy(*modules)  # type: ignore[arg-type]  # a policy among modules is refused there
+            modules[0] if len(modules) == 1 and isinstance(modules[0], Policy) else compile_policy(*modules)  # type: ignore[arg-type]  # compile_policy refuses a policy among modules
         )
         _check_seconds(patience)
         self.settings = load_settings(policy.modules, settings)
@@ -122,8 +122,8 @@ class Context:
         """End the context cleanly.
 
         The context raises ``rs.shutdown``. Rules that start from then on have `grace` seconds to finish. Then all rules
-        are cancelled, and may clean up. A rule that runs for ever does not delay this if it has ``background=True``. If
-        this is cancelled, it stops waiting.
+        are cancelled, and may clean up. A rule that runs for ever does not delay the end if it has ``background=True``.
+        If `stop` itself is cancelled, it waits no longer.
         """
         runner = self._running()
         self.ask_to_stop()
@@ -138,7 +138,7 @@ class Context:
             raise
 
     def ask_to_stop(self) -> None:
-        """Let `until_stopped` return; the context goes on until its ``async with`` ends. From any thread."""
+        """Make `until_stopped` return; the context goes on until its ``async with`` ends. Any thread may call this."""
         if self._runner is not None and self._stopping is not None:
             with contextlib.suppress(RuntimeError):  # the context has ended, and its loop is closed
                 self._runner.loop.call_soon_threadsafe(self._stopping.set)
@@ -196,7 +196,7 @@ class Context:
     # ------------------------------------------------------------------------------------ acting from outside
 
     def put(self, slot: Slot[T], value: T) -> None:
-        """Write a slot from outside; from any thread. After the context's end this does nothing.
+        """Write a slot from outside. Any thread may call this. After the context's end it does nothing.
 
         Raises:
             UndeclaredError: The policy does not have the slot.
@@ -207,7 +207,7 @@ class Context:
         self._running().receive(Write(slot.name, value))
 
     def emit(self, signal: Signal[T], payload: T | None = None) -> None:
-        """Raise a signal from outside; from any thread. After the context's end this does nothing.
+        """Raise a signal from outside. Any thread may call this. After the context's end it does nothing.
 
         Raises:
             UndeclaredError: The policy does not have the signal.
@@ -216,15 +216,15 @@ class Context:
         self._running().receive(Emit(signal.name, payload))
 
     def wipe(self, signal: Signal[Any]) -> None:
-        """Withdraw the live spikes of a signal, and all spikes that they have caused (L20); from any thread."""
+        """Withdraw the live spikes of a signal, and all that they have caused (L20). Any thread may call this."""
         self._known(signal, self.policy.signals, "signal")
         self._running().receive(Wipe(signal.name))
 
     def add_rule(self, rule: Rule[Any, Any]) -> None:
-        """Add a rule over this context's signals and slots, to this context alone; from any thread.
+        """Add a rule over this context's signals and slots, to this context alone. Any thread may call this.
 
         Raises:
-            DeclarationErrors: The rule does not fit.
+            DeclarationErrors: The rule does not fit the policy.
         """
         self._running().add_rule(rule)
 
@@ -255,10 +255,10 @@ class Context:
     # ------------------------------------------------------------------------------------ looking in
 
     def observe(self, observer: Callable[[Record], None]) -> Callable[[], None]:
-        """Call a function with every record from now on, and return a function that ends this.
+        """Call a function with every record from now on, and return a function that stops the calls.
 
         The observer runs on the context's loop, in the middle of an event. It must be quick, must not raise, and must not
-        act on the context. Without observers the engine makes no records, so observation has no cost until it is used.
+        act on the context. Without observers the engine makes no records, so there is no cost until then.
         """
         self._observers.append(observer)
         self._attach()
@@ -300,7 +300,7 @@ class Context:
         return self._running().read(slot.name)
 
     def explain(self, rule: str | Rule[Any, Any]) -> Explanation:
-        """Explain why a rule runs, waits, or did not fire (L25); with its history if the context keeps its trace.
+        """Explain why a rule runs, waits, or did not fire (L25); with the rule's history if the context keeps a trace.
 
         Raises:
             DeclarationError: The policy has no such rule.
@@ -312,7 +312,7 @@ class Context:
         return snapshot(self._running().engine_now())
 
     def plain_functions(self) -> list[str]:
-        """Return the names of the rules whose plain functions are at work, one for each run."""
+        """Return the names of the rules whose plain functions are running, one for each run."""
         return self._running().plain_functions()
 
     def _running(self) -> Runner:

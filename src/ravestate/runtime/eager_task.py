@@ -1,9 +1,9 @@
-"""A task for a coroutine that may turn out not to need one.
+"""A task for a coroutine that may end without the need for a task.
 
-Making a task and having the loop switch to it costs more than most rules take. So the first step of a coroutine is
-driven by hand, while a spare task counts as the current one. `asyncio.current_task`, `asyncio.timeout` and context
-variables work as they should. If the coroutine ends in its first step, the spare is kept for the next one; if it
-suspends, the spare adopts it.
+Making a task and having the loop switch to it costs more than most rules take. So the first step of a coroutine runs
+outside of any task, while a spare task counts as the current task. `asyncio.current_task`, `asyncio.timeout` and
+context variables work as they should. If the coroutine ends in its first step, the spare task is kept for the next
+coroutine. If the coroutine suspends, the spare task adopts it.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ class EagerTask:
         """Drive a coroutine to its end or to its first suspension, where the task adopts it.
 
         Raises:
-            StopIteration: It has ended. The spare task is free for another coroutine, unless it is `spoilt`.
+            StopIteration: The coroutine has ended. The spare task is free for another coroutine, unless it is `spoilt`.
             BaseException: The coroutine has failed. The spare task is free, as above.
         """
         around = asyncio.current_task(self._loop)  # a task may have called `step` on a paused context
@@ -102,7 +102,7 @@ class EagerTask:
         pending = self._first
         self._first = None
         if error is not None and pending is not None and pending.cancel():
-            error = None  # it comes back from the awaited future, as in any task
+            error = None  # the awaited future raises the cancellation, as in any task
         while True:
             value = None
             if error is None:

@@ -16,9 +16,9 @@ class Hooks:
     Attributes:
         on_ended: Called with each run that has ended.
         on_failed: Called with the name of each rule that fails, and with its exception.
-        on_endless: Called with the rule that ran last, if an instant of virtual time does not end. The context's time
-            is virtual if this is given; plain functions then run one after another, so that threads do not race.
-        listeners: Functions by the names of signals. Each is called with the payload of every spike of its signal.
+        on_endless: Called with the rule that ran last, if an instant of virtual time does not end. If this function is
+            given, the context's time is virtual. Plain functions then run one by one, so that threads do not race.
+        listeners: Functions by signal name. Each is called with the payload of every spike of its signal.
     """
 
     on_ended: Callable[[Ended], None] | None = None

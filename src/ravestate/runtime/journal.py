@@ -12,8 +12,7 @@ from ravestate.engine.events import Event
 
 @dataclass(slots=True)
 class Taken:
-    """The runner took the engine's effects. The engine decides only at that moment, so the journal records it among the
-    events."""
+    """The runner took the engine's effects. The journal records this, because the engine decides only then."""
 
 
 @dataclass(frozen=True, slots=True)

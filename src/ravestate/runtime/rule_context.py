@@ -41,11 +41,11 @@ class Host(Protocol):
         ...
 
     def receive(self, event: Event) -> None:
-        """Give the engine an event; from any thread."""
+        """Give the engine an event. Any thread may call this."""
         ...
 
     def add_rule(self, rule: Rule[Any, Any]) -> None:
-        """Add a rule to the policy; from any thread."""
+        """Add a rule to the policy. Any thread may call this."""
         ...
 
     def stop(self, failure: RavestateError | None) -> None:
@@ -87,7 +87,7 @@ class RuleContext:
         """Read a slot.
 
         Raises:
-            UndeclaredError: The rule declares neither ``reads`` nor ``writes`` of the slot.
+            UndeclaredError: The rule declares the slot neither in ``reads`` nor in ``writes``.
         """
         try:
             value = self._values[slot.name]
@@ -101,7 +101,7 @@ class RuleContext:
         """Write a slot.
 
         Raises:
-            UndeclaredError: The rule does not declare ``writes`` of it.
+            UndeclaredError: The rule does not declare the slot in ``writes``.
             RuleError: The value is not of the slot's type.
             RunEnded: The run is over.
         """
@@ -149,7 +149,7 @@ class RuleContext:
         """Raise a signal.
 
         Raises:
-            UndeclaredError: The rule does not declare ``emits`` of it.
+            UndeclaredError: The rule does not declare the signal in ``emits``.
             RunEnded: The run is over.
         """
         for declared in self.rule.emits:
@@ -170,7 +170,7 @@ class RuleContext:
         """Add a rule over this context's signals and slots, to this context alone.
 
         Raises:
-            DeclarationErrors: The rule does not fit.
+            DeclarationErrors: The rule does not fit the policy.
         """
         self._alive()
         self._host.add_rule(rule)
@@ -187,7 +187,7 @@ class RuleContext:
         """Ask the context to end: it raises ``rs.shutdown``, and then cancels the rules that run.
 
         Args:
-            failure: The reason if the agent cannot go on; ``rs.run`` raises it after the end.
+            failure: The error because of which the agent cannot go on; ``rs.run`` raises it after the end.
         """
         self._host.stop(failure)
 
@@ -258,7 +258,7 @@ class Items(Mapping[str, V], Generic[V]):
         """Set an item. This raises ``added`` if the key is new, and ``changed`` if the item differs.
 
         Raises:
-            UndeclaredError: The rule does not declare ``writes`` of the collection.
+            UndeclaredError: The rule does not declare the collection in ``writes``.
         """
         self._own()[key] = item
         self._ctx._host.receive(Store(self._slot.name, key, item, self._ctx.run))  # pyright: ignore[reportPrivateUsage]
@@ -267,13 +267,13 @@ class Items(Mapping[str, V], Generic[V]):
         """Remove an item if it is there. This raises ``removed`` and ``changed``.
 
         Raises:
-            UndeclaredError: The rule does not declare ``writes`` of the collection.
+            UndeclaredError: The rule does not declare the collection in ``writes``.
         """
         self._own().pop(key, None)
         self._ctx._host.receive(Discard(self._slot.name, key, self._ctx.run))  # pyright: ignore[reportPrivateUsage]
 
     def _own(self) -> dict[str, V]:
-        """Return the rule's own copy of the items; the first change makes it."""
+        """Return the rule's own copy of the items; the first change makes the copy."""
         ctx = self._ctx
         if self._slot not in ctx.rule.writes:  # pyright: ignore[reportPrivateUsage]
             ctx._refuse("wrote", "writes", self._slot, ctx.rule.writes)  # pyright: ignore[reportPrivateUsage]

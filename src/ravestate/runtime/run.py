@@ -28,7 +28,7 @@ UNABLE = (NotImplementedError, RuntimeError, ValueError)
 def run(*modules: Module | ModuleType | Policy, **options: Any) -> None:
     """Run an agent until a rule calls ``ctx.stop()``, or until Ctrl-C; then shut it down cleanly.
 
-    It runs as one context. If a platform among the modules serves many users, each user gets a context of their own.
+    The agent runs as one context. If a platform among the modules serves many users, each user gets their own context.
 
     A warning is logged if the modules use `rawio`, but no platform among them lets a user talk.
 
@@ -37,7 +37,7 @@ def run(*modules: Module | ModuleType | Policy, **options: Any) -> None:
         options: See `Context`.
 
     Raises:
-        DeclarationErrors: The modules, or the settings, do not fit.
+        DeclarationErrors: The modules or the settings have faults.
         EngineError: An event loop runs in this thread already, as in an async function or a notebook.
     """
     try:
@@ -67,7 +67,7 @@ def warn_if_mute(policy: Policy) -> None:
 
 
 async def run_context(context: Context) -> None:
-    """Run a context until something asks it to stop. SIGINT and SIGTERM do; a second one aborts the shutdown."""
+    """Run a context until a rule, other code, SIGINT or SIGTERM stops it. A second signal aborts the shutdown."""
     with asked_by_signals(context.ask_to_stop):
         async with context:
             await context.until_stopped()

@@ -1,4 +1,4 @@
-"""The runner drives one engine on an asyncio loop: events in, effects done, one timer."""
+"""The runner of one engine on an asyncio loop. It feeds events in, performs the effects, and keeps one timer."""
 
 from __future__ import annotations
 
@@ -110,7 +110,7 @@ class Runner:
         return self._engine.policy
 
     def receive(self, event: Event) -> None:
-        """Give the engine an event; from any thread."""
+        """Give the engine an event. Any thread may call this."""
         if threading.get_ident() != self._thread:
             with contextlib.suppress(RuntimeError):  # the context has ended, and its loop is closed
                 self.loop.call_soon_threadsafe(self._receive_late, event)
@@ -135,10 +135,10 @@ class Runner:
                 log.exception("refused a request from another thread: %s", short(event))
 
     def add_rule(self, rule: Rule[Any, Any]) -> None:
-        """Add a rule to the engine's policy; from any thread. The loop makes the new policy, so no rule is lost.
+        """Add a rule to the engine's policy. Any thread may call this; the loop makes the new policy.
 
         Raises:
-            DeclarationErrors: The rule does not fit.
+            DeclarationErrors: The rule does not fit the policy.
             RunEnded: The context has ended.
         """
         if threading.get_ident() == self._thread:
@@ -225,7 +225,7 @@ class Runner:
     def _perform(self, effect: Effect) -> None:
         kind = type(effect)
         if kind is Run:
-            self._run(effect)  # type: ignore[arg-type]  # its type has been looked at
+            self._run(effect)  # type: ignore[arg-type]  # its type has been checked
         elif kind is Spiked:
             self.listeners.tell(effect)  # type: ignore[arg-type]
         elif isinstance(effect, Ended):
@@ -245,7 +245,7 @@ class Runner:
 
     def _break(self, error: Exception) -> None:
         """End the context and say why: the engine itself has failed, and nothing can work any more."""
-        self.fault = EngineError(f"the engine has failed, which is a fault of ravestate's: {error!r}")
+        self.fault = EngineError(f"the engine has failed, which is a bug in ravestate: {error!r}")
         self.fault.__cause__ = error
         self.closed = True
         fault = self.fault
@@ -296,7 +296,7 @@ class Runner:
         return self._engine.read(self.policy.slot_of[slot].index)
 
     def trace(self, tracer: Callable[[Record], None] | None) -> None:
-        """Call a function with every record from now on; None ends that."""
+        """Call a function with every record from now on; None stops the calls."""
         self._engine.tracer = tracer
 
     def _arm(self) -> None:
@@ -363,14 +363,13 @@ class Runner:
             self._drop(ctx, effect.reason)
 
     def plain_functions(self) -> list[str]:
-        """Return the names of the rules whose plain functions are at work, one for each run."""
+        """Return the names of the rules whose plain functions are running, one for each run."""
         return [ctx.rule.name for ctx in self._plain.runs]
 
     # ------------------------------------------------------------------------------------ the end
 
     async def quiet(self, slot: str | None = None) -> None:
-        """Wait until no foreground rule runs or waits for consent. With a slot, consider only rules that may lead to a
-        write of it."""
+        """Wait until no foreground rule runs or waits. With a slot, consider only rules that may cause its write."""
         await self.waits.until(lambda: self.waits.is_quiet(slot))
 
     def stop(self, failure: RavestateError | None) -> None:
@@ -391,4 +390,4 @@ class Runner:
             self._timer.cancel()
         self.listeners.fail(lambda signal: EngineError(f"the context ended before there was a {signal}"))
         self.waits.end()
-        await asyncio.sleep(0)  # the tasks end
+        await asyncio.sleep(0)  # the cancelled tasks end

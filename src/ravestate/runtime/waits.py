@@ -16,7 +16,7 @@ class Waits:
     Args:
         engine: The engine.
         is_busy: Returns whether some effects have not been performed yet.
-        schedule: Make the loop perform effects, and `check` afterwards.
+        schedule: Makes the loop perform effects, and call `check` afterwards.
     """
 
     def __init__(self, engine: Engine, is_busy: Callable[[], bool], schedule: Callable[[], None]) -> None:
@@ -55,7 +55,8 @@ class Waits:
         self.futures.clear()
 
     def is_quiet(self, slot: str | None = None) -> bool:
-        """Return whether no foreground rule runs or waits. With a slot, consider only rules that may lead to its write."""
+        """Return whether no foreground rule runs or waits. With a slot, consider only rules that may cause its
+        write."""
         alive = [activation.clause.rule for activation in (*self._engine.running.values(), *self._engine.waiting)]
         if slot is not None and alive:
             policy = self._engine.policy
@@ -68,7 +69,7 @@ class Waits:
         return {a.id: a for a in (*self._engine.running.values(), *self._engine.waiting)}
 
     async def until_others_end(self, known: Mapping[int, Activation], seconds: float) -> None:
-        """Wait until only `known` activations run or wait, and no rule waits for ``rs.shutdown`` to grow older.
+        """Wait until only `known` activations run or wait, and no rule waits for the ``min_age`` of an ``rs.shutdown``.
 
         A background rule that was already running may restart endlessly. It counts only if it handles ``rs.shutdown``.
 

@@ -52,7 +52,7 @@ class Job:
 
 
 class ThreadPool:
-    """The threads of the process: made when all others are busy, and kept for a while."""
+    """The worker threads of the process. A thread is made when all others are busy, and kept for a while."""
 
     def __init__(self) -> None:
         self.reset()
@@ -103,7 +103,7 @@ class ThreadPool:
                 with self.change:
                     self._free += 1
                     self.at_work.remove(job)
-                    self._jobs.extend(job.queue.done(job))  # this thread is free for it
+                    self._jobs.extend(job.queue.done(job))  # this thread is free for the next job
                     if not self.at_work:
                         self.rest.notify_all()
                 del job  # do not keep it alive: it may refer to a context
@@ -136,7 +136,7 @@ def _wait_for_work() -> None:
 
 
 class JobQueue:
-    """The jobs of one context: at most `SHARE` at once are with the pool, the others wait here.
+    """The jobs of one context. At most `SHARE` of them are in the pool at once; the others wait here.
 
     Args:
         pool: The threads.

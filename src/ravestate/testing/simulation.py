@@ -38,7 +38,7 @@ class Simulation:
     Args:
         modules: See `Context`.
         settings: See `Context`.
-        seed: The seed of random choices; fixed, so that tests repeat.
+        seed: The seed of random choices; fixed by default, so that tests repeat.
         patience: See `Context` (seconds).
         trace: Whether to keep every decision.
         journal: See `Context`.
@@ -152,7 +152,7 @@ class Simulation:
             loop.close()
 
     def say(self, text: str) -> None:
-        """Say something as the user: `put` of ``rawio.input``."""
+        """Say something as the user: write it to ``rawio.input``."""
         from ravestate.modules import rawio
 
         self.put(rawio.input, text)
@@ -226,4 +226,4 @@ class Simulation:
 
 
 simulate = Simulation
-"""Simulate modules: ``with simulate(module) as sim``. `Simulation` has the arguments."""
+"""Simulate modules: ``with simulate(module) as sim``. For the arguments, see `Simulation`."""

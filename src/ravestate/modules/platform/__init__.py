@@ -1,1 +1,1 @@
-"""Platform modules: where an agent lives, such as a console; each connects devices to modalities."""
+"""Platform modules. A platform, such as a console, is a place for an agent: it connects devices to modalities."""

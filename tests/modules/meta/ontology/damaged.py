@@ -39,7 +39,7 @@ def attempt(path: Path) -> str:
         memory.export().result(60)
         memory.forget(memory.create("Person", name="new").result(60)).result(60)
     except PlatformError as error:
-        return "broken" if "is broken, or no file of memory" in str(error) else f"PlatformError {error}"
+        return "broken" if "is damaged, or is not a memory file" in str(error) else f"PlatformError {error}"
     except BaseException as error:
         return f"{type(error).__name__} {error}"
     return "read"

@@ -209,7 +209,7 @@ def test_a_broken_file_is_refused_and_left_alone(file: Path, content: bytes | No
     broken = file.read_bytes()[:9000] if content is None else content
     file.write_bytes(broken)
     said = failure(path=file)
-    assert f"memory {file} is broken, or no file of memory" in said and "Nothing was changed" in said
+    assert f"memory {file} is damaged, or is not a memory file" in said and "Nothing was changed" in said
     assert file.read_bytes() == broken
 
 
@@ -218,7 +218,10 @@ def test_a_file_that_lost_all_of_its_tables_is_broken_and_left_alone(file: Path)
     zeroed = content[:4096] + bytes(len(content) - 4096)  # with an intact header it opens as an empty database
     file.write_bytes(zeroed)
     said = failure(path=file)
-    assert f"memory {file} is broken, or no file of memory (it has no tables)" in said and "Nothing was changed" in said
+    assert (
+        f"memory {file} is damaged, or is not a memory file (it has no tables)" in said
+        and "Nothing was changed" in said
+    )
     assert file.read_bytes() == zeroed
 
 

@@ -202,7 +202,7 @@ def test_writes_before_the_opening_and_right_before_the_end_are_kept(tmp_path: P
     ("value", "message"),
     [
         (Node("Person", {"nmae": "Ada"}), "Person has no 'nmae'; did you mean 'name'?"),
-        (Node("City", {"name": "Ham"}), "is a City, and a Person is wanted"),
+        (Node("City", {"name": "Ham"}), "is a City, not a Person"),
         (Node("Boat"), "there is no type 'Boat'"),
     ],
 )

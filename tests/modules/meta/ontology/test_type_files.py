@@ -78,8 +78,8 @@ def test_the_types_that_come_with_it_are_complete() -> None:
         ("Boat:\n  [x]", 2, "Boat has keys and values, and this is not a mapping"),
         ("Boat: {si: Thing}", 1, "Boat has no 'si'; did you mean 'is'? (a type has: is, has, relations)"),
         ("Boat:\n  is: Thnig\nThing:", 2, "Boat is a 'Thnig', which is not a type; did you mean 'Thing'?"),
-        ("A: {is: B}\nB: {is: C}\nC: {is: A}", 1, "A is a B is a C is a A: types form no ring"),
-        ("A: {is: A}", 1, "A is a A: types form no ring"),
+        ("A: {is: B}\nB: {is: C}\nC: {is: A}", 1, "A is a B is a C is a A: types must not form a cycle"),
+        ("A: {is: A}", 1, "A is a A: types must not form a cycle"),
         ("A: {is: [B]}\nB:", 1, "the parent of A is one type, and this is a sequence"),
         (
             "A:\n  has:\n    age: intger",

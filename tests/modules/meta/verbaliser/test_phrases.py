@@ -178,7 +178,7 @@ def test_impossible_intents(intent: str, parameters: dict[str, object], message:
         ("a:\n  [b]: c", 2, "a language is a text"),
         ("a: b\nc: d\na: e", 3, "'a' is here a second time"),
         ("a:\n  en: b\n  en: c", 3, "'en' is here a second time"),
-        ("a:\n  en: !ad [b]", 2, r"only tag there is is !add, not !ad; did you mean '!add'\?"),
+        ("a:\n  en: !ad [b]", 2, r"only tag is !add, not !ad; did you mean '!add'\?"),
         ("a: !add {en: b}", 1, r"goes in front of phrases: write en: !add"),
         ("a: !!python/object/apply:os.getcwd []", 1, "there are no phrases"),
         ("a: hi {", 1, "name no parameter .*write {name}"),

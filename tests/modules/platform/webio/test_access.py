@@ -81,7 +81,7 @@ def test_who_may_embed_the_page_does_not_look_inside(origin: str) -> None:
     access = Access(Settings(origins=("https://museum.example",)))
     refusal = access.refusal_of_board({"host": "127.0.0.1:8420", "origin": origin})
     assert refusal is not None
-    assert f"{origin!r} may not look inside" in refusal
+    assert f"{origin!r} may not inspect the agent" in refusal
 
 
 EMBEDDED = {"host": "127.0.0.1:8420", "sec-fetch-dest": "iframe"}

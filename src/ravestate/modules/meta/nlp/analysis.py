@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 
 from ravestate.language.entity import Entity
 from ravestate.language.matcher import Match, Matcher, bundled_matcher
-from ravestate.language.normal import Normal, normalise
+from ravestate.language.normal import Normal
 from ravestate.language.sentences import sentences as sentences_of
 
 from .answer import YesNo, yesno_of
@@ -72,8 +72,8 @@ def analyse(text: str, pipeline: Pipeline, agent_names: Iterable[str] = ()) -> A
         PlatformError: spaCy or the pipeline is missing.
     """
     names = tuple(agent_names)
-    tree, entities = pipeline.read(text)
-    normal = normalise(tree.text, names)
+    normal = pipeline.normalise(text, names)
+    tree, entities = pipeline.read(normal)
     sentences = sentences_of(normal.text)
     statements = statements_of(tree, entities)
     return Analysis(

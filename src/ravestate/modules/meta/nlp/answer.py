@@ -1,15 +1,18 @@
 """Recognise answers: yes, no, or unsure.
 
-The reader takes cues from the beginning of the text, up to the first word that is not a cue. A cue means yes, no or unsure,
-hedges, denies, intensifies, or fills. `_weigh` combines the cues; ``answer_cues.py`` lists them.
+The answer is at the beginning of a text. *Yes*, *no* and short answers (*I do*) are closed classes of words, read here; all other
+answers resemble an example in ``answers.yaml``. Each part between commas is read on its own.
 """
 
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from .answer_cues import CUES, FOLLOWERS, STATERS, STRICT, UNKNOWNS, Cue
+from ravestate.language.matcher import bundled_matcher
+from ravestate.language.normal import plain
+
 from .word_set import word_set
 
 
@@ -36,217 +39,117 @@ class YesNo:
 
 NEITHER = YesNo()
 UNSURE = YesNo(0, 0, True)
+YES = (YesNo(1, 0, False), YesNo(2, 0, False))
+"""Weakly, surely."""
+NO = (YesNo(0, 1, False), YesNo(0, 2, False))
+_CLASSES = {"yes_1": YES[0], "yes_2": YES[1], "no_1": NO[0], "no_2": NO[1], "unsure": UNSURE}
 
-_TOKEN = re.compile(r"[^\W_]+(?:[-'][^\W_]+)*|[.,;:!?…\n]+|👍|👎")
-_STRETCHED = re.compile(r"(.)\1{2,}")
-_PUNCTUATION = frozenset(".,;:!?…\n")
-_TURNS = frozenset(["but", "although", "though", "however"])
-_IDLE = word_set(
-    "really honestly just actually simply truly quite personally still totally absolutely definitely certainly sure surely"
+_PART = re.compile(r"([^.,;:!?…\n]*)([.,;:!?…\n]*)")
+_STRETCHED = re.compile(r"([a-z])\1{2,}")
+_TURN = re.compile(r"\b(?:but|although|though|however)\b")
+_HEDGE = re.compile(r"\b(?:probably|maybe|perhaps|possibly|i guess|i suppose)\b(?! (?!yes|no|so|not)\w)")
+"""A hedge before an answer or at the end of a part; *maybe he is at home* hedges a statement."""
+_FILLERS = word_set("well oh ah uh um er hm hmm mm honestly actually so and then please sorry thanks frankly ha haha")
+_YES = word_set("yes yeah yep yup yea ya yah yay yess aye ok okay okey sure")
+_NO = word_set("no nope nah nay naw")
+_AUXILIARIES = word_set("am is are was were do does did have has had can could will would shall should may might must")
+_PRONOUNS = word_set("i you he she it we they that this there")
+_NO_NOUN = (
+    _PRONOUNS | _FILLERS | _NO | word_set("my your the a because not never thank thanks but if let sir ma'am maam way")
 )
-"""Adverbs without effect between *I* and its verb: *I really don't know*."""
-_PLAIN = word_set("yes yeah yep no nope probably maybe perhaps i")
-"""Words that certainly begin another answer."""
-_LONGEST_CUE = max(len(cue) for cue in CUES)
-_CONTRACTIONS = {
-    "can't": "can not",
-    "cannot": "can not",
-    "won't": "will not",
-    "dont": "do not",
-    "doesnt": "does not",
-    "didnt": "did not",
-    "isnt": "is not",
-    "cant": "can not",
-    "wouldnt": "would not",
-    "im": "i am",
-    "i'm": "i am",
-    "id": "i would",
-    "thats": "that is",
-    "it's": "it is",
-    "that's": "that is",
-    "let's": "let us",
-    "dunno": "do not know",
-    "idk": "i do not know",
-    "wanna": "want to",
-    "gotta": "got to",
-    "kinda": "kind of",
-    "sorta": "sort of",
-    "we'll": "we will",
-}
-_ENDINGS = {"n't": " not", "'d": " would", "'ll": " will", "'ve": " have", "'re": " are"}
+"""Words that do not continue a *no* before a noun: *no brothers*."""
+_LONGEST = 400
+"""Answers are short: the rest of a long text is not read."""
 
 
 def yesno_of(text: str) -> YesNo:
     """Return the meaning of `text` as an answer.
 
     Example:
-        >>> yesno_of("not certainly but ok"), yesno_of("I like tea")
-        (YesNo(yes=1, no=0, unsure=False), YesNo(yes=None, no=None, unsure=None))
+        >>> yesno_of("yes, but not now"), yesno_of("I like tea")
+        (YesNo(yes=0, no=1, unsure=False), YesNo(yes=None, no=None, unsure=None))
     """
-    words = _words(text)
-    answer, end = _answer(words)
-    for turn in range(end, len(words)):
-        if words[turn] in _TURNS:
-            other, _ = _answer(words[turn + 1 :])
-            thanked = not answer and turn == end  # thanks, but no
-            return other if thanked else _turned(answer, other)
-    return answer
+    if emoji := re.match(r"\W*([👍👎])", text):
+        return YES[1] if emoji[1] == "👍" else NO[1]
+    first, *others = _TURN.split(_plain(text), maxsplit=1)
+    answer = _answer(first)
+    other = _answer(others[0]) if others else NEITHER
+    if not any(word not in _FILLERS for word in first.replace(",", " ").split()):
+        return other  # thanks, but no
+    if not answer or not other or other == UNSURE or (answer.yes and other.yes) or (answer.no and other.no):
+        return answer
+    return YES[0] if other.yes else NO[0]
 
 
-def _turned(first: YesNo, second: YesNo) -> YesNo:
-    """Return the meaning of two answers with *but* between them."""
-    if not first or not second or second == UNSURE or (first.yes and second.yes) or (first.no and second.no):
-        return first
-    return YesNo(1, 0, False) if second.yes else YesNo(0, 1, False)
+def _plain(text: str) -> str:
+    """Return the beginning of a text in plain form, with its punctuation."""
+    parts = _PART.findall(_STRETCHED.sub(r"\1", text[:_LONGEST].lower()))
+    return "".join(plain(words) + marks for words, marks in parts)
 
 
-def _words(text: str) -> list[str]:
-    """Return the first words in lower case, without contractions, and with punctuation."""
-    found: list[str] = []
-    for token in _TOKEN.findall(text[:400].lower().replace("’", "'")):
-        word = _STRETCHED.sub(r"\1", token)
-        if word in _CONTRACTIONS:
-            found += _CONTRACTIONS[word].split()
-            continue
-        for ending, meaning in _ENDINGS.items():
-            if word.endswith(ending) and len(word) > len(ending):
-                word = word.removesuffix(ending) + meaning
-        found += word.split() or [token]
-    return [
-        word
-        for index, word in enumerate(found)
-        if not (word in _IDLE and 0 < index < len(found) - 1 and _is_idle(found[index - 1], found[index + 1]))
-    ]
-
-
-def _is_idle(before: str, after: str) -> bool:
-    """Return whether an adverb between these words has no effect."""
-    return (before in ("i", "we", "have", "am", "do") and after != "not") or (
-        before == "not" and after in ("know", "want", "mind", "think", "believe", "like")
-    )
-
-
-def _answer(words: list[str]) -> tuple[YesNo, int]:
-    """Return the answer at the beginning of `words`, and its end."""
-    cues: list[Cue] = []
-    reader = _Reader(words)
-    index = 0
-    while index < len(words):
-        if words[index][0] in _PUNCTUATION:
-            if "?" in words[index] and cues and words[index - 2 : index] != ["why", "not"]:
-                return NEITHER, index
-            index += 1
-            continue
-        cue, length = reader.cue_at(index)
-        if cue is None:
+def _answer(text: str) -> YesNo:
+    """Return the answer of the first part that is more than a filler, with the parts up to the end of its sentence."""
+    found = NEITHER
+    hedged = False
+    for words, marks in _parts(text):
+        answer = _of_part(words)
+        if "?" in marks and words[:2] != ["why", "not"]:
             break
-        cues.append(cue)
-        index += length
-    if index < len(words) and _is_question(words, index, cues):
-        return NEITHER, index
-    return _weigh(cues), index
+        if hedge := _HEDGE.search(" ".join(words)):
+            hedged = True
+            if found and hedge[0] == " ".join(words):
+                continue
+        if found in (NEITHER, UNSURE):
+            if not answer:
+                break
+            found = answer
+        elif answer in (*YES, *NO):
+            if bool(answer.yes) != bool(found.yes):
+                return UNSURE if hedged or 1 in (found.yes, found.no) else found
+            found = max(found, answer, key=lambda side: (side.yes or 0) + (side.no or 0))
+        if any(mark in ".!?…\n" for mark in marks):
+            break
+    if hedged and found in (YES[1], NO[1]):
+        return YES[0] if found.yes else NO[0]
+    return found
 
 
-def _is_question(words: list[str], index: int, cues: list[Cue]) -> bool:
-    """Return whether the words after the answer make it a question: *right now?*, but not *yes, and you?*."""
-    if any(word[0] in _PUNCTUATION for word in words[:index]) and any(cue.takes_side for cue in cues):
-        return False
-    for word in words[index:]:
-        if word[0] in _PUNCTUATION:
-            return "?" in word
-    return False
+def _parts(text: str) -> Iterator[tuple[list[str], str]]:
+    """Yield the parts of a text without fillers before them: their words, and the punctuation after them."""
+    for part, marks in _PART.findall(text):
+        words = part.split()
+        while words and words[0] in _FILLERS:
+            del words[0]
+        if words:
+            yield words, marks
 
 
-class _Reader:
-    """A finder of cues with a cache: some cues count only before another cue."""
-
-    def __init__(self, words: list[str]) -> None:
-        self._words = words
-        self._known: dict[int, tuple[Cue | None, int]] = {}
-
-    def cue_at(self, index: int) -> tuple[Cue | None, int]:
-        """Return the longest cue at `index`, and its length in words."""
-        if index not in self._known:
-            self._known[index] = self._find(index)
-        return self._known[index]
-
-    def _find(self, index: int) -> tuple[Cue | None, int]:
-        for length in range(min(_LONGEST_CUE, len(self._words) - index), 0, -1):
-            phrase = tuple(self._words[index : index + length])
-            cue = CUES.get(phrase)
-            if cue is not None and self._may_end(cue, phrase, index + length):
-                return cue, length
-        return None, 0
-
-    def _may_end(self, cue: Cue, phrase: tuple[str, ...], index: int) -> bool:
-        """Return whether a cue may end here: *I do* is an answer, *I do the dishes* is not."""
-        words = self._words
-        if index == len(words) or words[index][0] in _PUNCTUATION or words[index] in _TURNS:
-            return True
-        if cue is Cue.UNSURE and words[index] in UNKNOWNS:
-            return True
-        if cue in (Cue.HEDGE, Cue.MAYBE) and words[index] in STATERS:  # I guess I do, but not: I guess he is at home
-            following, _ = self.cue_at(index)
-            return following is not None and following.takes_side
-        if cue is Cue.SURE and words[index] in ("the", "a", "an"):
-            return False
-        if phrase not in STRICT:
-            if cue in (Cue.FILLER, Cue.NOT) or words[index] in FOLLOWERS:
-                return True
-            return self.cue_at(index)[0] is not None
-        while index < len(words):
-            following, length = self.cue_at(index)
-            if following is None:
-                return words[index][0] in _PUNCTUATION
-            if cue in (Cue.HEDGE, Cue.MAYBE) and following.takes_side:
-                return True
-            if words[index] in _PLAIN:  # I do yes, but not: I am fine
-                return True
-            if following is not Cue.FILLER:
-                return False
-            index += length
-        return True
+def _of_part(words: Sequence[str]) -> YesNo:
+    """Return the meaning of a part as an answer."""
+    part = " ".join(words)
+    match = bundled_matcher("answers").match(part)
+    if match is not None and match.example == part:
+        return _CLASSES[match.name]
+    if hedge := re.match(_HEDGE, part):
+        answer = _of_part(part[hedge.end() :].split()) if hedge[0] != part else UNSURE
+        if answer in (YES[1], NO[1]):
+            return YES[0] if answer.yes else NO[0]
+    first, *rest = words
+    if first in _YES and not (first == "sure" and rest and rest[0] in _AUXILIARIES):
+        return YES[1]
+    if first in _NO and (first != "no" or not rest or rest[0] in _NO_NOUN):
+        return NO[1]
+    if (short := _short_answer(words)) is not None:
+        return short
+    return NEITHER if match is None else _CLASSES[match.name]
 
 
-def _weigh(cues: list[Cue]) -> YesNo:
-    """Return the combined meaning of cues."""
-    cues = [cue for cue in cues if cue is not Cue.FILLER]
-    sides: list[tuple[str, int]] = []  # sides with strengths
-    hedged = denied = sure = False
-    for cue in cues:
-        if cue is Cue.UNSURE:
-            sides.append(("unsure", 0))
-        elif cue in (Cue.YES, Cue.YES_WEAK):
-            sides.append(("no" if denied else "yes", 1 if cue is Cue.YES_WEAK or (denied and not sure) else 2))
-        elif cue in (Cue.NO, Cue.NO_WEAK):
-            sides.append(("no", 2 if cue is Cue.NO else 1))
-        hedged |= cue in (Cue.HEDGE, Cue.MAYBE)
-        sure |= cue is Cue.SURE
-        denied |= cue is Cue.NOT
-    if not sides:
-        return _of_adverbs(cues)
-    said = sides[0][0]
-    torn = len({side for side, _ in sides}) > 1
-    if said == "unsure" or (torn and (hedged or sides[0][1] == 1)):  # maybe yes, maybe no; sometimes yes, sometimes no
-        return UNSURE
-    strength = max(strong for side, strong in sides if side == said)
-    if hedged or any(side == "unsure" for side, _ in sides):
-        strength = 1
-    elif sure and said == "yes":
-        strength = 2
-    return YesNo(strength, 0, False) if said == "yes" else YesNo(0, strength, False)
-
-
-def _of_adverbs(cues: list[Cue]) -> YesNo:
-    """Return the meaning of adverbs alone: *probably*, *absolutely not*, *not really*."""
-    if not cues:
-        return NEITHER
-    hedged = any(cue in (Cue.HEDGE, Cue.MAYBE) for cue in cues)
-    if Cue.NOT in cues:
-        doubted = cues[0] is Cue.NOT and Cue.SURE in cues  # not really, but: really not
-        return YesNo(0, 1 if hedged or doubted else 2, False)
-    if Cue.MAYBE in cues and Cue.SURE not in cues and Cue.HEDGE not in cues:
-        return UNSURE
-    if hedged:
-        return YesNo(1, 0, False)
-    return YesNo(2, 0, False)
+def _short_answer(words: Sequence[str]) -> YesNo | None:
+    """Return the meaning of a pronoun with an auxiliary alone: *I do*, *she really is not*."""
+    if not (len(words) > 1 and words[0] in _PRONOUNS):
+        return None
+    adverb = words[1].endswith("ly") or words[1] in ("sure", "just", "still", "always")
+    rest = [word for word in words[1 + adverb :] if word != "really"]
+    if rest and rest[0] in _AUXILIARIES and rest[1:] in ([], ["not"]):
+        return NO[1] if rest[1:] else YES[1]
+    return None

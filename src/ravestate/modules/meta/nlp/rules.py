@@ -50,7 +50,7 @@ def load(ctx: rs.RuleContext) -> None:
 def learn(ctx: rs.RuleContext) -> None:
     """Load the matchers in the background; until then, they know only the examples themselves."""
     try:
-        for name in MATCHERS:
+        for name in (*MATCHERS, "answers"):
             bundled_matcher(name).load()
         give_back()
     except ModelMissing as error:

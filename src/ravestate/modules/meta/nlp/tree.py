@@ -60,6 +60,10 @@ class Tree:
         children = self._children[word.index]
         return [child for child in children if child.dep in deps] if deps else children
 
+    def children_of(self, heads: Iterable[Word], *deps: str) -> list[Word]:
+        """Return the words that depend directly on one of `heads`; with `deps`, only those with such a relation."""
+        return [child for head in heads for child in self.children(head, *deps)]
+
     def head(self, word: Word) -> Word:
         """Return the head of `word`; a root is its own head."""
         return self.words[word.head]

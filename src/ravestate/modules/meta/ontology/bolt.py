@@ -21,10 +21,10 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 
 META = "_ravestate"
-"""The label of the node with the number of the layout."""
+"""The label of the node that stores the format version."""
 
 SCHEMES = ("bolt", "bolt+s", "bolt+ssc", "neo4j", "neo4j+s", "neo4j+ssc")
-"""The schemes of addresses: ``+s`` is with encryption, ``+ssc`` with a self-signed certificate."""
+"""The schemes of addresses: ``+s`` means encryption, ``+ssc`` encryption with a self-signed certificate."""
 
 LIVELY = 5.0
 """Idle seconds after which the driver tests a connection before use: the server may have restarted."""
@@ -33,8 +33,8 @@ LIVELY = 5.0
 class BoltStore:
     """A database on a server, by Neo4j's official driver.
 
-    The store has its own thread, and still uses the asynchronous driver, because a wait can be cancelled there. A
-    server that stalls costs `timeout` seconds and no thread.
+    The store has its own thread, and yet uses the asynchronous driver, because a wait for that driver can be cancelled.
+    So a server that stalls costs `timeout` seconds and no thread.
     """
 
     def __init__(self, url: str, user: str, password: str, database: str | None, timeout: float) -> None:
@@ -43,7 +43,7 @@ class BoltStore:
         Args:
             url: The address: ``bolt://localhost:7687``, or ``neo4j+s://...`` with encryption.
             user: The user name.
-            password: Empty for a server without passwords.
+            password: The password; empty for a server without passwords.
             database: The database's name on the server; None for the default one.
             timeout: Seconds to wait for each answer.
 
@@ -101,7 +101,7 @@ class BoltStore:
 
     @contextmanager
     def transaction(self) -> Generator[None]:
-        """Commit all statements inside together, or none."""
+        """Commit all statements in the ``with`` block together, or none."""
         if self._transaction is not None:
             yield
             return
@@ -148,7 +148,7 @@ class BoltStore:
             if "DatabaseNotFound" in code or "DatabaseUnavailable" in code:
                 named = f"has no database {self._database!r}" if self._database else "has no database of its own choice"
                 raise PlatformError(
-                    f"memory {self._place} {named}: make it there, or name another with --set ontology.database=NAME"
+                    f"memory {self._place} {named}: create it there, or name another with --set ontology.database=NAME"
                 ) from error
             raise PlatformError(f"memory {self._place} failed: {error.message or error}") from error
         except (errors.DriverError, OSError, ValueError) as error:  # ValueError: an invalid port
@@ -184,7 +184,7 @@ class BoltStore:
         """Close the connections."""
         try:
             if self._driver is not None:
-                with contextlib.suppress(PlatformError):  # if the server does not answer, it has already closed them
+                with contextlib.suppress(PlatformError):  # a server that does not answer needs no farewell
                     self._wait(self._driver.close())
         finally:
             self._loop.run_until_complete(self._loop.shutdown_asyncgens())

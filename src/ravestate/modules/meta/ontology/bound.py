@@ -11,10 +11,10 @@ from .node import Node
 
 
 def bound(module: rs.Module, name: str, type: str) -> rs.Slot[Node | None]:
-    """Declare a slot whose node is written to memory whenever the slot is.
+    """Declare a slot for a node: each node that is written to the slot is also saved in memory.
 
     The module gets the slot and a background rule ``remember_<name>``. The rule saves each node, in the order of the
-    writes. A write that fails is an error of that rule (``rs.error``). None in the slot leaves memory as it is.
+    writes. A write that fails is an error of that rule (``rs.error``). Writing None leaves memory unchanged.
 
     Args:
         module: The slot's module; it requires `ontology`.
@@ -54,7 +54,7 @@ def bound(module: rs.Module, name: str, type: str) -> rs.Slot[Node | None]:
             return
         opened = ctx[memory]
         if opened is None:
-            raise PlatformError(f"{node.id} is not remembered: there is no memory, see the warning before")
+            raise PlatformError(f"{node.id} is not remembered: there is no memory, see the earlier warning")
         await opened.save(node, of=type)
 
     return slot

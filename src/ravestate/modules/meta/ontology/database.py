@@ -12,10 +12,10 @@ BUFFER = 256 * 2**20
 """The maximum number of bytes of memory for pages of the file."""
 
 EMPTY = 4 * 4096
-"""The most bytes of a database that never had a table."""
+"""The maximum number of bytes of a database that never had a table."""
 
 LARGEST = 2**36
-"""Bytes of address space for the file. The file cannot grow larger."""
+"""Bytes of address space that are reserved for the file, and so its maximum size."""
 
 PATIENCE = 60.0
 """Seconds that a trial may take."""
@@ -29,8 +29,8 @@ def connect(path: Path, *, whole_log: bool = True) -> tuple[Any, Any]:
         whole_log: False to read a damaged log up to the damage, and to cut off the rest.
 
     Raises:
-        Exception: RuntimeError if the file has lost all of its tables. Ladybug raises it as well, and any other exception
-            for a damaged file.
+        Exception: RuntimeError if the file has lost all of its tables. For a damaged file, ladybug may raise any
+            exception.
     """
     import ladybug
 
@@ -40,13 +40,13 @@ def connect(path: Path, *, whole_log: bool = True) -> tuple[Any, Any]:
         buffer_pool_size=BUFFER,
         max_db_size=LARGEST,
         max_num_threads=1,
-        auto_checkpoint=False,  # the store handles it, where opening may fail
+        auto_checkpoint=False,  # the store does it later: here it could make the opening fail
         throw_on_wal_replay_failure=whole_log,
     )
     connection = ladybug.Connection(database, num_threads=1)
     connection.execute("CALL force_checkpoint_on_close=false")
     found: Any = connection.execute("CALL show_tables() RETURN name") if size > EMPTY else None
-    if found is not None and not found.get_all():  # pages of zeros count as an empty catalog
+    if found is not None and not found.get_all():  # ladybug reads pages of zeros as an empty catalog
         connection.close()
         database.close()
         raise RuntimeError("it has no tables")

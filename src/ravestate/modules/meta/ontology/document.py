@@ -37,7 +37,7 @@ def read_document(document: Mapping[str, Any], types: Types) -> tuple[list[Node]
         RuleError: The document is invalid; the message names the first wrong entry.
     """
     if not isinstance(document, Mapping) or document.get("format") != FORMAT:  # pyright: ignore[reportUnnecessaryIsInstance]  # a file may hold anything
-        raise RuleError(f"this is not a document of memory of format {FORMAT}: write one with ravestate memory export")
+        raise RuleError(f"this is not an exported memory of format {FORMAT}: write one with ravestate memory export")
     nodes: dict[str, Node] = {}
     for entry in _entries(document, "nodes"):
         type, id = _text(entry, "type"), _text(entry, "id")

@@ -37,7 +37,7 @@ RESERVE = 16 * 2**20
 """Free bytes on the disk that a write must leave: ladybug cannot recover from a failed write."""
 
 LOG_LIMIT = 4 * 2**20
-"""Bytes of the write-ahead log that make the store move it into the file."""
+"""The size of the write-ahead log, in bytes, at which the store moves it into the file."""
 
 log = logging.getLogger("ravestate.ontology")
 
@@ -57,7 +57,7 @@ class EmbeddedStore:
             path: The file. If its folder is missing, it is created for the user alone.
 
         Raises:
-            PlatformError: The package is missing, or the file is in use, broken, newer, or cannot be written.
+            PlatformError: The package is missing; or the file is in use, damaged, of a newer version, or not writable.
         """
         try:
             with LOADING:
@@ -100,7 +100,7 @@ class EmbeddedStore:
 
     @contextmanager
     def transaction(self) -> Generator[None]:
-        """Commit all statements inside together, or none."""
+        """Commit all statements in the ``with`` block together, or none."""
         if self._within:
             yield
             return
@@ -135,8 +135,8 @@ class EmbeddedStore:
             if is_failed_write(said):
                 self._get_stuck(said)
                 raise PlatformError(
-                    f"memory {self._path} cannot be written: {reason(said)}. Make room on the disk; what was acknowledged is "
-                    "safe, and memory goes on when there is"
+                    f"memory {self._path} cannot be written: {reason(said)}. Make room on the disk; saved data is safe, "
+                    "and memory works again once there is room"
                 ) from error
             if "Cannot open file" in said:  # for example the log, in a read-only folder
                 raise PlatformError(why_not_opened(self._path, said, self._files.present())) from error
@@ -151,7 +151,7 @@ class EmbeddedStore:
         if types is self._prepared:  # no other process writes this file
             return
         missing = list(missing_tables(self._execute, types, str(self._path)))
-        if missing:  # nothing to write: memory on a full disk can be read
+        if missing:  # otherwise nothing is written: memory on a full disk can be read
             self._be_writable(0)
             with self.transaction():
                 for statement in missing:
@@ -179,7 +179,7 @@ class EmbeddedStore:
         self._files.restrict()
 
     def _attempt(self, *, trial: bool, whole_log: bool = True) -> str:
-        """Open the file and return why that failed; empty if it did not. `trial`: open it in another process first."""
+        """Open the file and return why that failed; empty if it did not. With `trial`, try in another process first."""
         if trial and not survives(self._path, whole_log=whole_log):
             return ENDS_PROCESS
         try:
@@ -206,7 +206,7 @@ class EmbeddedStore:
                 return problem
         except OSError as error:
             raise PlatformError(
-                f"memory {self._path} has a damaged log, which cannot be copied before it is mended: {error.strerror}"
+                f"memory {self._path} has a damaged log, which cannot be copied before its repair: {error.strerror}"
             ) from error
         log.warning(
             "memory %s has a damaged log: the part before the damage was read, and the log as it was is kept as %s",
@@ -235,7 +235,7 @@ class EmbeddedStore:
         )
 
     def purge(self) -> None:
-        """Rewrite the file without what was deleted: ladybug leaves the bytes in it.
+        """Rewrite the file without the deleted data, because ladybug leaves the bytes of that data in the file.
 
         If that fails, the deleted nodes are still forgotten; a warning says that the file still has their bytes.
         """
@@ -319,8 +319,8 @@ class EmbeddedStore:
             return  # the write itself reports it
         if free < RESERVE + needed:
             raise PlatformError(
-                f"memory {self._path} cannot be written: the disk is full ({free // 2**20} MB free, and it wants "
-                f"{(RESERVE + needed) // 2**20 + 1}). Make room; what was acknowledged is safe, and memory goes on when there is"
+                f"memory {self._path} cannot be written: the disk is full ({free // 2**20} MB free, "
+                f"{(RESERVE + needed) // 2**20 + 1} MB needed). Make room; saved data is safe, and memory works again then"
             )
 
     def _be_writable(self, size: int) -> None:
@@ -330,8 +330,8 @@ class EmbeddedStore:
             return
         if not self._can_write():
             raise PlatformError(
-                f"memory {self._path} cannot be written: {self._stuck}. Make room on the disk; what was acknowledged is safe, "
-                "and memory goes on when there is"
+                f"memory {self._path} cannot be written: {self._stuck}. Make room on the disk; saved data is safe, "
+                "and memory works again once there is room"
             )
         self._connection.close()
         self._database.close()

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 ELSE = "name another file with --set ontology.path=FILE"
-ENDS_PROCESS = "it ends the process that reads it"
+ENDS_PROCESS = "reading the file crashes the process"
 
 _NO_DAMAGE = re.compile(r"set lock|file version: |Cannot open file|directory")
 _DAMAGE = re.compile(
@@ -36,14 +36,14 @@ def is_about_log(said: str) -> bool:
 
 
 def is_damage(error: BaseException) -> bool:
-    """Return whether a statement failed on a damaged file. Its pages may hold anything, hence the many exceptions."""
+    """Return whether a statement failed on a damaged file. Damaged pages can raise almost any exception type."""
     return not isinstance(error, RuntimeError) or _DAMAGE.search(str(error)) is not None
 
 
 def reason(said: str) -> str:
     """Return why a write failed."""
     found = said.rpartition("Error: ")[2].strip().rstrip(".")
-    # After a partial write the message has the reason of an earlier error.
+    # After a partial write, ladybug reports a stale reason; the real one is a full disk.
     return found if found not in ("", "Success", "No such file or directory") else "the disk is full"
 
 
@@ -51,7 +51,7 @@ def why_broken(path: Path, said: str, files: Iterable[Path]) -> str:
     """Return the message for a damaged memory, with all of its files."""
     first = (said.splitlines() or [""])[0][:200]
     return (
-        f"memory {path} is broken, or no file of memory ({first}): put a copy in its place, or begin again with "
+        f"memory {path} is damaged, or is not a memory file ({first}): put a copy in its place, or begin again with "
         f"ravestate memory reset --path {path} , which removes {', '.join(file.name for file in files)}"
     )
 
@@ -68,7 +68,7 @@ def why_not_opened(path: Path, said: str, files: Iterable[Path]) -> str:
         return (
             f"memory {path} was written by {'a newer' if newer else 'an older'} version of ladybug (format {version[1]}; this one "
             f"reads {version[2]}): "
-            + ("pip install --upgrade ladybug" if newer else "export it with that one, and load it here")
+            + ("pip install --upgrade ladybug" if newer else "export it with that version and import it with this one")
             + f", or {ELSE}. Nothing was changed"
         )
     if "Cannot open file" in said or "directory" in said:

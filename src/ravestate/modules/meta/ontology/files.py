@@ -56,11 +56,11 @@ class MemoryFiles:
             return 0
 
     def has_database(self) -> bool:
-        """Return whether there is a database; a crash while it is made leaves an empty file."""
+        """Return whether there is a database. An empty file is none: a crash during its creation leaves one."""
         return self.path.exists() and (not self.path.is_file() or self.path.stat().st_size > 0)
 
     def make_private(self, *suffixes: str) -> None:
-        """Create missing files so that only the user can read them; ladybug would let everybody."""
+        """Create missing files so that only the user can read them; ladybug would let everybody read them."""
         for suffix in suffixes:
             with contextlib.suppress(OSError):  # ladybug reports the problem
                 os.close(os.open(self.beside(suffix), os.O_CREAT | os.O_RDWR, 0o600))
@@ -82,7 +82,8 @@ class MemoryFiles:
         return moved
 
     def in_use(self) -> bool:
-        """Return whether another process has the database open. On Windows removing its files then fails."""
+        """Return whether another process has the database open. On Windows, return False: there, removing its files
+        then fails."""
         try:
             import fcntl
 

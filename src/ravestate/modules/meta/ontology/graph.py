@@ -39,7 +39,7 @@ class Graph:
     def save(self, node: Node, of: str | None = None) -> Node:
         """Write a node's properties, whether or not memory has the node."""
         if of is not None and not self._types.is_a(node.type, of):
-            raise RuleError(f"{node.id} is a {node.type}, and a {of} is wanted")
+            raise RuleError(f"{node.id} is a {node.type}, not a {of}")
         return self._write(_known(node), self._types.stored(node.type, node.properties))
 
     def ensure(self, type: str, properties: Mapping[str, Value]) -> Node:
@@ -91,7 +91,7 @@ class Graph:
             self._relate(node, relation, other, values)
 
     def unrelate(self, node: Node, relation: str, other: Node, *, forget: bool = False) -> None:
-        """Remove a relation. `forget`: also remove the other node if nothing else needs it."""
+        """Remove a relation. With `forget`, also remove the other node if nothing else needs it."""
         self._types.check_relation(node.type, relation, other.type)
         with self._store.transaction():
             self._store.write(
@@ -167,7 +167,7 @@ class Graph:
             return self._write(kept, self._types.stored(kept.type, missing))
 
     def _take_over(self, source: Node, name: str, target: Node, values: Mapping[str, Value]) -> None:
-        """Move a relation to other ends. The properties of an existing relation have priority."""
+        """Move a relation to other nodes. The properties of an existing relation have priority."""
         present: Mapping[str, Value] = {}
         for known, had, end in self._ends(source, back=False):
             if known == name and end.id == target.id:
@@ -175,7 +175,7 @@ class Graph:
         self._relate(source, name, target, self._types.stored_of(name, {**values, **present}))
 
     def only_about(self, node: Node) -> list[Node]:
-        """Return a node and the nodes that only it needs; nothing if memory does not have it."""
+        """Return a node and the nodes that only this node needs; nothing if memory does not have the node."""
         start = self.get(node.id)
         if start is None:
             return []
@@ -202,7 +202,7 @@ class Graph:
         return going
 
     def _has_own_life(self, other: Node, start: Node) -> bool:
-        """Return whether it is an agent with more than a name."""
+        """Return whether `other` is a person or robot about whom memory has more than a name."""
         if AGENT not in self._types or not self._types.is_a(other.type, AGENT):
             return False
         return bool(other.properties.keys() - {"name"}) or any(
@@ -210,17 +210,17 @@ class Graph:
         )
 
     def _is_wanted(self, node: Node, going: Container[object]) -> bool:
-        """Return whether a node that stays is related to it."""
+        """Return whether a node that stays has a relation to `node`."""
         return any(raw.values.get("id") not in going for _, raw in self._edges(node, back=True))
 
     def _must_declare(self, node: Node) -> None:
-        """Refuse a node with undeclared relations: they would be lost with it."""
+        """Refuse a node with undeclared relations, which would be lost with the node."""
         edges = self._edges(node, back=False) + self._edges(node, back=True)
         unknown = {relation.name for relation, _ in edges} - self._types.relations.keys()
         unknown |= {raw.label for _, raw in edges if raw.label not in self._types}
         if unknown:
             raise RuleError(
-                f"{node.id} is related by {', '.join(sorted(unknown))}, which no file of types has: name the file that has it in "
+                f"{node.id} is related by {', '.join(sorted(unknown))}, which no file of types declares: name the file that declares it in "
                 "the setting ontology.types"
             )
 
@@ -295,7 +295,7 @@ class Graph:
 
 
 def _known(node: Node) -> Node:
-    """Return the node if its id begins with its type; the lookup depends on it."""
+    """Return the node if its id begins with its type, as the lookup requires; refuse it otherwise."""
     if not node.id.startswith(f"{node.type}:"):
         raise RuleError(f"the id {node.id!r} of a {node.type} must begin with '{node.type}:'")
     return node

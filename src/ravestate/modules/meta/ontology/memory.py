@@ -58,15 +58,15 @@ class Memory:
             RuleError: Memory is not open: ``await memory.opened()`` first.
         """
         if self._types is None:
-            raise RuleError(f"memory ({self.place}) is not open: write await memory.opened() before")
+            raise RuleError(f"memory ({self.place}) is not open: write await memory.opened() first")
         return self._types
 
     def opened(self) -> Reply[None]:
         """Wait until memory is open.
 
         Raises:
-            PlatformError: A package is missing, the file is in use, broken or newer, or the server refuses. The
-                message says what to do. All operations raise it too.
+            PlatformError: A package is missing; the file is in use, damaged or of a newer version; or the server
+                refuses. The message says what to do. All operations raise it too.
             DeclarationError: A file of types is invalid, or contradicts another.
         """
         return self._opened
@@ -90,7 +90,7 @@ class Memory:
 
         Args:
             node: The node to write.
-            of: The type that it must have, or a supertype of it.
+            of: The type that the node must have; subtypes are allowed.
 
         Returns:
             The node with all of its properties in memory.
@@ -117,7 +117,7 @@ class Memory:
         """Relate two nodes in memory; between related nodes, set the relation's properties.
 
         Raises:
-            RuleError: Memory does not have one of them. For other causes, see the class.
+            RuleError: Memory does not have one of the nodes. For other causes, see the class.
 
         Example:
             ::
@@ -150,19 +150,19 @@ class Memory:
         """Merge two nodes: `keep` gets the duplicate's relations, and the properties that it lacks.
 
         Raises:
-            RuleError: The types do not fit: `keep` must have the duplicate's type or a subtype. Or memory does not
-                have one of them.
+            RuleError: The types do not fit: `keep` must have the duplicate's type or a subtype. Or memory does not have
+                one of the nodes.
         """
         return self._do("merge", lambda graph: graph.merge(keep, duplicate))
 
     def forget(self, node: Node, /) -> Reply[list[Node]]:
         """Remove a node, its relations, and the nodes that only it needs. The file keeps no byte of them.
 
-        A node needs its relations' targets, and their targets in turn. They stay if a node that stays is related to
-        them. A person or robot with more than a name stays as well.
+        A node needs its relations' targets, and their targets in turn. These targets stay if a node that stays is
+        related to them. A person or robot with more than a name stays as well.
 
         Returns:
-            The removed nodes, `node` first; nothing if memory does not have it.
+            The removed nodes, `node` first; nothing if memory does not have `node`.
         """
         return self._do("forget", lambda graph: graph.forget(node))
 
@@ -174,8 +174,8 @@ class Memory:
         """Run several operations as one: all take effect, or none. In a file, no other operation runs between them.
 
         Args:
-            operations: A function of the graph, called in memory's thread. The graph has the operations of this class,
-                without replies and with properties as mappings. Do not keep it.
+            operations: A function of the graph, called in memory's thread. The graph has the operations of this class.
+                There they return plain results, and take properties as mappings. Do not keep the graph.
 
         Returns:
             The result of `operations`. An exception in it rolls all of them back.
@@ -200,7 +200,7 @@ class Memory:
         """Save all nodes and relations of a document from `export`, or none; return the number of nodes.
 
         Raises:
-            RuleError: It is not such a document. For other causes, see the class.
+            RuleError: The document is invalid. For other causes, see the class.
         """
         return self._do("load", lambda graph: graph.load(document))
 

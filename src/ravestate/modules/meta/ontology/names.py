@@ -26,9 +26,9 @@ class Settings(rs.Settings):
     url: str | None = None
     """A server that speaks Bolt and Cypher, in place of a file: ``bolt://localhost:7687``."""
     user: str = "neo4j"
-    """The user name at the server."""
+    """The user name on the server."""
     password: SecretStr | None = None
-    """The password at the server. Set it in the environment: ``RAVESTATE_ONTOLOGY_PASSWORD``."""
+    """The password on the server. Set it in the environment: ``RAVESTATE_ONTOLOGY_PASSWORD``."""
     database: str | None = None
     """The database on the server, for memory alone. Default: the server's default database."""
     timeout: Annotated[float, Field(gt=0)] = 10.0

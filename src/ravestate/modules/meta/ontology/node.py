@@ -71,7 +71,7 @@ class Node:
         """Return a property's value.
 
         Raises:
-            KeyError: The property has none.
+            KeyError: The property has no value.
         """
         value = self.properties.get(name)
         if value is None:

@@ -1,4 +1,4 @@
-"""The future result of an operation on memory, for async rules and plain ones."""
+"""The future result of an operation on memory, for async rules and plain functions."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ class Reply(Generic[T]):
         return self._future.result(timeout)
 
     def __await__(self) -> Generator[Any, None, T]:
-        # An executor, because a loop in virtual time waits for its executors. The operation goes on when the
+        # This uses an executor, because a loop in virtual time waits for its executors. The operation goes on when the
         # waiting rule is cancelled.
         self._looked = True
         loop = asyncio.get_running_loop()

@@ -12,7 +12,7 @@ from ravestate.errors import PlatformError
 from .types import Types
 
 FORMAT = 1
-"""The number of the layout of nodes and relations; a new layout has a greater one."""
+"""The version of the format of nodes and relations; a new format has a greater number."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,7 +40,7 @@ class Store(Protocol):
     """
 
     def prepare(self, types: Types) -> None:
-        """Create what is missing for the types, properties and relations.
+        """Create the missing tables, columns or indexes for the types, properties and relations.
 
         Raises:
             PlatformError: The database uses these names for something else, or is newer.
@@ -64,7 +64,7 @@ class Store(Protocol):
         ...
 
     def transaction(self) -> AbstractContextManager[None]:
-        """Commit all statements inside together, or none. A transaction inside another is part of it.
+        """Commit all statements in the ``with`` block together, or none. A transaction inside another is part of it.
 
         Raises:
             PlatformError: The database failed.
@@ -89,10 +89,10 @@ class Store(Protocol):
 
 
 def check_format(place: str, found: object) -> None:
-    """Refuse a layout of a newer version.
+    """Refuse a newer format.
 
     Raises:
-        PlatformError: It is newer.
+        PlatformError: The format is newer.
     """
     if not isinstance(found, int) or found > FORMAT:
         raise PlatformError(

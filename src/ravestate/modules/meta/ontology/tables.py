@@ -13,7 +13,7 @@ from .types import Kind, Types
 Execute = Callable[[str], list[list[Any]]]
 
 META = "_ravestate"
-"""The table with the number of the layout. No user's type begins with ``_``."""
+"""The table that stores the format version. No user's type begins with ``_``."""
 
 COLUMNS: dict[Kind, str] = {
     "text": "STRING",
@@ -34,7 +34,7 @@ def missing_tables(execute: Execute, types: Types, place: str) -> Iterator[str]:
         place: The database's path, for messages.
 
     Raises:
-        PlatformError: The database has other data, a newer layout, or a property of another kind.
+        PlatformError: The database has other data, a newer format, or a property of another kind.
     """
     tables = {str(row[0]) for row in execute("CALL show_tables() RETURN name")}
     if META in tables:

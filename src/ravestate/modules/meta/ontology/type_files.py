@@ -36,7 +36,7 @@ OF_A_RELATION = ("to", "has")
 
 
 def read_types(paths: Iterable[Path | Traversable]) -> Types:
-    """Read files in this order.
+    """Read files in the given order.
 
     Raises:
         DeclarationError: A file is invalid or contradicts another; the message names file and line.
@@ -65,7 +65,7 @@ def _read(own: tuple[tuple[Path, object], ...]) -> Types:
 
 
 def _state_of(path: Path) -> object:
-    """Return what changes with a file."""
+    """Return a value that changes when the file changes."""
     try:
         stat = path.stat()
     except OSError:  # reading the file reports that
@@ -119,7 +119,7 @@ class _Reader:
             while line[-1] in self._parents:
                 line.append(self._parents[line[-1]][0])
                 if line[-1] in line[:-1]:
-                    raise DeclarationError(f"{place}: {' is a '.join(line)}: types form no ring")
+                    raise DeclarationError(f"{place}: {' is a '.join(line)}: types must not form a cycle")
         for name, ends in self._ends.items():
             for (_, target), place in ends.items():
                 if target not in self._has:

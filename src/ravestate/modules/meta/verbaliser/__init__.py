@@ -1,4 +1,4 @@
-"""Intents to phrases: the agent says an intent in the words of a file of phrases."""
+"""Phrases for intents: the agent says an intent in words from a file of phrases."""
 
 from __future__ import annotations
 

@@ -14,7 +14,7 @@ class Settings(rs.Settings):
     """The language of the agent, and its phrases."""
 
     language: str = "en"
-    """The language: ``de`` or ``de-AT``. An intent without phrases in it is said in English."""
+    """The language, e.g. ``de`` or ``de-AT``. An intent without phrases in it is said in English."""
     phrases: tuple[Path, ...] = ()
     """Your own files of phrases. They replace the modules' phrases, or add to them."""
 
@@ -25,4 +25,4 @@ intent: rs.Slot[str | Intent | None] = module.slot("intent", None, type=str | In
 """The agent's next intent: a name, or an `Intent` with parameters. The agent says it at once."""
 
 last: rs.Collection[str] = module.collection("last")
-"""The last template of each intent."""
+"""The template that was last used for each intent, by the intent's name."""

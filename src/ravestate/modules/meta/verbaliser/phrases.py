@@ -96,7 +96,7 @@ class PhraseBook:
         *,
         default_language: str = "en",
     ) -> PhraseBook:
-        """Read YAML files in this order; the module's docstring has their format.
+        """Read YAML files in the given order; the module's docstring describes their format.
 
         Args:
             sources: Paths, or files in packages as ``importlib.resources`` gives them.
@@ -163,7 +163,7 @@ class PhraseBook:
         Args:
             intent: The intent's name.
             parameters: Values for the braces; None counts as missing.
-            rng: The source of chance; the same state gives the same phrase.
+            rng: The random number generator; the same state gives the same phrase.
             last: The last template of this intent; it is not chosen again if there is another.
             language: Replaces the book's language.
 
@@ -217,7 +217,8 @@ class PhraseBook:
 
 
 def _begun(template: str, text: str) -> str:
-    """Return the text with a capital, if a parameter begins it: *Chess? You must show me*, but *eBay*."""
+    """Return the text with a capital if it begins with a parameter, as in *Chess? You must show me*; but keep
+    *eBay*."""
     first = text.split(maxsplit=1)[0] if template.startswith("{") and text.strip() else ""
     return text[:1].upper() + text[1:] if first.islower() else text
 
@@ -262,7 +263,7 @@ def _template(text: str) -> Template:
 def _added(name: str, node: yaml.Node) -> bool:
     tag = str(node.tag)
     if tag.startswith("!") and tag != "!add":
-        raise fault(name, node, f"the only tag there is is !add, not {tag}{nearest(tag, ['!add'])}")
+        raise fault(name, node, f"the only tag is !add, not {tag}{nearest(tag, ['!add'])}")
     return tag == "!add"
 
 

@@ -37,7 +37,7 @@ def as_intent(value: object) -> Intent:
     """Return the slot's value as an `Intent`.
 
     Raises:
-        RuleError: It is not an intent.
+        RuleError: The value is not an intent.
     """
     if isinstance(value, Intent):
         return value

@@ -13,5 +13,5 @@ __all__ = ["input", "module", "output", "picture", "piece", "say", "speaking", "
 
 
 def say(context: Context, text: str) -> None:
-    """Say something to an agent from outside, as if its user had typed `text`; from any thread."""
+    """Say something to an agent from outside, as if its user had typed `text`. Any thread may call this."""
     context.put(input, text)

@@ -120,7 +120,7 @@ class Console:
         return self
 
     async def __anext__(self) -> str:
-        """Return the next line, without its line end. A line that was begun is kept if this is cancelled."""
+        """Return the next line, without its line end. After a cancellation, the next call gets the line."""
         if self.ending is None:
             try:
                 return printable(await self._screen.read())

@@ -15,14 +15,14 @@ _BLOCK = 1 << 16
 class Pipes:
     """Reads lines in a thread of its own, one at a time and only on request; writes and flushes line by line.
 
-    A file works as well as a pipe, on every system. The thread ends with its input or when this is closed. While it
-    waits for a line, it ends with the process.
+    A file works as well as a pipe, on every system. The thread ends when its input ends or when this object is closed.
+    While it waits for a line, it does not keep the process from ending.
     """
 
     interactive = False
 
     def __init__(self, stdin: TextIO | None, stdout: TextIO | None, *, longest_line: int = 1 << 20) -> None:
-        """Nothing is read yet.
+        """Prepare to read and write; nothing is read yet.
 
         Args:
             stdin: The source of lines; None, for a closed standard input, is an input that has ended.
@@ -98,7 +98,7 @@ class Pipes:
             raise
 
     def _silence(self) -> None:
-        """Discard Python's own flush at exit; it would print a second error."""
+        """Redirect Python's own flush at exit, which would print a second error."""
         if self._stdout is not None and self._stdout is sys.stdout:
             with contextlib.suppress(OSError, ValueError):
                 nowhere = os.open(os.devnull, os.O_WRONLY)

@@ -35,7 +35,7 @@ async def listen(ctx: rs.RuleContext) -> None:
         ctx.emit(rawio.typing)
 
     try:
-        # Off the loop as well, because it takes long while other threads load models.
+        # This runs off the loop, because it takes long while other threads load models.
         plain = Pipes(sys.stdin, sys.stdout) if ctx.settings.plain else None
         console = await asyncio.to_thread(
             Console, screen=plain, prompt=ctx.settings.prompt, history=history, on_key=tell
@@ -61,7 +61,7 @@ async def listen(ctx: rs.RuleContext) -> None:
             else:
                 ctx.wipe(rawio.input.changed)  # a user who interrupts does not
             ctx[interloc.users].remove(USER)
-            await ctx.quiet()  # a farewell
+            await ctx.quiet()  # the farewell
         finally:
             ctx[screen] = None
             ctx.stop(console.failure)

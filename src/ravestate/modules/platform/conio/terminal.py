@@ -50,12 +50,12 @@ class Terminal:
         input: Input | None = None,
         output: Output | None = None,
     ) -> None:
-        """Nothing is read or written yet.
+        """Prepare to read and write; nothing is read or written yet.
 
         Args:
             prompt: The text before the line that the user types.
-            history: The file for typed lines. Without one, or if it cannot be written, they are kept for this session.
-            on_key: Called with each key that changes the line, unless the line is empty then.
+            history: The file for typed lines. Without a writable file, the lines are kept for this session.
+            on_key: Called with each key that changes the line, unless the line is empty afterwards.
             input: The keyboard, by default the terminal's.
             output: The screen, by default the terminal's.
         """
@@ -78,7 +78,7 @@ class Terminal:
         self._context = contextvars.copy_context()
         stderr = sys.stderr
         self._patch.enter_context(patch_stdout(raw=True))  # other prints go above the prompt as well
-        if not stderr.isatty():  # redirected: it does not disturb the prompt
+        if not stderr.isatty():  # a redirected stream does not disturb the prompt
             self._patch.enter_context(contextlib.redirect_stderr(stderr))
         return self
 
@@ -110,7 +110,7 @@ class Terminal:
 
     def stream(self, piece: str) -> None:
         """See `Screen.stream`."""
-        if self._left_open:  # only its end shows whether the line has interrupted it
+        if self._left_open:  # only the last piece shows whether the typed line was an interruption
             self._late += piece
             return
         *lines, self._streamed = (self._streamed + piece).split("\n")
@@ -126,7 +126,7 @@ class Terminal:
         """See `Screen.end`."""
         late, self._late, self._left_open = self._late, "", False
         line, self._streamed = self._streamed, ""
-        if late and not late.endswith(_OPEN):  # otherwise it ended where it was left; these pieces came too late
+        if late and not late.endswith(_OPEN):  # otherwise these pieces came after the interruption
             line += late
         if line:
             self.show(line)

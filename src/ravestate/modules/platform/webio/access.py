@@ -33,8 +33,8 @@ class Access:
     """Checks each request before the server answers it.
 
     A page that only this machine can reach needs no token, so any site in this machine's browser could talk to it. Two
-    checks prevent that. The server answers only to names of this machine, against DNS rebinding. It accepts only its own
-    origin and those in the settings. The names of headers are in lower case here.
+    checks prevent that. Against DNS rebinding, the server answers only to names of this machine. It accepts only its
+    own origin and those in the settings. All methods expect the names of headers in lower case.
 
     Args:
         settings: The settings of ``webio``.
@@ -59,19 +59,19 @@ class Access:
         return None
 
     def refusal_of_board(self, headers: Mapping[str, str]) -> str | None:
-        """Return why a request may not reach the board, which only the server's own page may; None if it may."""
+        """Return why a request may not reach the board; None if it may. Only the server's own page may."""
         origin, host = headers.get("origin", "").lower(), headers.get("host", "").lower()
         if origin and not _is_own(origin, host):
             return (
-                f"{origin!r} may not look inside of the agent, which only its own page at {host!r} does: open that, "
-                "or let the proxy before it hand on the Host header"
+                f"{origin!r} may not inspect the agent; only the agent's own page at {host!r} may: open that page, "
+                "or make the proxy in front of it pass on the Host header"
             )
         return None
 
     def foreign_embedder(self, headers: Mapping[str, str]) -> str | None:
         """Return the origin of a site that tries to embed the page without permission; None for any other request.
 
-        Browsers send the headers for this over HTTPS and to this machine; widget.js allows them to.
+        Browsers send the necessary headers over HTTPS and to this machine, because widget.js permits it.
         """
         if headers.get("sec-fetch-dest") not in ("iframe", "frame"):
             return None
@@ -84,7 +84,7 @@ class Access:
         return _is_own(origin, host) or origin in self.origins
 
     def admits(self, token: str | None) -> bool:
-        """Return whether a token is right, or none is needed. The time does not depend on the wrong character."""
+        """Return whether a token is right, or none is needed. The time does not reveal which character is wrong."""
         return self._token is None or hmac.compare_digest(
             (token or "").encode("utf-8", "replace"), self._token.encode("utf-8", "replace")
         )

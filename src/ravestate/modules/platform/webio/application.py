@@ -32,10 +32,10 @@ PAGE = Path(__file__).parent / "page"
 """The output of ``npm run build`` in ``frontend/``."""
 
 CONSOLES = ("conio",)
-"""Platforms for a single user; each visitor's context would have one."""
+"""Platforms for a single user. With webio, each visitor's context would contain one."""
 
 MOST_LOGGED = 100
-"""The maximum number of sites that the log names, each once, so that strangers cannot fill it."""
+"""The maximum number of sites that the log names, each once, so that strangers cannot fill the log."""
 
 log = logging.getLogger("ravestate.webio")
 

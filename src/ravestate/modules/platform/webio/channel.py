@@ -12,8 +12,7 @@ from starlette.websockets import WebSocket, WebSocketDisconnect
 from .protocol import CLOSING_CODES, Error, ProtocolError, serialise
 
 LONGEST = 128 * 1024
-"""The maximum number of bytes of a frame: the longest text has 10,000 characters, and JSON may need twelve bytes for
-each."""
+"""The maximum number of bytes of a frame. A text may have 10,000 characters, with twelve bytes each in JSON."""
 
 SILENT = 10.0
 """Seconds that a client has for its hello."""
@@ -63,10 +62,10 @@ class Channel:
         """Return the first frame.
 
         Args:
-            expected: An example of it, for the error.
+            expected: An example of the first frame, for the error.
 
         Raises:
-            ProtocolError: It does not come in time, or is too large.
+            ProtocolError: The frame does not come in time, or is too large.
         """
         try:
             async with asyncio.timeout(SILENT):

@@ -38,7 +38,7 @@ class History:
 
     @property
     def first(self) -> int:
-        """The number of the oldest message; of the next one while there is none."""
+        """The number of the oldest message. While there is none, the number that the next message will get."""
         return self.last - len(self._messages) + 1
 
     def newest(self, speaker: Speaker) -> Message | None:

@@ -35,8 +35,7 @@ FOREIGN = (
     "Invalid UTF-8 sequence received from client.",
     "Unsupported upgrade request.",
 )
-"""Uvicorn's messages about faults of clients. The clients get them; in the log, they would let strangers fill the
-disk."""
+"""Uvicorn's messages about clients' faults. Only clients get them; in the log, strangers could fill the disk."""
 
 log = logging.getLogger("ravestate.webio.limits")
 log.setLevel(logging.WARNING)
@@ -60,7 +59,7 @@ class LimitedHTTP(H11Protocol):
         self._waited: object = None  # the request whose client was slow at the last check
         self._late: tuple[object, float] = (None, 0.0)  # a request, and its deficit in bytes
 
-    def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]  # as above it
+    def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]  # as in the base class
         """Take a connection, or refuse it."""
         super().connection_made(transport)
         if len(self.connections) > self._most:
@@ -95,7 +94,7 @@ class LimitedHTTP(H11Protocol):
             self._waited = request
         else:
             spent = self._is_late(request)
-            self._waited = self  # for none
+            self._waited = self  # equal to no request
         if spent:
             _hang_up(self.transport)
             return
@@ -103,7 +102,7 @@ class LimitedHTTP(H11Protocol):
         self.loop.call_later(TIMEOUT, self._check)
 
     def _is_late(self, request: RequestResponseCycle) -> bool:
-        """Return whether a request is too slow overall, and not because of the server."""
+        """Return whether the client sends a request too slowly overall. Waits for the server do not count."""
         due = LOWEST_RATE * TIMEOUT
         behind = self._late[1] if self._late[0] is request else 0.0
         waits = self.flow.read_paused or not request.more_body

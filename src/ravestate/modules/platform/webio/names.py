@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from .session import Session
 
 ORIGIN = re.compile(r"https?://[^\s/?#@'\";,*]+")
-"""The origin of a web site: scheme, host and port."""
+"""The pattern of a web site's origin: scheme, host and port."""
 
 
 def _origin(text: str) -> str:

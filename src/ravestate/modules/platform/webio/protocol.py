@@ -29,7 +29,7 @@ __all__ = [
 ]  # fmt: skip
 
 VERSION = 1
-"""The version of the protocol. A new frame or field keeps it; any other change raises it."""
+"""The version of the protocol. A new frame or field keeps the number; any other change raises it."""
 
 LONGEST_NAME = 80
 """The maximum number of characters of a name."""
@@ -51,7 +51,7 @@ CLOSING_CODES = {
     "silent": 4408,
     "behind": 4409,
 }
-"""The WebSocket's closing code for each error; an error that is not listed closes with that of ``malformed``."""
+"""The WebSocket's closing code for each error; any other error closes with the code of ``malformed``."""
 
 
 class ProtocolError(PlatformError, ValueError):
@@ -59,7 +59,7 @@ class ProtocolError(PlatformError, ValueError):
 
     Attributes:
         code: One word for programs, e.g. ``malformed``; the message is for people.
-        id: The `Say` that is refused, if it is one.
+        id: The `id` of the refused frame, if it is a `Say`.
     """
 
     def __init__(self, code: str, message: str, id: str | None = None) -> None:
@@ -113,7 +113,7 @@ def _spoken(version: int) -> int:
     return version
 
 
-# A description says what was expected, wherever a value is refused.
+# The message about a refused value contains the description of its type.
 Number = Annotated[int, Field(strict=True, ge=0, le=GREATEST, description="a whole number from 0 on")]
 Version = Annotated[Number, AfterValidator(_spoken), Field(description=f"the version, {VERSION}")]
 Truth = Annotated[bool, Field(strict=True, description="true or false")]

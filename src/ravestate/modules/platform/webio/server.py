@@ -1,4 +1,4 @@
-"""The web server: one socket, one application, limits on connections."""
+"""The web server, with one socket, one application, and limits on connections."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ class Server:
         self._saved = contextlib.ExitStack()
 
     async def __aenter__(self) -> Server:
-        """Listen.
+        """Start to listen.
 
         Raises:
             PlatformError: The port is in use, or the address is not one of this machine.
@@ -163,7 +163,7 @@ class Server:
 
 
 class _Uvicorn(uvicorn.Server):
-    """A server without a tick and without signal handlers: the agent's runner has its own handlers."""
+    """A uvicorn server without a periodic tick and without signal handlers: the agent's runner has its own handlers."""
 
     def __init__(self, config: uvicorn.Config) -> None:
         super().__init__(config)
@@ -171,7 +171,7 @@ class _Uvicorn(uvicorn.Server):
         self.told = asyncio.Event()
 
     async def main_loop(self) -> None:
-        """Wait for the end."""
+        """Wait for the order to end."""
         self.listening.set()
         await self.told.wait()
 
@@ -205,7 +205,7 @@ def _listen(host: str, port: int) -> socket.socket:
 
 
 def _most(wanted: int) -> int:
-    """Return the most connections that the process's limit on open files allows."""
+    """Return the wanted number of connections, or fewer if the limit on open files demands it."""
     try:
         import resource
     except ImportError:  # not on Windows

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from ravestate.runtime.context import Context
 
 REMEMBERED = 512
-"""The ids of a client's messages that a session remembers, to ignore repeated ones."""
+"""The number of message ids that a session remembers, to ignore repeated messages."""
 
 GRACE = 0.3
 """Seconds of waiting before the page shows that the agent is working."""
@@ -154,7 +154,7 @@ class Session:
         """Take the visitor's words. Words that came before under the same `id` are ignored.
 
         Args:
-            id: The client's name for them: 1 to 64 letters, digits, ``-`` or ``_``.
+            id: The client's name for the words: 1 to 64 letters, digits, ``-`` or ``_``.
             text: The words, checked by `heard_text`.
 
         Returns:

@@ -21,8 +21,8 @@ class Sessions:
 
     Args:
         agent: The agent; it makes a context for each conversation.
-        limit: The maximum number of conversations. Beyond it, one without a window ends first; then new ones are
-            refused.
+        limit: The maximum number of conversations. Beyond it, a new conversation ends one that has no window. If there
+            is none, the server refuses the new one.
         keep: Seconds for which a conversation without a window is kept.
     """
 
@@ -32,7 +32,7 @@ class Sessions:
         self._keep = keep
         self._sessions: dict[str, Session] = {}
         self._tasks: dict[Session, asyncio.Task[None]] = {}
-        self._timers: dict[Session, asyncio.TimerHandle] = {}  # those without a window; the oldest timer first
+        self._timers: dict[Session, asyncio.TimerHandle] = {}  # of conversations without a window, oldest first
         self._closed = False
 
     def __len__(self) -> int:
@@ -53,7 +53,7 @@ class Sessions:
             name: The visitor's name, if it is known.
 
         Raises:
-            ProtocolError: There are too many already, or the agent is being switched off.
+            ProtocolError: There are too many conversations already, or the agent is being switched off.
         """
         if len(self._tasks) >= self._limit:
             await self._make_room()
@@ -64,14 +64,14 @@ class Sessions:
         session = Session(self._agent.context(), name)
         self._sessions[session.id] = session
         self._tasks[session] = asyncio.create_task(self._live(session))
-        self._abandon(session)  # until a window opens
+        self._abandon(session)  # it ends if no window opens in time
         return session
 
     def enter(self, session: Session, onlooker: Onlooker) -> None:
         """Add an onlooker.
 
         Raises:
-            ProtocolError: The conversation has too many already.
+            ProtocolError: The conversation has too many onlookers already.
         """
         if len(session.onlookers) >= ONLOOKERS:
             raise ProtocolError("full", f"{ONLOOKERS} windows show this conversation already: close one of them")

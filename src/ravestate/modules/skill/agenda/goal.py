@@ -79,7 +79,7 @@ def goal(
         intent: An intent for the verbaliser, instead of `say`.
         reads: The slots that the function reads.
         when: A further condition, e.g. ``interloc.users.holds(bool)``.
-        unless: A condition that prevents it: ``slot.holds(...)`` alone.
+        unless: A condition that prevents the pursuit; it consists of ``slot.holds(...)`` alone.
         priority: A factor on the utility (L9); the goal with the greatest utility goes first.
         cooldown: Seconds until the next try; also the time for an answer.
         done: Success, whenever it comes: a signal, a condition, or a regular expression of whole words for the user's
@@ -127,8 +127,8 @@ def goal(
         when=condition | goals.changed.where(is_over).detached(),
         reads=reads,
         writes=(rawio.output, goals) if intent is None else (verbaliser.intent, rawio.output, goals),
-        weight=priority,  # no cooldown option either: the goal rests by resigning, with or without a rival
-        until=rawio.input.changed | goals.changed.where(is_over),  # the goal may be reached while a function words it
+        weight=priority,  # no `cooldown`: the rule rests by resigning, even if it has no rival
+        until=rawio.input.changed | goals.changed.where(is_over),  # the goal may be reached while `say` runs
         detached=True,  # it starts a new causal group, so that rules can react to the user's answer
         name=name,
     )
@@ -179,7 +179,7 @@ def goal(
 
 
 async def _worded(ctx: rs.RuleContext, say: Any, tries: int) -> str:
-    """Return the words for a try; `tries` were made before."""
+    """Return the words for a try, after `tries` earlier ones."""
     if not callable(say):
         return say[min(tries, len(say) - 1)]
     words: Any = say(ctx)

@@ -32,7 +32,7 @@ async def yield_to_the_user(ctx: rs.RuleContext) -> None:
 def adopt_wishes(ctx: rs.RuleContext) -> None:
     """Add the goals from the settings to this context, and to no other that shares the policy.
 
-    It runs in a thread, because each rule costs the loop a few milliseconds.
+    This function runs in a thread, because each rule would cost the loop a few milliseconds.
     """
     settings: Settings = ctx.settings
     own = rs.Module(module.name)

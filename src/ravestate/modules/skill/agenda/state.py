@@ -15,7 +15,7 @@ class GoalState:
     Attributes:
         status: ``open`` until it is first pursued, then ``pursued``; in the end ``done`` or ``dropped``.
         tries: The number of tries.
-        since: The last try, in seconds since the context began.
+        since: The time of the last try, in seconds since the context began.
     """
 
     status: Status = "open"

@@ -1,0 +1,129 @@
+"""The words of English: which are common, and which are names.
+
+Two packages hold the data; the first use loads it. *pyspellchecker* has words with their frequencies in subtitles, and
+proposes corrections. The English dictionary of Hunspell, a file in *spylls*, writes names with capitals.
+"""
+
+from __future__ import annotations
+
+import calendar
+import logging
+import threading
+from functools import lru_cache
+from importlib.util import find_spec
+from itertools import groupby
+from pathlib import Path
+from typing import Any
+
+FREQUENT = 5000
+"""The occurrences of a word in the subtitles (1.6 billion words) from which it may replace an unknown word."""
+SHORTEST = 4
+"""The letters of an unknown word from which it may be a slip."""
+
+_BRITISH = (("our", "or"), ("tre", "ter"), ("ll", "l"), ("is", "iz"), ("ys", "yz"), ("gue", "g"), ("ce", "se"), ("que", "ck"))
+"""Endings of British spelling, which is no slip, with the American ones."""
+_NO_NAMES = frozenset("grey armour tyre honorable mister independence reunion reconstruction que les del mon dem herr san".split())
+"""Entries of the dictionary with a capital that are more often ordinary words."""
+
+_log = logging.getLogger("ravestate.language")
+_lock = threading.Lock()
+_loaded: list[Lexicon | None] = []
+
+
+def load_lexicon() -> Lexicon | None:
+    """Return the shared lexicon; None if its packages are not installed. The first call takes about 0.3 s."""
+    with _lock:
+        if not _loaded:
+            try:
+                _loaded.append(Lexicon())
+            except ImportError as error:
+                _log.info("slips of the pen stay as they are: pip install 'ravestate[nlp]' (%s)", error)
+                _loaded.append(None)
+    return _loaded[0]
+
+
+def loaded_lexicon() -> Lexicon | None:
+    """Return the shared lexicon if it is loaded."""
+    return _loaded[0] if _loaded else None
+
+
+class Lexicon:
+    """Words of English, in lower case, and names."""
+
+    def __init__(self) -> None:
+        """Load the data.
+
+        Raises:
+            ImportError: A package is missing.
+        """
+        from spellchecker import SpellChecker
+
+        self._speller: Any = SpellChecker(language="en", distance=1)
+        self._counts: dict[str, int] = self._speller.word_frequency.dictionary
+        self._ordinary, self._names = _dictionary()
+        self.correction = lru_cache(maxsize=4096)(self._correction)
+
+    def count(self, word: str) -> int:
+        """Return how often `word` occurs in lower case, per 1.6 billion words."""
+        return self._counts.get(word, 0)
+
+    def known(self, word: str) -> bool:
+        """Return whether `word`, in lower case, is a word or a name."""
+        return word in self._counts or word in self._ordinary or word in self._names
+
+    def name(self, word: str) -> str:
+        """Return `word` with the capital of a name if it is one; otherwise as it is."""
+        return self._names.get(word, word)
+
+    def unstretched(self, word: str) -> str:
+        """Return `word` without letters that were repeated for emphasis: *sooo*, *yesss*."""
+        runs = [(letter, len(list(run))) for letter, run in groupby(word)]
+        if all(length < 3 for _, length in runs):
+            return word
+        shapes = [""]
+        for letter, length in runs[:24]:
+            shapes = [shape + letter * times for shape in shapes for times in ((1, 2) if length > 2 else (length,))][:64]
+        return max(shapes, key=self.count) if any(map(self.count, shapes)) else word
+
+    def _correction(self, word: str) -> str:
+        """Return the frequent word that was probably meant by an unknown one; otherwise `word`.
+
+        Short words have many neighbours. For them only swapped, doubled and missing letters count.
+        """
+        if len(word) < SHORTEST or not word.isalpha() or not word.isascii() or self.known(word):
+            return word
+        near = [other for other in self._speller.known(self._speller.edit_distance_1(word)) if self._slip(word, other)]
+        best = max(near, key=self.count, default=word)
+        return best if self.count(best) >= FREQUENT else word
+
+    @staticmethod
+    def _slip(word: str, other: str) -> bool:
+        """Return whether such a slip is likely: the first letter is right, and a short word has no wrong letter."""
+        if other[0] != word[0] and sorted(other) != sorted(word):
+            return False
+        if any(word.replace(british, american, 1) == other for british, american in _BRITISH):
+            return False
+        if len(word) == len(other):
+            return len(word) > SHORTEST or sorted(word) == sorted(other)
+        if len(word) > len(other):  # a letter too many: a short word only has one that is doubled
+            return len(word) > SHORTEST + 1 or any(a == b for a, b in zip(word, word[1:], strict=False))
+        return True
+
+
+def _dictionary() -> tuple[frozenset[str], dict[str, str]]:
+    """Return the ordinary words and the names of Hunspell's dictionary; the names by their lower case."""
+    spec = find_spec("spylls")
+    if spec is None or spec.origin is None:
+        raise ImportError("No module named 'spylls'")
+    lines = (Path(spec.origin).parent / "hunspell" / "data" / "en" / "en_US.dic").read_text("latin-1").splitlines()
+    entries = [line.partition("/")[0].strip() for line in lines[1:]]
+    ordinary = frozenset(entry for entry in entries if entry.islower())
+    names = {
+        entry.lower(): entry
+        for entry in entries
+        if len(entry) > 2 and entry.isalpha() and entry[0].isupper() and entry[1:].islower()
+    }
+    # "Weeks" and "Jobs" are names too, but more often the plurals of ordinary words.
+    names = {low: name for low, name in names.items() if low not in _NO_NAMES | ordinary and low.removesuffix("s") not in ordinary}
+    names |= {name.lower(): name for name in (*calendar.day_name, *calendar.month_name) if len(name) > 3 and name != "March"}
+    return ordinary, names
