@@ -7,9 +7,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from functools import cache
 
 from quality import measure
 from quality.modules import _seen
+from ravestate.language.matcher import bundled_matcher
+from ravestate.modules.meta.nlp.analysis import MATCHERS
 from ravestate.modules.skill.agentqa.life_file import read_life
 from ravestate.modules.skill.agentqa.remarks import remark_in
 from ravestate.modules.skill.agentqa.router import Match, router_of
@@ -51,7 +54,7 @@ def persqa_facts(sentence: str) -> str:
         known = {topic: (value,)}
     if what == "told":
         talk = talk.learning([topic], topic, (value,))
-    kinds.load()
+    _load()
     meaning = understand(_seen(text), talk, known, now=1.0, within=90.0)
     facts = " ".join(map(_label, sorted(meaning.facts, key=lambda fact: fact.topic)))
     if meaning.kind in ("told", "corrected"):
@@ -61,13 +64,20 @@ def persqa_facts(sentence: str) -> str:
     return {"nothing": "-", "mentioned": "-"}.get(meaning.kind, meaning.kind)
 
 
+@cache
+def _load() -> None:
+    for name in MATCHERS:
+        bundled_matcher(name).load()
+    kinds.load()
+
+
 def facts(sentence: str) -> str:
     """Return what a sentence tells when nothing is known and nothing was asked.
 
     The parts are joined by semicolons: ``topic=value``, ``topic=a|b``, ``not topic=value``; ``Subject / verb / object`` for
     what no topic covers; ``-`` for nothing.
     """
-    kinds.load()
+    _load()
     reader = Reader(_seen(sentence))
     free = [f"{told.subject} / {told.verb} / {told.object}" for told in reader.free()]
     return "; ".join([*map(_label, sorted(reader.facts(), key=lambda fact: fact.topic)), *free]) or "-"

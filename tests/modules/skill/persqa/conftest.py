@@ -8,7 +8,9 @@ from typing import Any
 
 import pytest
 
+from ravestate.language.matcher import bundled_matcher
 from ravestate.modules import ontology
+from ravestate.modules.meta.nlp.analysis import MATCHERS
 from ravestate.modules.meta.nlp.pipeline import pipeline
 from ravestate.modules.meta.ontology.opening import open_memory
 from ravestate.modules.skill.persqa import kinds
@@ -21,6 +23,8 @@ def reader() -> None:
     """Load the pipeline and the examples, once for all tests."""
     pipeline("").load()
     kinds.load()
+    for name in MATCHERS:
+        bundled_matcher(name).load()
 
 
 @pytest.fixture

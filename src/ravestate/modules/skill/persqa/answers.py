@@ -42,11 +42,10 @@ def _before(name: str) -> re.Pattern[str]:
 
 def spelled_out(text: str) -> str:
     """Return a text with its short forms written out: *it's* as *it is*."""
-    return re.sub(
-        r"[^\W\d_]+['’][^\W\d_]+|\b(?:im|its|thats|dont|id)\b",
-        lambda w: WRITTEN.get(w[0].lower().replace("’", "'"), w[0]),
-        text,
-    )
+    text = re.sub(r"\b(?:im|its|thats|dont|id)\b", lambda word: WRITTEN.get(word[0].lower(), word[0]), text)
+    for form, full in ((r"n['’]t\b", " not"), (r"['’]m\b", " am"), (r"['’]re\b", " are"), (r"['’]d\b", " would")):
+        text = re.sub(form, full, text)
+    return re.sub(r"\b(it|that|he|she|there|name)['’]s\b", r"\1 is", text, flags=re.IGNORECASE)
 
 
 def answer(text: str, topic: str, seen: nlp.Analysis) -> list[Fact]:
@@ -79,7 +78,7 @@ def _values(rest: str, topic: Topic, seen: nlp.Analysis) -> list[str | None]:
     pieces = [piece for piece in _LISTED.split(rest) if piece] if several else [re.split(r",", rest, maxsplit=1)[0]]
     found: list[str | None] = []
     for piece in pieces[:5]:
-        value = value_of(_HEDGES.sub("", piece.strip()), topic, seen)
+        value = value_of(_HEDGES.sub("", piece.strip()), topic, seen, sure=topic.kind != "place")
         if value is None or not any(map(str.isalnum, value)) or is_remark(value):
             break  # nothing after such a piece is a value
         found.append(value)
@@ -122,11 +121,14 @@ def may_stand_alone(seen: nlp.Analysis) -> bool:
     if seen.yesno and not (opening and seen.text[opening.end() :].strip()):
         return False  # hard to say
     words = [word for word in seen.tree.words if word.pos != "PUNCT"]
-    if words and not {word.pos for word in words} & {"NOUN", "PROPN", "VERB", "ADJ", "NUM", "X", "SYM"}:
+    if words and not {word.pos for word in words} & {"NOUN", "PROPN", "VERB", "ADJ", "NUM", "X", "SYM", "INTJ"}:
         return False
     if len(words) < 3:
         return True  # Bill Gates is not a sentence, although a parser may make one of it
-    return all(_may_answer(said) for said in seen.statements)
+    said = {word.low for word in words}
+    return all(
+        _may_answer(one) for one in seen.statements if one.subject.person != "I" or said & {"i", "we", "i'm", "im"}
+    )
 
 
 def _may_answer(said: nlp.Statement) -> bool:

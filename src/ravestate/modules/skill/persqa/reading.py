@@ -28,6 +28,7 @@ ENDED = ("home", "occupation", "employer", "club")
 _ANY = re.compile(r"(?:any|there$|here$)", re.IGNORECASE)
 _NAMING = frozenset(["'s", "’s", "'", "s", "name", "names", "is", "are", "called", "named", ",", "who", "that"])
 """Words between a relative and their name: *my mother's name is Anna*."""
+_NOUNS = frozenset(["PROPN", "NOUN", "X", "ADJ"])
 _INTRODUCED = frozenset(["be called", "be named", "call", "name"])
 _BE = "be"
 
@@ -117,7 +118,8 @@ class Reader:
                     pursued = link.topic == "liking" and is_gerund(value)
                     _add(told, "hobby" if pursued else link.topic, (value,))
         for topic, values in self._mentioned():
-            _add(told, topic, values)
+            if topic not in gone and values and (topic != NAME or topic not in told):
+                _add(told, topic, values)
         if self.asked == "home" and "origin" in told and "home" not in told:
             told["home"] = told.pop("origin")
         facts = [Fact(topic, values) for topic, values in told.items()]
@@ -202,12 +204,12 @@ class Reader:
         """Return the verbs that a bare answer may begin with."""
         return relations().words["pastimes"]
 
-    def _asked_noun(self, said: nlp.Statement) -> str:
+    def _asked_noun(self, said: nlp.Statement | None) -> str:
         """Return the topic of the noun in *which club am I in*, *which food do I like best*."""
         for word in self._tree.words:
             if word.low in ("which", "what") and self._tree.head(word).pos == "NOUN":
                 noun = self._tree.head(word).lemma
-                likes = said.verb in self._table.words["likes"]
+                likes = said is not None and said.verb in self._table.words["likes"]
                 return favourite(f"favourite {noun}") if likes else self._table.nouns.get(noun, "")
         return ""
 
@@ -288,6 +290,8 @@ class Reader:
         elif object.person == "I" and (topics := self._table.says.get(f"{_predicate(said)} me")):
             yield from (Link(topic, subject) for topic in topics)
         elif topic := self._noun(subject):
+            if object.preposition:
+                return
             if said.verb == _BE or _predicate(said) in _INTRODUCED:
                 sure = (
                     bool(object.names) or subject.head == "name" or said.verb != _BE or TOPICS[topic].kind != "people"
@@ -353,7 +357,9 @@ class Reader:
     def _dangling(self, verb: Word | None) -> Phrase | None:
         """Return the words after a verb and a preposition that the parser has not recognised: *moved to Basel*."""
         preposition = self._tree.after(verb) if verb is not None else None
-        value = self._tree.after(preposition) if preposition is not None and preposition.pos in ("ADP", "PART") else None
+        value = (
+            self._tree.after(preposition) if preposition is not None and preposition.pos in ("ADP", "PART") else None
+        )
         if preposition is None or value is None or value.pos == "PUNCT":
             return None
         return Phrase(" ".join(self._run(value)), preposition=preposition.low)
@@ -378,7 +384,9 @@ class Reader:
     def _being(self, said: nlp.Statement) -> Iterator[Link]:
         """Yield what *I am ...* tells: an age, an occupation, studies, or a name."""
         object = said.object
-        if re.fullmatch(r"\d+( years?( old)?| old)?", object.text) or (object.head == "old" and len(object.text.split()) == 3):
+        if re.fullmatch(r"\d+( years?( old)?| old)?", object.text) or (
+            object.head == "old" and len(object.text.split()) == 3
+        ):
             number = re.match(r"\d+", object.text)
             yield Link("age", object, value=number[0] if number else str(int(object.amount or 0)))
         elif object.head == "member" and object.owner is not None:
@@ -407,13 +415,15 @@ class Reader:
         me = next((w for w in self._tree.words if w.low == "me" and self._tree.head(w).lemma == said.verb), None)
         after = self._tree.after(me) if me is not None else None
         if after is not None and after.pos in ("PROPN", "NOUN", "X", "ADJ", "VERB"):
-            yield Link(NAME, said.object, sure=after.pos == "PROPN" or not said.request, value=" ".join(self._run(after)))
+            yield Link(
+                NAME, said.object, sure=after.pos == "PROPN" or not said.request, value=" ".join(self._run(after))
+            )
 
     def _ended(self, said: nlp.Statement) -> str:
         """Return the topic that *I quit my job*, *I moved away* ends; empty if there is none."""
         if said.subject_person != "I" or said.past:
             return ""
-        parts = (("not " if said.negated else "") + _predicate(said), said.object.head)
+        parts = (("not " if said.negated else "") + _predicate(said), said.object.head or said.object.text.lower())
         return self._table.ends.get(" ".join(filter(None, parts)), "")
 
     def _mentioned(self) -> Iterator[tuple[str, tuple[str, ...]]]:
@@ -428,12 +438,19 @@ class Reader:
                     yield topic, self._people(topic, names)
         words = self._tree.words
         for index, word in enumerate(words):
-            topic = self._relative(word.lemma)
-            rest = words[index + 1 :]
+            mine = word.low == "name" and index and words[index - 1].low == "my"
+            topic = NAME if mine else self._relative(word.lemma)
+            rest = words[index if mine else index + 1 :]
             passed = list(itertools.takewhile(lambda other: other.low in _NAMING, rest))
-            if topic and {"name", "names", "called", "named"} & {other.low for other in passed} and len(passed) < len(rest):
+            if mine and not ({"'s", "’s"} & {other.low for other in passed} and rest[len(passed) :]):
+                continue
+            if (
+                topic
+                and {"name", "names", "called", "named"} & {other.low for other in passed}
+                and len(passed) < len(rest)
+            ):
                 first = rest[len(passed)]
-                names = [" ".join(self._run(one)) for one in (first, *self._joined(first)) if one.pos not in ("DET", "ADV")]
+                names = [" ".join(self._run(one)) for one in (first, *self._joined(first)) if one.pos in _NOUNS]
                 yield topic, self._people(topic, names)
 
     def _named(self, phrase: Phrase) -> tuple[str, tuple[str, ...]]:
@@ -522,12 +539,7 @@ class Reader:
             return ""
         if subject.person == "I":
             thing = said.object
-            fits = (
-                thing.text
-                and not thing.preposition
-                and verb not in (_BE, "have")
-                and thing.person == "other"
-            )
+            fits = thing.text and not thing.preposition and verb not in (_BE, "have") and thing.person == "other"
             mine = "my" in thing.text.lower().split() and not self._happened(said)
             new = not mine and not list(self._links(said))
             return "I" if fits and new and self._is_new(thing) else ""

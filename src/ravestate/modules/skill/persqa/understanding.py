@@ -206,7 +206,8 @@ def _identity(seen: nlp.Analysis, known: Mapping[str, tuple[str, ...]]) -> Meani
     if "deny_identity" in seen.acts and known.get(NAME):
         return Meaning("mistaken")
     match = seen.act("identify")
-    if match is None:
+    asked = any(isinstance(said.triple.object, nlp.QuestionWord) and said.question for said in seen.statements)
+    if match is None or (asked and "guess" not in seen.text.lower()):
         return None
     name = Reader(seen, NAME).remaining_name(match.text)
     return Meaning("identified", (Fact(NAME, (name,)),) if name else ())

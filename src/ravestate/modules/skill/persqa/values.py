@@ -11,9 +11,71 @@ from .kinds import likeness
 from .topics import Topic
 from .wording import tidy
 
-_DETERMINERS = frozenset(["a", "an", "the", "my", "your", "his", "her", "our", "their", "this", "that", "these", "those", "it", "some", "any", "no", "one"])
+_DETERMINERS = frozenset(
+    [
+        "a",
+        "an",
+        "the",
+        "my",
+        "your",
+        "his",
+        "her",
+        "our",
+        "their",
+        "this",
+        "that",
+        "these",
+        "those",
+        "it",
+        "some",
+        "any",
+        "no",
+        "one",
+    ]
+)
 _FUNCTION = frozenset(
-    ["i", "i'm", "me", "you", "he", "she", "we", "they", "it", "him", "them", "us", "myself", "yourself", "is", "are", "was", "were", "be", "am", "do", "does", "did", "has", "have", "had", "will", "would", "can", "could", "not", "no", "what", "why", "how", "when", "where", "who", "if", "because"]
+    [
+        "i",
+        "i'm",
+        "me",
+        "you",
+        "he",
+        "she",
+        "we",
+        "they",
+        "it",
+        "him",
+        "them",
+        "us",
+        "myself",
+        "yourself",
+        "is",
+        "are",
+        "was",
+        "were",
+        "be",
+        "am",
+        "do",
+        "does",
+        "did",
+        "has",
+        "have",
+        "had",
+        "will",
+        "would",
+        "can",
+        "could",
+        "not",
+        "no",
+        "what",
+        "why",
+        "how",
+        "when",
+        "where",
+        "who",
+        "if",
+        "because",
+    ]
 )
 """Grammatical words that no value has."""
 _DEICTIC = re.compile(
@@ -42,7 +104,7 @@ def value_of(text: str, topic: Topic, seen: nlp.Analysis, *, sure: bool = True) 
         if topic.kind == "place"
         else _trimmed(text)
     )
-    text = re.sub(r"\.(?= )", "", text)
+    text = re.sub(r"\.(?= )|,? (?:any ?(?:more|longer)|too|as well|now)$", "", text, flags=re.IGNORECASE)
     words = text.lower().split()
     if topic.kind in ("work", "subject", "activity", "thing") and len(words) > 1 and words[0] in ("a", "an"):
         text, words = text.split(maxsplit=1)[1], words[1:]

@@ -7,7 +7,36 @@ from collections.abc import Iterable, Sequence
 from .topics import TOPICS, Topic
 
 SMALL = frozenset(
-    ["of", "the", "and", "in", "on", "upon", "am", "an", "at", "der", "die", "das", "den", "von", "van", "de", "da", "di", "del", "la", "le", "du", "y", "zu", "near", "for", "bei", "a"]
+    [
+        "of",
+        "the",
+        "and",
+        "in",
+        "on",
+        "upon",
+        "am",
+        "an",
+        "at",
+        "der",
+        "die",
+        "das",
+        "den",
+        "von",
+        "van",
+        "de",
+        "da",
+        "di",
+        "del",
+        "la",
+        "le",
+        "du",
+        "y",
+        "zu",
+        "near",
+        "for",
+        "bei",
+        "a",
+    ]
 )
 """Words without a capital inside a name."""
 
