@@ -23,7 +23,7 @@ TOLD = [
 @pytest.mark.parametrize(("told", "question", "answer"), TOLD, ids=[told for told, _, _ in TOLD])
 def test_a_free_statement_is_answered_now_and_another_day(file: Path, told: str, question: str, answer: str) -> None:
     with agent(file, knower()) as sim:
-        assert answers(sim, question) == "I know it."
+        assert answer not in answers(sim, question)
         sim.say("my name is ada")
         sim.say(told)
         assert answer in answers(sim, question)

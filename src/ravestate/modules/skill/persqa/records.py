@@ -108,7 +108,7 @@ def note_remarks(graph: ontology.Graph, person: ontology.Node, told: Mapping[str
                 "said_at": one.at,
             }
             node = graph.save(ontology.Node("Remark", {name: value for name, value in values.items() if value}))
-            graph.relate(person, REMARK, node)
+            graph.relate(person, REMARK, node, {})
 
 
 def namesakes(graph: ontology.Graph, name: str) -> list[ontology.Node]:

@@ -309,7 +309,7 @@ def _asked(fact: Fact, user: Acquaintance, now: float) -> Response:
 def _struck(meaning: Meaning, user: Acquaintance) -> Response:
     """Forget some of the facts that the user told."""
     facts = meaning.facts
-    told = {key: one for key, one in user.told.items() if one not in meaning.free}
+    told = {key: one for key, one in user.told.items() if key not in {gone.key for gone in meaning.free}}
     gone: dict[str, tuple[str, ...]] = {}
     left = dict(user.facts)
     for fact in facts:

@@ -95,7 +95,7 @@ def learn(ctx: rs.RuleContext) -> None:
 
 @module.rule(
     when=nlp.intent_hi.min_age(HELLO).max_age(None).detached(),
-    reads=(who, facts),
+    reads=(who, facts, told),
     writes=(verbaliser.intent, rawio.output, talk),
     detached=True,
     background=True,

@@ -161,7 +161,8 @@ def _forgetting(
         facts = facts or [
             Fact(fact.topic, fact.values, gone=True) for fact in reader.facts() or filter(None, [reader.asks()])
         ]
-        free = tuple(one for one in told if among(value or "-", (one.subject, one.object)) or one in reader.free())
+        said_again = {one.key for one in reader.free()}
+        free = tuple(one for one in told if among(value or "-", (one.subject, one.object)) or one.key in said_again)
         if facts or free:
             return Meaning("strike", tuple(facts), free=free)
         if object.of("I"):
