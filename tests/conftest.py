@@ -15,6 +15,7 @@ from hypothesis import HealthCheck, settings
 
 _folder = tempfile.TemporaryDirectory(prefix="ravestate-tests-")
 os.environ["XDG_DATA_HOME"] = _folder.name  # for the commands that tests start as well
+os.environ["RAVESTATE_WILDTALK_SEARCH"] = "false"  # no test asks the ports and folders of this machine
 
 _shared = {
     "deadline": None,

@@ -64,7 +64,7 @@ def decide(rounds: int) -> dict[str, list[float]]:
         parts = [getattr(modules, name) for name in COMPLETE]
         with tempfile.TemporaryDirectory() as folder:
             os.environ["XDG_DATA_HOME"] = folder
-            settings = {"idle": {"bored_after": 3600.0}, "emotion": {"emoji": False}}
+            settings = {"idle": {"bored_after": 3600.0}, "emotion": {"emoji": False}, "wildtalk": {"backend": "listen"}}
             async with rs.Context(*parts, settings=settings, seed=1) as context:
                 context.observe(watch)
                 for number in range(rounds + 1):  # the first loads everything

@@ -136,6 +136,37 @@ test("the first screen offers things to say until something is said", async () =
   conversation.stop();
 });
 
+test("a note shows until something is said, once in each browser", async () => {
+  localStorage.clear();
+  const begin = () => {
+    const conversation = new Conversation({ open: TestSocket.make });
+    conversation.start();
+    TestSocket.newest.open();
+    TestSocket.newest.tell({
+      type: "welcome",
+      v: 1,
+      session: "s",
+      resumed: false,
+      first: 1,
+      agent: "Elske",
+      note: "Small talk without a language model.",
+    });
+    return conversation;
+  };
+  const first = begin();
+  const { unmount } = render(Suggestions, { conversation: first });
+  expect(screen.getByText("Small talk without a language model.")).toBeTruthy();
+  first.say("Hello!");
+  await tick();
+  expect(screen.queryByText("Small talk without a language model.")).toBeNull();
+  first.stop();
+  unmount();
+  const second = begin();
+  render(Suggestions, { conversation: second });
+  expect(screen.queryByText("Small talk without a language model.")).toBeNull();
+  second.stop();
+});
+
 test("of five thousand lines only those near the view are in the DOM", async () => {
   const conversation = new Conversation({ open: TestSocket.make });
   conversation.start();

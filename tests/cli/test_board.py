@@ -6,13 +6,16 @@ import signal
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import httpx
 import pytest
 from websockets.sync.client import connect
 
 from board.test_trace_file import recorded
-from ravestate.cli import main
+from ravestate.cli import board, main
+from ravestate.modules.skill.wildtalk import found_models, local_servers
+from ravestate.runtime.agent import Agent
 
 AGENT = """
 import ravestate as rs
@@ -84,6 +87,26 @@ def test_without_modules_it_serves_the_complete_agent(tmp_path: Path) -> None:
             assert answer["text"]
     finally:
         assert command.end() == 0
+
+
+def test_without_a_language_model_the_page_says_how_to_get_one(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    served: list[Agent] = []
+
+    async def serve(made: Agent, *_: Any) -> None:
+        served.append(made)
+
+    monkeypatch.setattr(board, "_serve", serve)
+    monkeypatch.setenv("RAVESTATE_WILDTALK_SEARCH", "true")
+    monkeypatch.setattr(local_servers, "PORTS", {})
+    monkeypatch.setattr(found_models, "folders", list)
+    note = "Small talk without a language model: the agent listens. To talk with a model: ravestate model get."
+    assert main(["board", "wildtalk"]) == 0
+    assert served[0].settings["webio"].note == note
+    assert capsys.readouterr().err == f"ravestate board: s{note[1:-1]}\n"
+    assert main(["board", "wildtalk", "--set", "wildtalk.base_url=http://here/v1", "--set", "wildtalk.model=big"]) == 0
+    assert served[1].settings["webio"].note is None
 
 
 def test_a_recorded_trace_needs_no_agent(tmp_path: Path) -> None:

@@ -14,6 +14,7 @@ from ravestate.cli.complete import COMPLETE
 from ravestate.modules import BUILT_IN
 from ravestate.modules.meta.ontology.opening import default_path
 from ravestate.modules.platform.conio.console import history_file
+from ravestate.modules.skill.wildtalk import found_models, local_servers
 from ravestate.runtime import run as run_file
 
 Capture = pytest.CaptureFixture[str]
@@ -96,6 +97,20 @@ def test_it_needs_no_module() -> None:
     assert parser.parse_args([]).modules == []
 
 
+def test_one_line_says_which_model_talks(started: Any, capsys: Capture, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("RAVESTATE_WILDTALK_SEARCH", "true")
+    monkeypatch.setattr(local_servers, "PORTS", {})
+    monkeypatch.setattr(found_models, "folders", list)
+    line = "ravestate chat: small talk without a language model: the agent listens. To talk with a model: ravestate model get\n"
+    assert call(capsys, "chat") == (0, "", line)
+    assert started[-1][1]["settings"]["wildtalk"]["backend"] == "listen"
+    code, _, errors = call(capsys, "chat", "--set", "wildtalk.model=qwen3-4b")
+    assert code == 0 and "no server on this machine has the model 'qwen3-4b'" in errors
+    assert started[-1][1]["settings"]["wildtalk"] == {"model": "qwen3-4b"}
+    assert call(capsys, "chat", "--set", "wildtalk.backend=listen") == (0, "", "")
+    assert call(capsys, "chat", "--without", "wildtalk") == (0, "", "")
+
+
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no device that is always full")
 def test_output_that_cannot_be_written_is_a_failure() -> None:
     command = [str(Path(sys.executable).parent / "ravestate"), "chat", "--without", "wildtalk"]
@@ -139,8 +154,7 @@ def test_without_the_extra_one_line_says_what_to_type_and_the_agent_talks() -> N
 
 def test_a_module_with_settings_stays(started: Any, capsys: Capture, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "ladybug", None)
-    monkeypatch.setitem(sys.modules, "xllamacpp", None)
-    code, _, errors = call(capsys, "chat", "--set", "ontology.url=bolt://memory", "--set", "wildtalk.model=other")
+    code, _, errors = call(capsys, "chat", "--set", "ontology.url=bolt://memory")
     ((names, _),) = started
     assert (code, errors) == (0, "ravestate chat: pip install 'ravestate[chat]'\n")
     assert names == ["conio", *COMPLETE]

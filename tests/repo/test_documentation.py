@@ -49,7 +49,7 @@ def test_every_extra_is_told() -> None:
 
 
 def test_the_models_are_those_that_make_installs() -> None:
-    found = re.search(r"^MODEL := (.*)$", text_of("Makefile"), re.MULTILINE)
+    found = re.search(r"^SENTENCES := (.*)$", text_of("Makefile"), re.MULTILINE)
     assert found is not None
     page = text_of("docs/how-to/install-it-in-a-project.md")
     assert re.findall(r"pip install --no-deps (\S+)", page) == found[1].split()

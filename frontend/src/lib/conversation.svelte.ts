@@ -1,6 +1,6 @@
 import { Connection, type Options, type Status } from "./connection";
 import { type Message, type Say, type ServerFrame, VERSION } from "./protocol";
-import { announce, type Kept, keep, recall, tokenOfLink } from "./store";
+import { announce, isSeen, type Kept, keep, markSeen, recall, tokenOfLink } from "./store";
 
 export interface Line {
   key: string;
@@ -27,6 +27,8 @@ export class Conversation {
   paused = $state(false);
   /** Things that the visitor could say first. */
   suggestions: readonly string[] = $state.raw([]);
+  /** A line that this browser has not shown before. */
+  note = $state("");
   agent = $state("Ravestate");
   status: Status = $state("connecting");
   /** Whether earlier lines are still arriving after a reload; screen readers need not read them. */
@@ -92,6 +94,8 @@ export class Conversation {
 
   /** Say something. It arrives exactly once, even if the connection breaks. */
   say(text: string): void {
+    markSeen(this.note);
+    this.note = "";
     const say: Say = { type: "say", id: crypto.getRandomValues(new Uint32Array(3)).join("-"), text };
     this.trouble = "";
     this.#told = Number.NEGATIVE_INFINITY; // the next key counts at once
@@ -124,6 +128,7 @@ export class Conversation {
     if (frame.type === "welcome") {
       this.agent = frame.agent;
       this.suggestions = frame.suggestions ?? [];
+      this.note = frame.note !== undefined && !isSeen(frame.note) ? frame.note : "";
       this.#listens = frame.writing === true;
       this.trouble = "";
       if (!frame.resumed) {

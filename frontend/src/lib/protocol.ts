@@ -77,6 +77,8 @@ export interface Welcome {
   writing?: boolean;
   /** A few things that the visitor could say first. */
   suggestions?: string[];
+  /** A line to show once, until the visitor has said something. */
+  note?: string;
 }
 
 /** The agent's new name. */

@@ -36,6 +36,27 @@ export function announce(session: string): void {
   }
 }
 
+const NOTE = "ravestate.note";
+
+/** Return whether this browser has shown a note. */
+export function isSeen(note: string): boolean {
+  try {
+    return localStorage.getItem(NOTE) === note;
+  } catch {
+    return false;
+  }
+}
+
+/** Remember that this browser has shown a note. */
+export function markSeen(note: string): void {
+  if (note === "") return;
+  try {
+    localStorage.setItem(NOTE, note);
+  } catch {
+    // then it is shown again
+  }
+}
+
 /** Return the token of the page's link (`#token=...`), and remove it from the address so that nobody shares it. */
 export function tokenOfLink(): string | undefined {
   const token = new URLSearchParams(location.hash.slice(1)).get("token");

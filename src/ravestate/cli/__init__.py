@@ -25,6 +25,7 @@ COMMANDS = {
     "graph": "draw the Signal-Rule-Slot diagram of the complete agent or of another",
     "nlp": "show what the agent sees in a text: words, names, triples, yes or no, signals",
     "memory": "list, show, export and forget what an agent knows",
+    "model": "list, fetch and remove language models for small talk",
     "genqa": "read documents, and answer questions from them",
     "new": "write a small project to start from",
 }

@@ -57,6 +57,8 @@ def run(options: argparse.Namespace) -> int:
     chosen = agents.load_agent(options, ["webio", *(complete.names(options) if talks and not named else ())])
     if talks and not named:
         complete.leave_out_absent(chosen, options.command)
+    if talks and (offer := complete.choose_small_talk(chosen, options.command)):
+        chosen.settings.setdefault("webio", {}).setdefault("note", offer)
     made = RecordedAgent(*chosen.modules, **chosen.options())
     title = getattr(made.settings[webio.module.name], "title", None)
     beside = routes(made.recorders, recording, title)

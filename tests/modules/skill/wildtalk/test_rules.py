@@ -1,6 +1,7 @@
 """Small talk as a module: with a simulated model in virtual time, and with the real one."""
 
 import asyncio
+import threading
 from collections.abc import AsyncGenerator, Sequence
 from contextlib import suppress
 from typing import Any
@@ -10,9 +11,13 @@ import pytest
 import ravestate as rs
 from ravestate.errors import DeclarationErrors, PlatformError
 from ravestate.modules import rawio, wildtalk
+from ravestate.modules.skill.wildtalk import rules
 from ravestate.modules.skill.wildtalk.backend import Message, Progress
+from ravestate.modules.skill.wildtalk.choosing import Choice, choose
+from ravestate.modules.skill.wildtalk.listening import TO_A_REMARK, ListeningBackend
 from ravestate.modules.skill.wildtalk.llama import LlamaBackend
 from ravestate.modules.skill.wildtalk.openai import OpenAIBackend
+from ravestate.modules.skill.wildtalk.pending import PendingBackend
 from ravestate.modules.skill.wildtalk.rules import KEPT, make_backend
 from ravestate.modules.skill.wildtalk.transformers import TransformersBackend
 from ravestate.testing import Simulation, simulate
@@ -213,6 +218,7 @@ def test_a_failing_model_is_logged_once_and_the_conversation_goes_on(
 @pytest.mark.parametrize(
     ("settings", "message"),
     [
+        ({"model": "qwen9"}, "wildtalk: no server on this machine has the model 'qwen9'"),
         ({"model_path": "/nowhere/big.gguf"}, "wildtalk: the model '/nowhere/big.gguf' does not exist"),
         ({"backend": "openai", "base_url": "here"}, "base_url 'here' is not a web address"),
     ],
@@ -227,6 +233,57 @@ def test_an_impossible_model_is_logged_once_at_the_start(
         assert sim.said == [Settings().no_model]
     assert len(caplog.records) == 1
     assert not sim.failures
+
+
+def test_a_bare_machine_listens() -> None:
+    with simulate(wildtalk) as sim:
+        assert isinstance(sim.read(wildtalk.model), ListeningBackend)
+        sim.say("I bought a bike.")
+        assert len(sim.said) == 1
+    assert not sim.failures
+
+
+class Choosing:
+    """A choice that takes until `go`."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        self.begun, self.go = asyncio.Event(), threading.Event()
+        self.loop = asyncio.get_running_loop()
+        monkeypatch.setattr(rules, "choose", self.choose)
+
+    def choose(self, settings: Settings) -> Choice:
+        self.loop.call_soon_threadsafe(self.begun.set)
+        assert self.go.wait(60)
+        return choose(settings)
+
+
+def test_words_that_are_said_during_the_choice_are_answered_after_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    async def main() -> str:
+        choosing = Choosing(monkeypatch)
+        async with rs.Context(wildtalk) as context:
+            await choosing.begun.wait()
+            context.put(rawio.input, "I bought a bike.")
+            asyncio.get_running_loop().call_soon(choosing.go.set)
+            return await context.next(rawio.output.changed, timeout=60)
+
+    assert asyncio.run(main()) in TO_A_REMARK
+
+
+def test_the_choice_does_not_replace_a_backend_that_the_designer_wrote(monkeypatch: pytest.MonkeyPatch) -> None:
+    own = Model("Mine.")
+
+    async def main() -> rs.Context:
+        choosing = Choosing(monkeypatch)
+        async with rs.Context(wildtalk) as context:
+            await choosing.begun.wait()
+            assert isinstance(context.read(wildtalk.model), PendingBackend)
+            context.put(wildtalk.model, own)
+            asyncio.get_running_loop().call_soon(choosing.go.set)
+            context.put(rawio.input, "Hello!")
+            assert await context.next(rawio.output.changed, timeout=60) == "Mine."
+        return context
+
+    assert asyncio.run(main()).read(wildtalk.model) is own
 
 
 def test_it_makes_up_no_facts_unless_it_may() -> None:
@@ -298,11 +355,12 @@ def test_nothing_that_is_said_at_once_is_forgotten() -> None:
 
 
 def test_the_settings_choose_the_model() -> None:
-    assert isinstance(make_backend(Settings(model_path="x.gguf")), LlamaBackend)  # type: ignore[arg-type]
+    assert isinstance(make_backend(Settings(backend="gguf", model_path="x.gguf")), LlamaBackend)  # type: ignore[arg-type]
     server = make_backend(Settings(backend="openai", base_url="http://here/v1", model="big", api_key="k"))  # type: ignore[arg-type]
     assert isinstance(server, OpenAIBackend)
     assert repr(server) == "OpenAIBackend('http://here/v1', 'big')"
     assert isinstance(make_backend(Settings(backend="transformers")), TransformersBackend)
+    assert isinstance(make_backend(Settings(backend="listen", model_path="x.gguf")), ListeningBackend)  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize(
@@ -327,7 +385,7 @@ def test_a_secret_stays_one() -> None:
 @pytest.mark.model
 def test_with_the_real_model_a_piece_shows_before_the_whole() -> None:
     async def main() -> None:
-        async with rs.Context(wildtalk, watcher, seed=1) as context:
+        async with rs.Context(wildtalk, watcher, settings={"wildtalk": {"model": "smollm2-135m"}}, seed=1) as context:
             context.put(rawio.input, "Hello! How are you?")
             whole = await context.next(rawio.output.changed, timeout=60)
             assert len(SHOWN) > 1

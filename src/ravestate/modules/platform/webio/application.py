@@ -52,7 +52,7 @@ def make_app(agent: Agent, routes: Iterable[BaseRoute] = (), inside: str | None 
 
     async def connect(socket: WebSocket) -> None:
         title, suggestions = settings.title, settings.suggestions
-        await Connection(socket, sessions, access, title, inside, suggestions).run()
+        await Connection(socket, sessions, access, title, inside, suggestions, settings.note).run()
 
     @contextlib.asynccontextmanager
     async def lifespan(_: Starlette) -> AsyncGenerator[None]:

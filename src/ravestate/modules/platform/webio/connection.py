@@ -57,6 +57,7 @@ class Connection:
         title: The agent's name on the page; None for its own name.
         inside: The path of the board, e.g. ``board/``; None if there is none.
         suggestions: Things that the visitor could say first.
+        note: A line that the page shows once; None for none.
     """
 
     def __init__(
@@ -67,6 +68,7 @@ class Connection:
         title: str | None = None,
         inside: str | None = None,
         suggestions: tuple[str, ...] = (),
+        note: str | None = None,
     ) -> None:
         self._socket = socket
         self._sessions = sessions
@@ -74,6 +76,7 @@ class Connection:
         self._title = title
         self._inside = inside
         self._suggestions = suggestions
+        self._note = note
         self._channel = Channel(socket, REPLIES)
 
     async def run(self) -> None:
@@ -95,9 +98,8 @@ class Connection:
             last = hello.last if resumed and hello.last <= session.history.last else 0
             first, newest = session.history.first, session.history.last
             agent = self._name_of(session)
-            await self._send(
-                Welcome(VERSION, session.id, resumed, first, agent, self._inside, newest, True, self._suggestions)
-            )
+            begin = (VERSION, session.id, resumed, first, agent, self._inside, newest, True)
+            await self._send(Welcome(*begin, self._suggestions, self._note))
             await self._channel.both(self._read(session), self._write(session, max(last, first - 1), agent))
         finally:
             self._sessions.exit(session, self)

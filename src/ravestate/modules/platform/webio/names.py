@@ -42,6 +42,8 @@ class Settings(rs.Settings):
         ("Hello!", "Who are you?", "What can you do?"), max_length=6
     )
     """Things to say that the page offers until the visitor has said something."""
+    note: Annotated[str, pydantic.Field(min_length=1, max_length=300)] | None = None
+    """A line that the page shows once in each browser, until the visitor has said something."""
     keep: float = pydantic.Field(600.0, ge=0, allow_inf_nan=False)
     """Seconds for which the server keeps a conversation after its visitor has disconnected."""
     sessions: int = pydantic.Field(1000, ge=1)

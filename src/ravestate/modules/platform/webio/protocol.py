@@ -200,6 +200,7 @@ class Welcome:
         last: The number of the newest message; 0 before the first.
         writing: Whether the server takes `Writing`. The first servers did not.
         suggestions: A few things that the visitor could say first.
+        note: A line to show once, until the visitor has said something.
     """
 
     v: Version
@@ -211,6 +212,7 @@ class Welcome:
     last: Number = 0
     writing: Truth = False
     suggestions: tuple[Text, ...] = ()
+    note: Text | None = None
     type: Literal["welcome"] = "welcome"
 
 

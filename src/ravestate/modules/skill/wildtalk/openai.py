@@ -248,7 +248,7 @@ class OpenAIBackend:
     def _document(self, payload: str) -> dict[str, Any]:
         try:
             document = json.loads(payload)
-        except ValueError:
+        except (RecursionError, ValueError):
             document = None
         if not isinstance(document, dict):
             raise PlatformError(f"wildtalk: {self._place} sent no JSON object: {self._safe(_short(payload))}")
@@ -333,7 +333,7 @@ def _error(body: str) -> Mapping[str, Any]:
     """Return the part of an error's body with the reason; servers differ in where they put it."""
     try:
         document: Any = json.loads(body)
-    except ValueError:
+    except (RecursionError, ValueError):
         return {}
     error: Any = cast("dict[str, Any]", document).get("error", document) if isinstance(document, dict) else document
     return cast("dict[str, Any]", error) if isinstance(error, dict) else {"message": error}

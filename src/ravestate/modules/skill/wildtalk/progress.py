@@ -21,9 +21,10 @@ class ProgressBar:
         ```
     """
 
-    def __init__(self, label: str, *, delay: float = 1.0, stream: TextIO | None = None) -> None:
-        """`stream`: where to show it, by default standard error at the first call."""
+    def __init__(self, label: str, *, delay: float = 1.0, stream: TextIO | None = None, size: int = 0) -> None:
+        """`stream`: where to show it, by default standard error at the first call; `size`: bytes, to show the speed."""
         self._label = label
+        self._size = size
         self._delay = delay
         self._stream = stream
         self._began = time.monotonic()
@@ -50,13 +51,16 @@ class ProgressBar:
             except ImportError:
                 return
             self._bar = tqdm(
-                total=100,
+                total=self._size or 100,
                 desc=self._label,
                 file=stream,
                 leave=False,
-                bar_format="{desc}: {bar} {percentage:3.0f} %",
+                unit="B",
+                unit_scale=True,
+                initial=round(self._size * fraction),  # a continued download has bytes already
+                bar_format=None if self._size else "{desc}: {bar} {percentage:3.0f} %",
             )
-        self._bar.update(round(100 * fraction) - self._bar.n)
+        self._bar.update(round(self._bar.total * fraction) - self._bar.n)
 
     def close(self) -> None:
         """Remove the bar."""

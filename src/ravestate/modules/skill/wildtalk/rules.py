@@ -4,19 +4,21 @@ from __future__ import annotations
 
 import asyncio
 from contextlib import aclosing
+from typing import cast
 
 import ravestate as rs
 from ravestate.errors import PlatformError
-from ravestate.language.bundled import ModelMissing, warn_once
 from ravestate.modules import interloc, rawio
 
 from .backend import Backend, Message, Role
+from .choosing import choose
 from .facts import asks_for_fact
 from .history import History
 from .listening import ListeningBackend
-from .llama import LlamaBackend, bundled_model, checked_model
-from .names import Settings, history, model, module, trouble
+from .llama import LlamaBackend, checked_model
+from .names import OLLAMA, Settings, chosen, history, model, module, trouble
 from .openai import OpenAIBackend
+from .pending import PendingBackend
 from .progress import ProgressBar
 from .transformers import TransformersBackend
 from .utterance import Utterance
@@ -31,19 +33,32 @@ LONGEST = 20_000
 """Characters of a message in the history; longer ones are cut."""
 
 
-@module.rule(when=rs.startup, writes=(model, trouble))
+@module.rule(when=rs.startup, writes=(model, trouble), emits=chosen)
 async def choose_model(ctx: rs.RuleContext) -> None:
-    """Make the backend from the settings. A model file is checked now, and loaded at the first question."""
-    settings: Settings = ctx.settings
+    """Choose the backend. Early answers wait for the choice; a model is loaded at the first question."""
+    pending, backend, fault = PendingBackend(), None, None
+    ctx[model] = pending
     try:
-        ctx[model] = make_backend(settings)
-        if settings.backend == "llama":
-            await asyncio.to_thread(checked_model, settings.model_path)
-    except ModelMissing as error:
-        warn_once(ctx.log, error)
-        ctx[model] = ListeningBackend()
+        choice = await asyncio.to_thread(choose, ctx.settings)
+        ctx.log.info("%s", choice.text)
+        backend = make_backend(choice.settings)
+        if choice.settings.backend == "gguf" and choice.settings.model_path is not None:
+            await asyncio.to_thread(checked_model, choice.settings.model_path)
     except PlatformError as error:
+        fault = error
         tell(ctx, error)
+    finally:
+        ctx.emit(chosen, backend)
+        pending.resolve(backend, fault)
+
+
+@module.rule(when=chosen.max_age(None).detached(), writes=model)
+async def use(ctx: rs.RuleContext) -> rs.Resign | None:
+    """Replace the stand-in by the chosen backend, unless the designer has written one of their own."""
+    if not isinstance(ctx[model], PendingBackend):
+        return rs.Resign("there is another backend already")
+    ctx[model] = cast("Backend | None", ctx.payload(chosen))
+    return None
 
 
 @module.rule(when=rs.shutdown, reads=model)
@@ -168,15 +183,14 @@ def remember(ctx: rs.RuleContext, role: Role, text: str) -> None:
 
 
 def make_backend(settings: Settings) -> Backend:
-    """Return the backend that `settings` name.
+    """Return the backend that `settings` name; `choose` completes settings that leave it open.
 
     Raises:
         PlatformError: The server's address is malformed.
-        ModelMissing: The package of the bundled model is not installed.
     """
     if settings.backend == "openai":
         return OpenAIBackend(
-            settings.base_url,
+            settings.base_url or OLLAMA,
             settings.model or "llama3.2",
             api_key=settings.api_key,
             connect_timeout=settings.connect_timeout,
@@ -184,11 +198,11 @@ def make_backend(settings: Settings) -> Backend:
         )
     if settings.backend == "transformers":
         return TransformersBackend(settings.model or "gpt2", read_timeout=settings.read_timeout)
-    if settings.model_path is None:
-        bundled_model()
-    return LlamaBackend(
-        settings.model_path,
-        context_tokens=settings.context_tokens,
-        threads=settings.threads,
-        read_timeout=settings.read_timeout,
-    )
+    if settings.backend == "gguf" and settings.model_path is not None:
+        return LlamaBackend(
+            settings.model_path,
+            context_tokens=settings.context_tokens,
+            threads=settings.threads,
+            read_timeout=settings.read_timeout,
+        )
+    return ListeningBackend()

@@ -1,0 +1,117 @@
+"""Chat models in the folders of the programs that run models on this machine."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from .gguf_header import read_header
+from .model_store import folder
+
+LEAST = 450_000_000
+"""The smallest number of parameters: half a billion, as rounded in models' names."""
+
+FLUENT = 4_500_000_000
+"""The largest number of parameters with which a processor without a graphics card talks fluently."""
+
+SHARE = 0.6
+"""The share of this machine's memory that a model's file may take."""
+
+MANY = 50_000
+"""The maximum number of files and folders that a search looks at."""
+
+NOT_CHAT = ("embed", "rerank", "mmproj", "draft", "-vocab", "-of-0")
+"""Parts of file names of other models, and of models in several files."""
+
+
+@dataclass(frozen=True, slots=True)
+class FoundModel:
+    """A chat model in a file."""
+
+    path: Path
+    parameters: int
+    size: int
+    """Bytes."""
+
+
+def folders() -> list[Path]:
+    """Return the model folders of this user, Ravestate's own first. They may not exist."""
+    try:
+        own, home = folder(), Path.home()
+    except RuntimeError:  # the user has no home
+        return []
+    cache = _from("XDG_CACHE_HOME") or home / ".cache"
+    data = _from("XDG_DATA_HOME") or home / ".local" / "share"
+    applications = home / "Library" / "Application Support" if sys.platform == "darwin" else data
+    hub = _from("HF_HUB_CACHE") or (_from("HF_HOME") or cache / "huggingface") / "hub"
+    llama = home / "Library" / "Caches" / "llama.cpp" if sys.platform == "darwin" else cache / "llama.cpp"
+    return [
+        own,
+        home / ".lmstudio" / "models",
+        home / ".cache" / "lm-studio" / "models",
+        hub,
+        _from("LLAMA_CACHE") or llama,
+        applications / "nomic.ai" / "GPT4All",
+        applications / "Jan" / "data",
+    ]
+
+
+def find_models(places: Iterable[Path] | None = None) -> list[FoundModel]:
+    """Return the chat models of at least half a billion parameters in some folders, by default the user's.
+
+    Files that cannot be read are left out. A file that several links name is listed once.
+    """
+    found: dict[Path, FoundModel] = {}
+    for file in _files(folders() if places is None else places):
+        try:
+            real = file.resolve()
+            header = read_header(real)
+            if header.chats and header.parameters >= LEAST and real not in found:
+                found[real] = FoundModel(file, header.parameters, real.stat().st_size)
+        except (OSError, ValueError):
+            continue
+    return list(found.values())
+
+
+def best_model(models: Iterable[FoundModel], memory: int | None = None) -> FoundModel | None:
+    """Return the largest model that talks fluently, otherwise the smallest; None if none fits into memory.
+
+    Args:
+        models: The models to choose from.
+        memory: Bytes; by default this machine's.
+    """
+    most = (memory or _memory()) * SHARE
+    fitting = [model for model in models if model.size <= most]
+    fluent = [model for model in fitting if model.parameters <= FLUENT]
+    if fluent:
+        return max(fluent, key=lambda model: model.parameters)
+    return min(fitting, key=lambda model: model.parameters, default=None)
+
+
+def _files(places: Iterable[Path]) -> Iterator[Path]:
+    left = MANY
+    for place in places:
+        for at, inside, files in os.walk(place):
+            inside.sort()
+            left -= len(inside) + len(files)
+            if left < 0:
+                return
+            for name in sorted(files):
+                if name.lower().endswith(".gguf") and not any(part in name.lower() for part in NOT_CHAT):
+                    yield Path(at, name)
+
+
+def _memory() -> float:
+    """Return this machine's memory in bytes; infinity if the system does not say."""
+    try:
+        return float(os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES"))
+    except (AttributeError, OSError, ValueError):
+        return float("inf")
+
+
+def _from(variable: str) -> Path | None:
+    given = os.environ.get(variable, "")
+    return Path(given) if Path(given).is_absolute() else None

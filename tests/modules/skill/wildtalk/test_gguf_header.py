@@ -1,0 +1,66 @@
+"""The header of a GGUF file, whole and broken."""
+
+from pathlib import Path
+
+import pytest
+
+from modules.skill.wildtalk.stand_ins import write_gguf
+from ravestate.modules.skill.wildtalk import gguf_header
+from ravestate.modules.skill.wildtalk.gguf_header import GgufHeader, read_header
+
+
+def test_it_states_the_architecture_and_the_parameters(tmp_path: Path) -> None:
+    file = write_gguf(tmp_path / "a.gguf", 1_543_714_304)
+    assert read_header(file) == GgufHeader("qwen2", 1_543_714_304, chats=True)
+
+
+@pytest.mark.parametrize("options", [{"chats": False}, {"pools": True}, {"kind": "adapter"}, {"kind": "mmproj"}])
+def test_a_model_without_a_template_or_with_an_embedding_is_no_chat_model(
+    tmp_path: Path, options: dict[str, bool]
+) -> None:
+    assert not read_header(write_gguf(tmp_path / "a.gguf", **options)).chats  # type: ignore[arg-type]
+
+
+def test_a_file_that_changed_is_read_again(tmp_path: Path) -> None:
+    assert read_header(write_gguf(tmp_path / "a.gguf", 10_000)).parameters == 10_000
+    assert read_header(write_gguf(tmp_path / "a.gguf", 20_000, words=60)).parameters == 20_000
+
+
+@pytest.mark.parametrize("length", [0, 3, 7, 24, 60, 500, 900])
+def test_a_file_that_is_cut_short_is_refused(tmp_path: Path, length: int) -> None:
+    file = write_gguf(tmp_path / "a.gguf", words=100)
+    file.write_bytes(file.read_bytes()[:length])
+    with pytest.raises(ValueError, match=r"GGUF file|cut short"):
+        read_header(file)
+
+
+def test_weights_that_are_missing_are_noticed(tmp_path: Path) -> None:
+    file = write_gguf(tmp_path / "a.gguf", words=0)
+    file.write_bytes(file.read_bytes()[:-80].rstrip(b"\0"))
+    with pytest.raises(ValueError, match=r"GGUF file|cut short"):
+        read_header(file)
+
+
+def test_other_files_and_nested_arrays_and_endless_headers_are_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    file = tmp_path / "a.gguf"
+    file.write_bytes(b"GGML" + bytes(100))
+    with pytest.raises(ValueError, match="not a GGUF file"):
+        read_header(file)
+    whole = write_gguf(file).read_bytes()
+    file.write_bytes(whole.replace(b"token_type" + b"\x09\0\0\0\x05", b"token_type" + b"\x09\0\0\0\x09"))
+    with pytest.raises(ValueError, match="nested"):
+        read_header(file)
+    write_gguf(file)
+    monkeypatch.setattr(gguf_header, "LARGEST", 100)
+    gguf_header._read.cache_clear()
+    with pytest.raises(ValueError, match="too large"):
+        read_header(file)
+
+
+@pytest.mark.model
+def test_the_header_of_a_real_model() -> None:
+    from ravestate.modules.skill.wildtalk.llama import bundled_model
+
+    assert read_header(bundled_model()) == GgufHeader("llama", 134_515_008, chats=True)

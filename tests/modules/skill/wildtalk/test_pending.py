@@ -1,0 +1,43 @@
+"""Calls during the choice of a backend."""
+
+import asyncio
+
+import pytest
+
+from ravestate.errors import PlatformError
+from ravestate.modules.skill.wildtalk.backend import Message
+from ravestate.modules.skill.wildtalk.listening import ListeningBackend
+from ravestate.modules.skill.wildtalk.pending import PendingBackend
+
+
+def test_calls_wait_for_the_chosen_backend() -> None:
+    async def main() -> None:
+        pending = PendingBackend()
+
+        async def answer() -> str:
+            await pending.load()
+            return "".join([piece async for piece in pending.stream([Message("user", "Hello.")], seed=1)])
+
+        waiting = asyncio.create_task(answer())
+        gone = asyncio.create_task(pending.load())
+        await asyncio.sleep(0)
+        assert not waiting.done()
+        gone.cancel()
+        pending.resolve(ListeningBackend())
+        assert await waiting
+        await pending.close()
+
+    asyncio.run(main())
+
+
+def test_without_a_backend_they_fail_with_the_reason() -> None:
+    async def main() -> None:
+        pending, other = PendingBackend(), PendingBackend()
+        pending.resolve(None, PlatformError("no such file"))
+        other.resolve(None)
+        with pytest.raises(PlatformError, match="no such file"):
+            await pending.load()
+        with pytest.raises(PlatformError, match="before it had a model"):
+            await other.load()
+
+    asyncio.run(main())
