@@ -217,7 +217,7 @@ class Reader:
         """Return the topic of a relative that the user has, but does not name: *I have two brothers*."""
         for said in self.seen.statements:
             topic = self._table.nouns.get(said.object.head, "")
-            if topic and TOPICS[topic].nouns and said.holds and said.subject_person == "I" and said.verb == "have":
+            if topic and TOPICS[topic].nouns and said.holds and self._has(said):
                 return topic
         return ""
 
@@ -322,7 +322,7 @@ class Reader:
         likes = self._table.words["likes"]
         verbs = predicate.split()
         asked = isinstance(said.triple.object, nlp.QuestionWord)
-        if said.verb == "have":
+        if self._has(said):
             if (topic := self._table.nouns.get(object.head, "")) and (said.negated or object.names or said.question):
                 yield Link(topic, object if object.names else None)
             return
@@ -381,6 +381,11 @@ class Reader:
         written = self._span(verb.low if verb else verbs[-1], Phrase("") if free else object)
         return Link("hobby", object if object.text else said.subject, value=written) if written else None
 
+    def _has(self, said: nlp.Statement) -> bool:
+        """Return whether the user says what they have: *I have*, *I've got*."""
+        got = said.verb == "get" and any(word.low in ("got", "gotten") for word in self._tree.words)
+        return said.subject.person == "I" and (said.verb == "have" or got)
+
     def _being(self, said: nlp.Statement) -> Iterator[Link]:
         """Yield what *I am ...* tells: an age, an occupation, studies, or a name."""
         object = said.object
@@ -432,7 +437,7 @@ class Reader:
             return
         for said in self.seen.statements:
             for phrase in (said.subject, said.object, *said.phrases):
-                mine = phrase.of("I") or (said.subject_person == "I" and said.verb == "have" and not said.negated)
+                mine = phrase.of("I") or (self._has(said) and not said.negated)
                 topic, names = self._named(phrase)
                 if topic and names and mine:
                     yield topic, self._people(topic, names)

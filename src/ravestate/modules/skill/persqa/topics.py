@@ -128,9 +128,14 @@ def favourite(words: str) -> str:
     return re.sub(r"^favou?rite", "favourite", words.lower().strip())
 
 
+def is_topic(name: str) -> bool:
+    """Return whether there is a topic of this name; any favourite is one."""
+    return name in TOPICS or name.startswith("favourite ")
+
+
 def about(relation: str, role: object) -> str:
     """Return the topic of a relation in memory; empty if there is none."""
-    if isinstance(role, str) and (role in TOPICS or role.startswith("favourite ")):
+    if isinstance(role, str) and is_topic(role):
         return role if TOPICS[role].relation == relation else ""
     return next((t.name for t in TOPICS.values() if t.relation == relation and not t.role), "")
 

@@ -14,7 +14,7 @@ from .answers import answer, correction, may_stand_alone, spelled_out
 from .reading import Reader, relations
 from .talk import CONFIRM, FORGET, Talk
 from .told import Told
-from .topics import NAME, TOPICS, Fact
+from .topics import NAME, TOPICS, Fact, is_topic
 from .wording import among
 
 EVERYTHING = "everything"
@@ -74,7 +74,7 @@ def understand(
     """Return the meaning of an utterance at `now`; a question waits `within` seconds for its answer."""
     pending = talk.pending(now, within)
     topic = pending.topic if pending else ""
-    reader = Reader(seen, talk.doubt if topic == CONFIRM else topic if topic in TOPICS else "")
+    reader = Reader(seen, talk.doubt if topic == CONFIRM else topic if is_topic(topic) else "")
     acts = _acts(seen)
     leave = seen.intent_bye or "farewell" in seen.acts
     wish = _forgetting(seen, reader, known, told)
@@ -85,7 +85,7 @@ def understand(
         return _of_forgetting(seen, leave) if fresh else Meaning("nothing", leave=leave)
     if wish is not None:
         return wish
-    if pending is not None and topic in TOPICS and not pending.turns and "refuse" in acts:
+    if pending is not None and is_topic(topic) and not pending.turns and "refuse" in acts:
         return Meaning("declined", topic=topic)
     if topic == CONFIRM and (vouched := _vouched(seen, reader, talk.doubt, acts)):
         return vouched
@@ -112,7 +112,7 @@ def understand(
         put_right = correction(text, talk.correctable, talk.latest, seen, explicit=pending is not None)
         if put_right:
             return Meaning("corrected", tuple(put_right), talk.correctable)
-    if pending is None or topic not in TOPICS:
+    if pending is None or not is_topic(topic):
         return Meaning("nothing")
     return _of_answer(seen, text, topic, acts, fresh=pending.fresh)
 
@@ -165,7 +165,7 @@ def _forgetting(
         free = tuple(one for one in told if among(value or "-", (one.subject, one.object)) or one.key in said_again)
         if facts or free:
             return Meaning("strike", tuple(facts), free=free)
-        if object.of("I"):
+        if object.of("I") or any(other.subject.person == "I" for other in seen.statements):
             return Meaning("strike")
     match = seen.act("forget_me")
     verbs = {said.verb for said in seen.statements}
