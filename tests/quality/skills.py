@@ -19,10 +19,11 @@ from ravestate.modules.skill.agentqa.router import Match, router_of
 from ravestate.modules.skill.genqa.question import as_question
 from ravestate.modules.skill.genqa.referring import Before, completed
 from ravestate.modules.skill.hibye.words import is_farewell, is_greeting
+from ravestate.modules.skill.persqa import kinds
 from ravestate.modules.skill.persqa.reading import Reader
 from ravestate.modules.skill.persqa.talk import Talk
+from ravestate.modules.skill.persqa.told import told_in
 from ravestate.modules.skill.persqa.topics import Fact
-from ravestate.modules.skill.persqa import kinds
 from ravestate.modules.skill.persqa.understanding import understand
 from ravestate.modules.skill.wildtalk.facts import asks_for_fact
 
@@ -79,7 +80,7 @@ def facts(sentence: str) -> str:
     """
     _load()
     reader = Reader(_seen(sentence))
-    free = [f"{told.subject} / {told.verb} / {told.object}" for told in reader.free()]
+    free = [f"{told.subject} / {told.verb} / {told.object}" for told in told_in(reader)]
     return "; ".join([*map(_label, sorted(reader.facts(), key=lambda fact: fact.topic)), *free]) or "-"
 
 

@@ -10,7 +10,7 @@ from ravestate.language.contractions import WRITTEN
 from ravestate.modules import nlp
 
 from .kinds import is_remark
-from .reading import Reader, relations
+from .relations import relations
 from .topics import TOPICS, Fact, Topic
 from .values import value_of
 
@@ -134,7 +134,7 @@ def may_stand_alone(seen: nlp.Analysis) -> bool:
 def _may_answer(said: nlp.Statement) -> bool:
     subject = said.subject
     if subject.person == "you":
-        return said.verb in Reader.activities()
+        return said.verb in relations().words["pastimes"]
     if subject.person == "I":
         if f"i {said.verb}" in map(str.lower, relations().words["openers"]):
             return True

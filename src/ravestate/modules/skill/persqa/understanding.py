@@ -11,9 +11,10 @@ from ravestate.modules import nlp
 
 from . import kinds
 from .answers import answer, correction, may_stand_alone, spelled_out
-from .reading import Reader, relations
+from .reading import Reader
+from .relations import relations
 from .talk import CONFIRM, FORGET, Talk
-from .told import Told
+from .told import Told, answers_in, told_in
 from .topics import NAME, TOPICS, Fact, is_topic
 from .wording import among
 
@@ -93,7 +94,7 @@ def understand(
     if (asks or "ask_everything" in acts) and (inquiry := _inquiry(seen, reader, acts, known, told)):
         return inquiry
     facts = [fact for fact in reader.facts(known) if not fact.gone or _matters(fact, known, topic)]
-    free = tuple(reader.free())
+    free = tuple(told_in(reader))
     aside = leave or asks
     if facts or free:
         return Meaning("told", tuple(facts), topic, leave, aloud=bool(facts) and not aside, free=free)
@@ -157,11 +158,11 @@ def _forgetting(
             return Meaning("forget") if about_me else None
         value = object.text
         facts = [Fact(topic, (value,), gone=True) for topic, values in known.items() if value and among(value, values)]
-        facts = facts or [Fact(topic, (), gone=True) for topic in reader.topics_of(object)]
+        facts = facts or [Fact(topic, (), gone=True) for topic in filter(None, [reader.noun(object)])]
         facts = facts or [
             Fact(fact.topic, fact.values, gone=True) for fact in reader.facts() or filter(None, [reader.asks()])
         ]
-        said_again = {one.key for one in reader.free()}
+        said_again = {one.key for one in told_in(reader)}
         free = tuple(one for one in told if among(value or "-", (one.subject, one.object)) or one.key in said_again)
         if facts or free:
             return Meaning("strike", tuple(facts), free=free)
@@ -210,7 +211,7 @@ def _identity(seen: nlp.Analysis, known: Mapping[str, tuple[str, ...]]) -> Meani
     asked = any(isinstance(said.triple.object, nlp.QuestionWord) and said.question for said in seen.statements)
     if match is None or (asked and "guess" not in seen.text.lower()):
         return None
-    name = Reader(seen, NAME).remaining_name(match.text)
+    name = Reader(seen).remaining_name()
     return Meaning("identified", (Fact(NAME, (name,)),) if name else ())
 
 
@@ -225,19 +226,22 @@ def _inquiry(
         return Meaning("asked", (Fact(EVERYTHING, ()),))
     if asked := reader.asks():
         return Meaning("asked", (asked,))
+    wished = any(said.plan for said in seen.statements)  # do you want to know my name
     for said in seen.statements:
-        if said.plan:
-            continue
-        if said.question and said.verb in relations().words["knowing"] and (topics := reader.topics_of(said.object)):
-            return Meaning("asked", (Fact(topics[0], ()),))
-    if "ask_name" in acts and not any(said.plan for said in seen.statements):
-        return Meaning("asked", (Fact(NAME, ()),))
-    for name in reader.people_asked():
-        for topic, values in known.items():
-            if TOPICS[topic].nouns and among(name, values):
+        if said.question and not wished and said.verb in ("be", *relations().words["knowing"]):
+            if topic := reader.noun(said.object) or _topic_of(said, known):
                 return Meaning("asked", (Fact(topic, ()),))
-    found = reader.told_asked(told, known)
+    if "ask_name" in acts and not wished:
+        return Meaning("asked", (Fact(NAME, ()),))
+    found = answers_in(reader, told, known)
     return Meaning("asked_told", free=tuple(found)) if found else None
+
+
+def _topic_of(said: nlp.Statement, known: Mapping[str, tuple[str, ...]]) -> str:
+    """Return the topic of a person whom a question names: *who is Emma*."""
+    named = [phrase.text for phrase in (said.subject, said.object, *said.phrases) if phrase.text]
+    people = ((topic, value) for topic, values in known.items() if TOPICS[topic].nouns for value in values)
+    return next((topic for topic, value in people if among(value, named)), "")
 
 
 def _of_user(seen: nlp.Analysis) -> bool:
