@@ -24,13 +24,13 @@ FITTING = {
 @cache
 def nouns() -> Matcher:
     """Return the classifier of nouns, loaded or not."""
-    return Matcher(read_examples(files(__package__) / "nouns.yaml").classes, least=0.0, shapes=0.0)
+    return Matcher(read_examples(files(__name__.rpartition(".")[0]) / "nouns.yaml").classes, least=0.0, shapes=0.0)
 
 
 @cache
 def acts() -> Matcher:
     """Return the classifier of what the user does towards the agent's questions, loaded or not."""
-    found = read_examples(files(__package__) / "acts.yaml")
+    found = read_examples(files(__name__.rpartition(".")[0]) / "acts.yaml")
     return Matcher(found.classes, found.none)
 
 

@@ -83,14 +83,12 @@ class Reader:
     def asks(self) -> Fact | None:
         """Return the fact that the user asks for; it has values if they want them confirmed."""
         kind = self.seen.question
-        if kind is None:
-            return None
         for said in self.seen.statements:
             if not said.question or said.conditional:
                 continue
             parts = (said.triple.object, said.triple.subject)
             unknown = next((part for part in parts if isinstance(part, nlp.QuestionWord)), None)
-            unknown = unknown or (kind if kind != nlp.QuestionWord.YES_NO else None)
+            unknown = unknown or (None if kind == nlp.QuestionWord.YES_NO else kind)
             if unknown is not None and said.subject.person == "I":
                 asked = f"{_predicate(said)} {unknown.name}"
                 keys = (*(f"{asked} {phrase.head}" for phrase in said.phrases), asked)

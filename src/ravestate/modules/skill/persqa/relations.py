@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
-from typing import Any
+from typing import Any, cast
 
 from ravestate.yaml_text import load_yaml
 
@@ -29,12 +29,12 @@ class Relations:
 @cache
 def relations() -> Relations:
     """Return the table."""
-    file = files(__package__) / "relations.yaml"
+    file = files(__name__.rpartition(".")[0]) / "relations.yaml"
     table: dict[str, Any] = load_yaml(file.read_text(encoding="utf-8"), str(file))
 
     def turned(name: str) -> dict[str, str]:
         return {phrase: topic for topic, phrases in table[name].items() for phrase in phrases}
 
     relatives = {noun: topic.name for topic in RELATIVES for noun in topic.nouns}
-    lists = {name: frozenset(words) for name, words in table.items() if isinstance(words, list)}
+    lists = {name: frozenset(cast("list[str]", words)) for name, words in table.items() if isinstance(words, list)}
     return Relations(turned("says"), turned("ends"), turned("asks"), {**turned("nouns"), **relatives}, lists)

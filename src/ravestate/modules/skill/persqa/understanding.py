@@ -228,9 +228,9 @@ def _inquiry(
         return Meaning("asked", (asked,))
     wished = any(said.plan for said in seen.statements)  # do you want to know my name
     for said in seen.statements:
-        if said.question and not wished and said.verb in ("be", *relations().words["knowing"]):
-            if topic := reader.noun(said.object) or _topic_of(said, known):
-                return Meaning("asked", (Fact(topic, ()),))
+        about = said.question and not wished and said.verb in ("be", *relations().words["knowing"])
+        if about and (topic := reader.noun(said.object) or _topic_of(said, known)):
+            return Meaning("asked", (Fact(topic, ()),))
     if "ask_name" in acts and not wished:
         return Meaning("asked", (Fact(NAME, ()),))
     found = answers_in(reader, told, known)

@@ -8,86 +8,29 @@ import unicodedata
 from ravestate.modules import nlp
 
 from .kinds import likeness
+from .relations import relations
 from .topics import Topic
 from .wording import tidy
 
-_DETERMINERS = frozenset(
-    [
-        "a",
-        "an",
-        "the",
-        "my",
-        "your",
-        "his",
-        "her",
-        "our",
-        "their",
-        "this",
-        "that",
-        "these",
-        "those",
-        "it",
-        "some",
-        "any",
-        "no",
-        "one",
-    ]
-)
-_FUNCTION = frozenset(
-    [
-        "i",
-        "i'm",
-        "me",
-        "you",
-        "he",
-        "she",
-        "we",
-        "they",
-        "it",
-        "him",
-        "them",
-        "us",
-        "myself",
-        "yourself",
-        "is",
-        "are",
-        "was",
-        "were",
-        "be",
-        "am",
-        "do",
-        "does",
-        "did",
-        "has",
-        "have",
-        "had",
-        "will",
-        "would",
-        "can",
-        "could",
-        "not",
-        "no",
-        "what",
-        "why",
-        "how",
-        "when",
-        "where",
-        "who",
-        "if",
-        "because",
-    ]
-)
-"""Grammatical words that no value has."""
-_DEICTIC = re.compile(
-    r"(?:this|that|these|those|it|you|him|her|them|me|us|my|your|here|there|(?:any|some|every|no)(?:thing|one|body))\b",
-    re.IGNORECASE,
-)
 _CLOSED = frozenset(["PRON", "DET", "AUX", "SCONJ", "CCONJ", "PART", "ADV", "INTJ", "VERB", "ADP"])
 _PLACES = frozenset(["GPE", "LOC", "FAC", "NORP"])
 _TIMES = frozenset(["DATE", "TIME"])
 LONGEST = {"name": 4, "people": 4, "place": 5}
 DOUBT = {"place": -0.12, "work": -0.02, "organisation": 0.0, "subject": -0.35, "name": 0.12, "people": 0.12}
-"""The least likeness of a value to its kind, by kind, where nothing introduces it."""
+"""The least likeness of a value to its kind, where nothing introduces it."""
+CERTAIN = {"place": -0.5, "work": -0.5, "organisation": -0.7, "subject": -0.7, "name": -0.6, "people": -0.6}
+"""The least likeness where the words before it do."""
+_LEADS = {
+    **dict.fromkeys(("subject", "activity", "thing"), r"an? (?=\S)"),
+    "work": r"(?:an?|the) (?=\S)",
+    "place": r"(?:the )?(?:city|town|village) of (?=\S)",
+}
+"""Words before a value that are no part of it."""
+_DEICTIC = re.compile(
+    r"(?:this|that|these|those|it|you|him|her|them|me|us|my|your|here|there|more|most|a|many|much|"
+    r"(?:any|some|every|no)(?:thing|one|body))\b",
+    re.IGNORECASE,
+)
 
 
 def value_of(text: str, topic: Topic, seen: nlp.Analysis, *, sure: bool = True) -> str | None:
@@ -99,67 +42,53 @@ def value_of(text: str, topic: Topic, seen: nlp.Analysis, *, sure: bool = True) 
         seen: The analysis of the utterance.
         sure: Whether the words before it introduce this kind: *my name is*, or the agent asked for it.
     """
-    text = (
-        re.sub(r"^(?:the )?(?:city|town|village) of (?=\S)", "", _trimmed(text), flags=re.IGNORECASE)
-        if topic.kind == "place"
-        else _trimmed(text)
-    )
-    text = re.sub(r"\.(?= )|,? (?:any ?(?:more|longer)|too|as well|now)$", "", text, flags=re.IGNORECASE)
-    words = text.lower().split()
-    if topic.kind in ("work", "subject", "activity", "thing") and len(words) > 1 and words[0] in ("a", "an"):
-        text, words = text.split(maxsplit=1)[1], words[1:]
-    if topic.kind == "work" and len(words) > 1 and words[0] == "the":
-        text, words = text.split(maxsplit=1)[1], words[1:]
-    if not words or len(text) > 60 or len(words) > LONGEST.get(topic.kind, 7):
-        return None
-    if topic.kind == "number":
-        return text if text.isdecimal() and 0 < int(text) < 120 else None
-    named = topic.kind in ("name", "people")
-    if (
-        (_FUNCTION | _DETERMINERS if named else _FUNCTION) & set(words[named and words[0] == "will" :])
-        or not any(map(_tells, text))
-        or text[0].isdigit()
-    ):
-        return None
-    if not _fits(text, words, topic, seen, sure):
-        return None
-    if topic.kind == "activity":
-        text = gerund(text, seen)
-    return tidy(text, topic)
-
-
-def _fits(text: str, words: list[str], topic: Topic, seen: nlp.Analysis, sure: bool) -> bool:
-    labels = {entity.label for entity in seen.entities if text.lower() in entity.text.lower()}
     kind = topic.kind
-    if labels & _TIMES and not labels & _PLACES and kind in ("place", "organisation", "name", "people"):
-        return False
+    text = re.sub(r"\.(?= )|,? (?:any ?(?:more|longer)|too|as well|now)$", "", _trimmed(text), flags=re.IGNORECASE)
+    if lead := re.match(_LEADS.get(kind, "$^"), text, re.IGNORECASE):
+        text = text[lead.end() :]
+    words = text.lower().split()
+    if not words or len(text) > 60 or len(words) > LONGEST.get(kind, 7):
+        return None
+    if kind == "number":
+        return text if text.isdecimal() and 0 < int(text) < 120 else None
+    named = kind in ("name", "people")
+    table = relations().words
+    never = table["function"] | table["determiners"] if named else table["function"]
+    if never & set(words[named and words[0] == "will" :]) or not any(map(_tells, text)) or text[0].isdigit():
+        return None
+    if not _fits(text, words[0] in table["determiners"], topic, seen, sure):
+        return None
+    return tidy(gerund(text, seen) if kind == "activity" else text, topic)
+
+
+def _fits(text: str, determined: bool, topic: Topic, seen: nlp.Analysis, sure: bool) -> bool:
+    """Return whether words are of the kind of a topic; `determined` means that a determiner begins them."""
+    kind = topic.kind
+    if kind in ("activity", "thing"):
+        return _DEICTIC.match(text) is None
+    labels = {entity.label for entity in seen.entities if text.lower() in entity.text.lower()}
+    digits = any(map(str.isdigit, text))
+    if (labels & _TIMES and not labels & _PLACES) or (digits and kind != "organisation"):
+        return kind in ("work", "subject")
+    doubt = (CERTAIN if sure else DOUBT)[kind]
     match kind:
         case "name" | "people":
-            if any(letter.isdigit() for letter in text) or re.search(r"['’]s\b", text):
+            if re.search(r"['’]s\b", text):
                 return False
-            if _is_name(text, seen, labels):
-                return True
             parts = {word.pos for word in seen.tree.words if word.text in text.split()}
-            if not sure and parts & _CLOSED:
-                return False
-            return likeness(text, kind) > (-0.6 if sure else DOUBT[kind])
-        case "place":
-            if any(letter.isdigit() for letter in text):
-                return False
-            if labels & _PLACES:
-                return True
-            doubt = -0.5 if sure else DOUBT[kind]
-            return likeness(text, kind) > (0.0 if words[0] in _DETERMINERS else doubt)
-        case "organisation":
-            if labels & {"ORG"}:
-                return True
-            return likeness(text, "club" if topic.name == "club" else kind) > (-0.7 if sure else DOUBT[kind])
-        case "work":
-            return likeness(text, kind) > (-0.5 if sure else DOUBT[kind]) and words[0] not in _DETERMINERS
-        case "subject":
-            return likeness(text, kind) > (-0.7 if sure else DOUBT[kind]) and words[0] not in _DETERMINERS
+            if _is_name(text, seen, labels) or (not sure and parts & _CLOSED):
+                return not parts & _CLOSED
+        case "place" if labels & _PLACES:
+            return True
+        case "place" if determined:
+            doubt = 0.0
+        case "organisation" if "ORG" in labels:
+            return True
+        case "work" | "subject" if determined:
+            return False
         case _:
-            return _DEICTIC.match(text) is None and words[0] not in ("more", "most", "a", "many", "much")
+            pass
+    return likeness(text, "club" if topic.name == "club" else kind) > doubt
 
 
 def _is_name(text: str, seen: nlp.Analysis, labels: set[str]) -> bool:

@@ -4,41 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
+from .relations import relations
 from .topics import TOPICS, Topic
-
-SMALL = frozenset(
-    [
-        "of",
-        "the",
-        "and",
-        "in",
-        "on",
-        "upon",
-        "am",
-        "an",
-        "at",
-        "der",
-        "die",
-        "das",
-        "den",
-        "von",
-        "van",
-        "de",
-        "da",
-        "di",
-        "del",
-        "la",
-        "le",
-        "du",
-        "y",
-        "zu",
-        "near",
-        "for",
-        "bei",
-        "a",
-    ]
-)
-"""Words without a capital inside a name."""
 
 BARE = frozenset(["retired", "self-employed", "freelance", "unemployed"])
 """Occupations without an article."""
@@ -75,12 +42,13 @@ def tidy(text: str, topic: Topic) -> str:
 
 
 def _capital(word: str, *, first: bool) -> str:
-    if word in SMALL and not first:
+    if word in relations().words["small"] and not first:
         return word
     # str.title would write "O'Brien'S", and str.capitalize "Mckay"
     parts = word.split("-")
     word = "-".join(
-        part if index and part in SMALL else part[:1].upper() + part[1:] for index, part in enumerate(parts)
+        part if index and part in relations().words["small"] else part[:1].upper() + part[1:]
+        for index, part in enumerate(parts)
     )
     return "O'" + word[2:3].upper() + word[3:] if word.startswith("O'") else word
 
