@@ -208,8 +208,11 @@ def _identity(seen: nlp.Analysis, known: Mapping[str, tuple[str, ...]]) -> Meani
     if "deny_identity" in seen.acts and known.get(NAME):
         return Meaning("mistaken")
     match = seen.act("identify")
-    asked = any(isinstance(said.triple.object, nlp.QuestionWord) and said.question for said in seen.statements)
-    if match is None or (asked and "guess" not in seen.text.lower()):
+    other = any(
+        said.subject.of("I") or (said.subject.person == "I" and isinstance(said.triple.object, nlp.QuestionWord))
+        for said in seen.statements
+    )  # my name is..., who am I talking to
+    if match is None or other:
         return None
     name = Reader(seen).remaining_name()
     return Meaning("identified", (Fact(NAME, (name,)),) if name else ())
