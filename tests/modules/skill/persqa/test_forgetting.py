@@ -1,4 +1,4 @@
-"""What forgetting a person says and removes."""
+"""The words and the effect of forgetting a person."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Who is talking: names that memory knows, and people who say that it is them."""
+"""Identity: names that memory knows, and people who say that it is them."""
 
 from __future__ import annotations
 

@@ -24,7 +24,7 @@ class Acquaintance:
         who: The user's node; None while their name is not known.
         facts: Values by topic, without the name.
         talk: The state of the conversation.
-        told: What the user told that no topic covers, by key, oldest first.
+        told: The user's free statements by key, oldest first.
     """
 
     who: ontology.Node | None

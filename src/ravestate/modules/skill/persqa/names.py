@@ -48,7 +48,7 @@ facts: rs.Collection[tuple[str, ...]] = module.collection("facts")
 """Values by topic (``home``, ``hobby``, ...); an empty tuple means that there are none."""
 
 told: rs.Collection[Told] = module.collection("told")
-"""What the user told about themselves and others that no topic covers, oldest first: *Jonas plays the violin*."""
+"""The user's free statements about themselves and others, oldest first: *Jonas plays the violin*."""
 
 talk: rs.Slot[Talk] = module.slot("talk", Talk(), type=Talk)
 """The state of the conversation about the user: what was asked, and what they would rather not say."""

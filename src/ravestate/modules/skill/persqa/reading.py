@@ -1,4 +1,4 @@
-"""What an utterance tells or asks about the user, read from its statements."""
+"""The facts that an utterance tells or asks for, read from its statements."""
 
 from __future__ import annotations
 

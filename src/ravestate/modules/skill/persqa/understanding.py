@@ -31,7 +31,7 @@ Kind = Literal[
     "which",  # the user said no more than yes
     "mentioned",  # a relative without a name
     "asked",  # about themselves
-    "asked_told",  # about what they told of others
+    "asked_told",  # about a free statement of before
     "vouched",  # the answer by which somebody shows that they are who they say
     "identified",  # it's me, perhaps with a name
     "mistaken",  # they are not the person that the agent takes them for
@@ -53,7 +53,7 @@ class Meaning:
         leave: Whether they say goodbye.
         aloud: Whether the agent replies. Questions, goodbyes and games of the user go first: the agent silently learns
             anything else that they say.
-        free: What they tell that no topic covers; or what they ask for, or want forgotten.
+        free: Free statements that they make, ask for, or want forgotten.
     """
 
     kind: Kind
