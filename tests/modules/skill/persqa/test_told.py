@@ -88,6 +88,15 @@ def test_a_free_statement_can_be_forgotten(file: Path, look: Look, text: str) ->
     assert look() == {"Ada": {}}
 
 
+def test_forgetting_a_relative_removes_the_statements_about_them(file: Path, look: Look) -> None:
+    with agent(file) as sim:
+        sim.say("my name is ada")
+        sim.say("my sister is called Emma")
+        sim.say("Emma plays the violin")
+        assert meant(answers(sim, "forget my sister"), "strike")
+    assert look() == {"Ada": {}}
+
+
 @pytest.mark.parametrize(
     "text",
     [

@@ -162,8 +162,9 @@ def _forgetting(
         facts = facts or [
             Fact(fact.topic, fact.values, gone=True) for fact in reader.facts() or filter(None, [reader.asks()])
         ]
+        names = {value or "-", *(name for fact in facts for name in fact.values or known.get(fact.topic, ()))}
         said_again = {one.key for one in told_in(reader)}
-        free = tuple(one for one in told if among(value or "-", (one.subject, one.object)) or one.key in said_again)
+        free = tuple(one for one in told if {one.subject, one.object} & names or one.key in said_again)
         if facts or free:
             return Meaning("strike", tuple(facts), free=free)
         if object.of("I") or any(other.subject.person == "I" for other in seen.statements):
