@@ -13,7 +13,7 @@ RavestateError
 └── PlatformError(RuntimeError)       the world failed: a device, a server, a file, a package
 ```
 
-Every message gives the refused value, its place, the nearest valid name, and the line to write instead.
+Messages give the refused value, the place in the code, the nearest valid name, and the line to write instead.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from collections.abc import Iterable, Sequence
 
 
 class RavestateError(Exception):
-    """The root of the tree: ``except rs.RavestateError`` catches all exceptions of Ravestate's own."""
+    """The root of the tree: ``except rs.RavestateError`` catches every exception that Ravestate raises on purpose."""
 
 
 class DeclarationError(RavestateError, ValueError):
@@ -30,7 +30,7 @@ class DeclarationError(RavestateError, ValueError):
 
 
 class DeclarationErrors(RavestateError, ExceptionGroup[DeclarationError]):
-    """All faults that compiling found; ``.exceptions`` holds a `DeclarationError` for each."""
+    """All faults that ``rs.compile`` found; ``.exceptions`` holds a `DeclarationError` for each fault."""
 
     def __new__(cls, faults: Sequence[DeclarationError]) -> DeclarationErrors:
         return super().__new__(cls, _count(faults), faults)
@@ -69,11 +69,11 @@ class RuleTimeout(RuleError, TimeoutError):
 
 
 class RunEnded(RuleError):
-    """A rule acted after the end of its run: an interruption, a timeout, or the end of the context."""
+    """A rule acted after its run had ended by an interruption, a timeout, or the end of the context."""
 
 
 class EngineError(RavestateError, RuntimeError):
-    """An event did not fit the engine's state: a fault of the runtime around it."""
+    """An event did not fit the engine's state: a fault of the code that uses the engine, not of a rule."""
 
 
 class PlatformError(RavestateError, RuntimeError):
@@ -82,7 +82,7 @@ class PlatformError(RavestateError, RuntimeError):
 
 def nearest(name: str, names: Iterable[str]) -> str:
     """Return the hint "; did you mean ...?" for a name that is not among `names`, or an empty text if none is near."""
-    import difflib  # needed only for an error
+    import difflib  # imported here because only an error needs it
 
     known = list(names)
 
@@ -105,11 +105,11 @@ def nearest(name: str, names: Iterable[str]) -> str:
 
 
 ALIKE = 0.6
-"""The minimum similarity of a name to its nearest match: the share of letters that both have in the same order."""
+"""The minimum similarity of two names for a hint: the share of letters that both have in the same order."""
 
 
 def _is_a_slip(one: str, other: str) -> bool:
-    """Return whether two names differ by one letter, or by two neighbours that changed places."""
+    """Return whether two names differ by one letter, or by two adjacent letters that changed places."""
     if min(len(one), len(other)) < 2:
         return False
     pairs = zip(one, other, strict=False)

@@ -9,18 +9,18 @@ from typing import Literal
 
 
 def user_folder(kind: Literal["data", "state", "cache"]) -> Path:
-    """Return Ravestate's folder among the user's own; it may not exist yet.
+    """Return the path of Ravestate's folder for this user's files of one kind; it may not exist yet.
 
     Args:
-        kind: ``data`` for files that must not be lost, ``state`` for files that only outlast a session, ``cache`` for files
-            that can be made again. Windows keeps all of them in one folder, macOS the first two.
+        kind: ``data`` for files that must not be lost, ``state`` for files that need only outlast a session, ``cache``
+            for files that can be made again. Windows has one folder for all kinds, macOS one for the first two.
     """
     if sys.platform == "win32":
         base = Path(os.environ.get("LOCALAPPDATA") or Path.home() / "AppData" / "Local")
     elif sys.platform == "darwin":
         base = Path.home() / "Library" / ("Caches" if kind == "cache" else "Application Support")
     else:
-        given = os.environ.get(f"XDG_{kind.upper()}_HOME", "")  # the standard ignores a relative path
+        given = os.environ.get(f"XDG_{kind.upper()}_HOME", "")  # the XDG standard ignores a relative path
         default = {"data": ".local/share", "state": ".local/state", "cache": ".cache"}[kind]
         base = Path(given) if Path(given).is_absolute() else Path.home() / default
     return base / "ravestate"

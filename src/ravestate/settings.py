@@ -1,6 +1,6 @@
-"""Typed settings of modules: pydantic models. A declaration may refer to their fields.
+"""Typed settings of modules, as pydantic models. A declaration may refer to a model's fields.
 
-The file is outside the pure packages because it needs pydantic; ``rs.Settings`` loads it.
+This file is outside the pure packages because it needs pydantic. It loads when ``rs.Settings`` is first used.
 """
 
 from __future__ import annotations
@@ -22,10 +22,10 @@ TEXT = (str, pydantic.SecretStr)
 
 
 class _SettingsMeta(ModelMetaclass):
-    """A metaclass that makes ``MySettings.field`` a reference to the setting, for use as an age or a weight."""
+    """A metaclass that makes ``MySettings.field`` a reference to the setting, to be used as an age or a weight."""
 
     def __getattr__(cls, item: str) -> Any:
-        # Pydantic itself looks for defaults until the class is complete.
+        # Until the class is complete, pydantic itself asks it for attributes.
         if cls.__dict__.get("__pydantic_complete__") and item in cls.__pydantic_fields__:  # type: ignore[attr-defined]  # pydantic's own
             return SettingRef(item, cls)
         try:
@@ -43,8 +43,8 @@ class Settings(pydantic.BaseModel, metaclass=_SettingsMeta):
     Values come from four sources, the strongest first:
 
     - code: ``rs.Context(settings={...})`` and ``--set``
-    - the environment: ``RAVESTATE_<MODULE>_<FIELD>``, in JSON for every field but text
-    - the agent's file
+    - the environment: ``RAVESTATE_<MODULE>_<FIELD>``, as JSON unless the field is a text
+    - the agent file
     - the defaults
 
     Example:
@@ -65,12 +65,12 @@ def load_settings(
     given: Mapping[str, Mapping[str, Any] | pydantic.BaseModel] | None = None,
     environment: Mapping[str, str] | None = None,
 ) -> dict[str, Any]:
-    """Return the settings of each module: given values first, then the environment's, then the defaults.
+    """Return module's name → the module's settings: values of `given` first, then the environment's, then the defaults.
 
     Args:
         modules: The modules of a policy.
-        given: For each module's name, the values of fields, or an instance of the module's settings.
-        environment: Variables; those of the process by default.
+        given: Module's name → the values of fields, or an instance of the module's settings class.
+        environment: Environment variables; by default those of the process.
 
     Raises:
         DeclarationErrors: There are unknown modules, unknown fields or values of a wrong type; one error for each.
@@ -98,7 +98,7 @@ def load_settings(
                     )
                 )
             continue
-        if not isinstance(values, Mapping):  # pyright: ignore[reportUnnecessaryIsInstance]  # it comes from a file
+        if not isinstance(values, Mapping):  # pyright: ignore[reportUnnecessaryIsInstance]  # it may come from a file
             faults.append(DeclarationError(f"settings for {name!r} must be fields and values, not {short(values)}"))
             continue
         try:
@@ -125,12 +125,12 @@ def _from_environment(name: str, model: type[pydantic.BaseModel], variables: Map
 
 
 def value_of(text: str, model: type[pydantic.BaseModel], field: str, parse: Callable[[str], Any]) -> Any:
-    """Convert a text from outside to a value: the text itself for a text field, otherwise its parsed form.
+    """Return the value that a text from outside stands for: the text itself for a text field, else its parsed form.
 
     Args:
-        text: The text of a variable, or behind ``--set``.
-        model: The settings.
-        field: The name of one of their fields.
+        text: The text of an environment variable, or of a ``--set`` option.
+        model: The settings class of the module.
+        field: The name of one of its fields.
         parse: A parser that raises a ValueError for a text that it cannot read; such a text stays as it is.
     """
     annotation = cast("Any", model.model_fields[field].annotation)

@@ -14,21 +14,21 @@ from yaml.composer import Composer
 from ravestate.errors import DeclarationError
 
 DEEPEST = 50
-"""The maximum depth of nesting in a text."""
+"""The maximum depth of nesting in a YAML text."""
 
 DIGITS = 300
-"""Characters that a number may have."""
+"""The maximum number of characters of a number."""
 
 LARGEST = 100_000
-"""The maximum number of values in a text. Each alias counts as all the values that it stands for."""
+"""The maximum number of values in a YAML text. Each alias counts as all the values that it stands for."""
 
 
 def load_yaml(text: str, name: str) -> Any:
     """Return the value of a YAML text: mappings, lists, texts, numbers and dates; `None` if it is empty.
 
     Args:
-        text: The text.
-        name: The name of its file, for messages.
+        text: The YAML text.
+        name: The name of the text's file, for messages.
 
     Raises:
         DeclarationError: The text is not valid YAML, nests too deeply, or stands for too many values.
@@ -46,14 +46,14 @@ def load_yaml(text: str, name: str) -> Any:
 
 
 def compose_yaml(text: str, name: str) -> yaml.Node | None:
-    """Return the nodes of a YAML text, which know their lines; every scalar is text. `None` if it is empty.
+    """Return the root node of a YAML text; `None` if it is empty. Nodes know their lines, and every scalar is text.
 
     Args:
-        text: The text.
-        name: The name of its file, for messages.
+        text: The YAML text.
+        name: The name of the text's file, for messages.
 
     Raises:
-        DeclarationError: See `load_yaml`.
+        DeclarationError: As for `load_yaml`.
     """
     try:
         return yaml.compose(text, Loader=_TextLoader)
@@ -62,13 +62,13 @@ def compose_yaml(text: str, name: str) -> yaml.Node | None:
 
 
 class _Bounded(Composer):
-    """A composer that counts levels and values."""
+    """A composer that counts levels and values, and refuses too many of them."""
 
     depth = count = 0
 
     def compose_node(self, parent: yaml.Node | None, index: int) -> yaml.Node | None:
-        event = cast("Any", self).peek_event()  # from the parser, which the loader inherits
-        sizes: dict[object, int] = self.__dict__.setdefault("sizes", {})  # the sizes of finished nodes, by anchor
+        event = cast("Any", self).peek_event()  # a method of the parser, which the loader inherits
+        sizes: dict[object, int] = self.__dict__.setdefault("sizes", {})  # anchor → the size of its finished node
         before = self.count
         self.depth += 1
         if self.depth > DEEPEST:
@@ -89,7 +89,7 @@ class _Bounded(Composer):
 
 class _SafeLoader(_Bounded, yaml.SafeLoader):
     def construct_number(self, node: yaml.ScalarNode) -> Any:
-        """Construct a number; a long one to the base 60 (``59:59:...``) would take minutes, or overflow."""
+        """Return the number in a node. Refuse a long one: to the base 60 (``59:59:...``), it would take minutes."""
         if len(node.value) > DIGITS:
             raise yaml.constructor.ConstructorError(
                 None, None, f"a number of more than {DIGITS} digits", node.start_mark
@@ -112,7 +112,7 @@ class _LimitError(yaml.MarkedYAMLError):
 
 
 def _fault(error: yaml.YAMLError, text: str, name: str) -> DeclarationError:
-    if not isinstance(error, yaml.MarkedYAMLError):  # it has a position instead of a mark
+    if not isinstance(error, yaml.MarkedYAMLError):  # this error has a position instead of a mark
         line = text.count("\n", 0, getattr(error, "position", 0)) + 1
         return DeclarationError(f"{name}:{line}: not valid YAML (a control character)")
     mark = error.problem_mark or error.context_mark

@@ -313,8 +313,8 @@ def test_its_patience_ran_out_while_another_waited(stage: Stage) -> None:
     assert waits.words.endswith("until 1.000 s at the latest")
     assert found.verdict == "eliminated"
     assert found.words == (
-        "it took demo:input:changed but lacked demo:touch; demo:plain waited for it from 0.000 s on, and its patience "
-        "ran out at 1.000 s"
+        "it took demo:input:changed but lacked demo:touch; demo:plain waited for it from 0.000 s on, and "
+        "this rule's patience ran out at 1.000 s"
     )
 
 

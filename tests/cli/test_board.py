@@ -129,7 +129,7 @@ def test_a_recorded_trace_needs_no_agent(tmp_path: Path) -> None:
     ("arguments", "code", "words"),
     [
         (["--without", "nlpp"], 2, "the agent has no such module; did you mean 'nlp'?"),
-        (["hibye", "--without", "nlp"], 2, "--without is for the complete agent"),
+        (["hibye", "--without", "nlp"], 2, "--without works only on the complete agent"),
         (["hibye", "--open", "trace.json"], 2, "leave the modules out"),
         (["--open", "gone.json"], 1, "cannot read gone.json"),
         (["nothing_like_it"], 2, "there is no module 'nothing_like_it'"),

@@ -1,4 +1,4 @@
-"""``ravestate check``: faults, and findings that break a rule, give exit code 1; other findings give 0."""
+"""``ravestate check``: faults, and findings that make a rule fail, give exit code 1; other findings give 0."""
 
 from pathlib import Path
 
@@ -65,7 +65,7 @@ def test_findings_that_break_a_rule_give_1(right: str, wrong: str, finding: str,
     code, out, errors = call(capsys, "check", "./greeter.py")
     assert (code, errors) == (1, "")
     assert finding in out
-    assert out.endswith("no faults, 1 finding (1 breaks a rule when it runs)\n")
+    assert out.endswith("no faults, 1 finding (1 makes a rule fail at run time)\n")
 
 
 def test_help_names_the_exit_code(capsys: Capture) -> None:

@@ -69,9 +69,9 @@ def test_a_given_format_goes_before_the_name(hello: str, folder: Path, capsys: C
         (("-o", "a"), "cannot tell the format of a:"),
         (("-o", "no/such/a.svg"), "cannot write no/such/a.svg: No such file or directory"),
         (("--format", "png"), "invalid choice: 'png'"),
-        (("--without", "nlp"), "--without is for the complete agent: leave the modules out"),
+        (("--without", "nlp"), "--without works only on the complete agent: name no MODULE or file with it"),
         (("--unfold", "helo"), "--unfold helo: the agent has no such module; did you mean 'hello'?"),
-        (("--unfold", "hello", "--no-fold"), "--unfold draws some modules, --no-fold all: write only one of them"),
+        (("--unfold", "hello", "--no-fold"), "--unfold folds the other modules, --no-fold folds none: use only one"),
     ],
 )
 def test_wrong_use_is_2_and_writes_nothing(
@@ -93,7 +93,8 @@ def test_without_modules_it_draws_the_agent_of_chat_folded_to_its_modules(comple
     code, out, errors = call(capsys, "graph")
     assert (code, out) == (0, f"{complete_agent}\n")
     assert re.fullmatch(
-        r"ravestate graph: folded \d+ rules into their modules: --unfold MODULE draws the rules of one, --no-fold all\n",
+        r"ravestate graph: folded \d+ rules into their modules: --unfold MODULE draws the rules of one module, "
+        r"--no-fold draws those of all modules\n",
         errors,
     )
     assert all(f">module {name} (" in out for name in ("conio", *COMPLETE))

@@ -782,9 +782,7 @@ async def test_two_detached_rules_that_raise_each_other_silence_neither_input_no
                 assert await answers == number
                 await timers
             await context.stop(grace=0)
-    assert [
-        message for message in log.messages if "a loop without an end: m:hit, m:hit_back" in message
-    ] == log.messages
+    assert [message for message in log.messages if "an endless loop: m:hit, m:hit_back" in message] == log.messages
     assert len(log.messages) == 1
 
 

@@ -14,7 +14,7 @@ export const CLOSING_CODES = {
   behind: 4409,
 };
 
-/** Why an activation gave up a spike: the phrase for each reason. */
+/** Reason for which an activation gave up a spike → a phrase for people. */
 export const LOSSES = {
   age: "the spike was too old",
   consumed: "another rule answered it",
@@ -24,7 +24,7 @@ export const LOSSES = {
   retired: "the rule retired",
 };
 
-/** The title and the tone of each verdict. */
+/** Verdict → its title and its tone (the colour on the page). */
 export const VERDICTS = {
   fired: {
     title: "It fired",
@@ -84,7 +84,7 @@ export const VERDICTS = {
   },
 };
 
-/** A spike was born; `source` is the run that raised it, 0 from outside. */
+/** A spike was born; `source` is the number of the run that raised it, or 0 if code outside the rules did. */
 export interface Born {
   kind: "born";
   time: number;
@@ -98,15 +98,15 @@ export interface Born {
 
 /** A clause, and the parts of its utility (nats). */
 export interface ClauseView {
-  /** Its source text. */
+  /** The clause as text. */
   condition: string;
   constraints: ConstraintView[];
   gates: GateView[];
   /** The addends of the pathway with the least utility, which decides the clause's utility. */
   terms: Term[];
-  /** The number of pathways. */
+  /** The number of the clause's pathways. */
   pathways: number;
-  /** The number of predicates, which add ln 2 each. */
+  /** The number of the clause's predicates, which add ln 2 each. */
   predicates: number;
   /** The sum of all addends (L9). */
   utility: number;
@@ -123,13 +123,13 @@ export interface ConstraintView {
   predicates: string[];
 }
 
-/** Nodes and edges in declaration order. */
+/** The nodes and edges of a picture, in declaration order. */
 export interface Diagram {
   nodes: Node[];
   edges: Edge[];
 }
 
-/** A spike was withdrawn, by overflow, a wipe, or a later spike (L20, L23). */
+/** A spike was withdrawn: its signal overflowed, it was wiped, or a later spike replaced it (L20, L23). */
 export interface Dropped {
   kind: "dropped";
   time: number;
@@ -138,7 +138,7 @@ export interface Dropped {
   reason: string;
 }
 
-/** An arrow from `source` to `target` (both are ids of nodes), perhaps with a few words beside it. */
+/** An arrow from `source` to `target` (both are ids of nodes), with `label` beside it if that is not empty. */
 export interface Edge {
   source: string;
   target: string;
@@ -149,19 +149,19 @@ export interface Edge {
 /** A gap in the records. */
 export interface Gap {
   kind: "gap";
-  /** Its start (seconds). */
+  /** The start of the gap (seconds on the context's clock). */
   time: number;
   /** How many spikes the recorder missed; -1 while that is unknown. */
   spikes?: number;
 }
 
-/** A slot predicate of a clause, and its source text. */
+/** A slot predicate of a clause: the slot, and the predicate as text. */
 export interface GateView {
   slot: string;
   text: string;
 }
 
-/** An activation gave a spike up: `age`, `consumed`, `resigned`, `eliminated`, `withdrawn`, `retired`. */
+/** An activation gave a spike up; `reason` is a `LossReason`. */
 export interface GaveUp {
   kind: "gaveup";
   time: number;
@@ -174,7 +174,7 @@ export interface GaveUp {
   run?: number;
 }
 
-/** An activation acquired a spike (L12). */
+/** An activation took a spike; `lacks` are the signals that it still lacks (L12). */
 export interface Held {
   kind: "held";
   time: number;
@@ -186,7 +186,7 @@ export interface Held {
   lacks: string[];
 }
 
-/** One causal group became part of another (L11). */
+/** The causal group `group` became part of the group `into` (L11). */
 export interface Merged {
   kind: "merged";
   time: number;
@@ -201,7 +201,7 @@ export interface Missing {
   raisers: Raiser[];
 }
 
-/** Something that happened to the rule for this cause; `rules` are the other rules involved. */
+/** Something that happened to the rule for this cause, at `time` (seconds); `rules` are the other rules involved. */
 export interface Moment {
   time: number;
   words: string;
@@ -210,13 +210,13 @@ export interface Moment {
 
 /** A slot, a signal, a rule, a folded module, or the junction of a conjunction or disjunction. */
 export interface Node {
-  /** Its unique name within the diagram. */
+  /** The node's unique name within the diagram. */
   id: string;
-  /** Its kind. */
+  /** The node's kind. */
   kind: "slot" | "signal" | "rule" | "module" | "and" | "or";
-  /** The text in it; empty for a junction. */
+  /** The text inside the node; empty for a junction. */
   label?: string;
-  /** The module that declares it; empty for a junction and for a module. */
+  /** The module that declares the slot, signal or rule; empty for a junction and for a module. */
   module?: string;
   /** Options such as a weight, or the number of rules of a module; may be empty. */
   note?: string;
@@ -225,7 +225,7 @@ export interface Node {
 /**
  * A rule did not take a spike.
  *
- * Its `payload` did not fit, its cause was `consumed`, or the rule itself had `caused` it.
+ * The spike's `payload` did not fit, its cause was `consumed`, or the rule itself had `caused` the spike.
  */
 export interface Passed {
   kind: "passed";
@@ -239,7 +239,7 @@ export interface Passed {
   run?: number;
 }
 
-/** A rival is under pressure until its patience runs out (L16). */
+/** The rival `rule` is under pressure because `by` waits for it, until its patience runs out (L16). */
 export interface Pressed {
   kind: "pressed";
   time: number;
@@ -249,13 +249,12 @@ export interface Pressed {
   until: number;
 }
 
-/** A rule that may raise a missing signal, and the outcome in this causal group. */
+/** A rule that may raise a missing signal, and the outcome of its run in this causal group. */
 export interface Raiser {
   rule: string;
-  /** The outcome of its run, `running`, or `not run`. */
   outcome: string;
+  /** The time of the outcome (seconds); None if there is none. */
   time: number | null;
-  /** The outcome as text. */
   words: string;
 }
 
@@ -280,7 +279,7 @@ export interface RuleView {
   background: boolean;
 }
 
-/** A slot got a value. */
+/** The run `run`, or code outside the rules if that is 0, gave a slot a value. */
 export interface Set {
   kind: "set";
   time: number;
@@ -289,7 +288,7 @@ export interface Set {
   run: number;
 }
 
-/** A run has ended (L18): `done`, `resigned`, `failed`, `retired`, `interrupted`, `wiped`. */
+/** A run has ended; `outcome` is an `Outcome` (L18). */
 export interface Settled {
   kind: "settled";
   time: number;
@@ -323,7 +322,7 @@ export interface SlotView {
   writers: string[];
 }
 
-/** A rule function runs (L17). */
+/** A rule's function starts to run (L17). */
 export interface Started {
   kind: "started";
   time: number;
@@ -333,14 +332,14 @@ export interface Started {
   spikes: number[];
 }
 
-/** One addend of a utility: −ln(rules / |Λ|) nats, where `rules` have the signal on their pathways (L9). */
+/** One addend of a utility: −ln(rules / |Λ|) nats; `rules` is how many rules have the signal on a pathway (L9). */
 export interface Term {
   signal: string;
   rules: number;
   nats: number;
 }
 
-/** The engine asked a run to end: `interrupted`, `timeout`, `wiped`. */
+/** The engine asked a run to end; `reason` is a `StopReason`. */
 export interface Told {
   kind: "told";
   time: number;
@@ -364,7 +363,7 @@ export type TraceRecord =
   | Settled
   | Gap;
 
-/** A ready activation waits for rivals, or for runs that hold a slot (L15). */
+/** A ready activation waits for the rules `for_`: rivals, or runs that hold a slot (L15). */
 export interface Waits {
   kind: "waits";
   time: number;
@@ -376,11 +375,11 @@ export interface Waits {
 
 /** A value as text. */
 export interface Rendered {
-  /** JSON, or a `repr`. */
+  /** The value as JSON, or its `repr`. */
   text: string;
   /** Whether the text is JSON for the whole value, which a user may edit and write back. */
   json?: boolean;
-  /** Whether the text is only a part. */
+  /** Whether the text is only the beginning. */
   cut?: boolean;
 }
 
@@ -390,18 +389,18 @@ export interface ActivationState {
   /** `gathering`, `ripening`, `gated`, `ready`, `waiting`, `running` or `cancelling`. */
   state: string;
   condition: string;
-  /** Signal and age (seconds) of each spike. */
+  /** The signal and the age (seconds) of each spike that the activation holds. */
   holds: [string, number][];
-  /** The signals that are missing. */
+  /** The signals of the spikes that it lacks. */
   lacks: string[];
-  /** The rules that it waits for, and by how many nats each is ahead (0: a taken slot, or a tie). */
+  /** The rules that it waits for, and by how many nats each is ahead (0 for a taken slot or a tie). */
   waits_for: [string, number][];
-  /** The latest time at which it runs or gives up (seconds); None without a bound. */
+  /** The latest time at which it runs or gives a spike up (seconds); None if there is no such time. */
   until: number | null;
 }
 
 /**
- * The first frame: it says what to show.
+ * The first frame: it names the conversation or the recording to show.
  *
  * Without `session`, `visitor` and `recording`, the server shows the recording that it was started with, or else the newest conversation. It begins a conversation if there is none.
  */
@@ -409,11 +408,11 @@ export interface Hello {
   type: "hello";
   /** The version of the protocol. */
   v: number;
-  /** The secret of a conversation, which its visitor's page has. */
+  /** The secret id of the conversation to show; its visitor's page has the id. */
   session?: string;
-  /** The name of a conversation, as in `Conversations`. */
+  /** The name of the conversation to show, as in `Conversations`. */
   visitor?: string;
-  /** The name of an uploaded recording. */
+  /** The name of the uploaded recording to show. */
   recording?: string;
   /** The server's token, if the server asks for one. */
   token?: string;
@@ -424,14 +423,14 @@ export interface Clock {
   type: "pause" | "step" | "resume";
 }
 
-/** Write a slot. */
+/** Write a slot from outside the rules. */
 export interface Put {
   type: "put";
   slot: string;
   value?: unknown;
 }
 
-/** Raise a signal. */
+/** Raise a signal from outside the rules. */
 export interface Emit {
   type: "emit";
   signal: string;
@@ -461,31 +460,31 @@ export interface Say {
   text: string;
 }
 
-/** A question for a `State`. */
+/** A request for a `State`. */
 export interface Look {
   type: "look";
 }
 
-/** A question for an `Explained`: what a rule holds, lacks and waits for now. */
+/** A request for an `Explained`: the spikes that a rule holds and lacks now, and the rules that it waits for. */
 export interface Explain {
   type: "explain";
   rule: string;
 }
 
-/** A question for an `Answer`: why a rule did not fire for the cause of a spike. */
+/** A request for an `Answer`: why a rule did not fire for the cause of a spike. */
 export interface Why {
   type: "why";
   rule: string;
   spike: number;
 }
 
-/** A question for a `Drawing` with some modules unfolded. */
+/** A request for a `Drawing` in which only the modules `unfolded` show their rules. */
 export interface Unfold {
   type: "diagram";
   unfolded: string[];
 }
 
-/** A policy. |Λ| is the number of its rules. */
+/** A policy as plain values. |Λ| is the number of its rules. */
 export interface Description {
   modules: string[];
   rules: RuleView[];
@@ -494,7 +493,7 @@ export interface Description {
   diagram: Diagram;
 }
 
-/** A question for a `Pong`. */
+/** A request for a `Pong`. */
 export interface Ping {
   type: "ping";
 }
@@ -508,19 +507,19 @@ export interface Welcome {
   title: string;
   /** Whether this is a running conversation, not a recording. */
   live: boolean;
-  /** The name of the conversation. */
+  /** The name of the conversation; None for a recording. */
   visitor: string | null;
-  /** Whether the records that follow reach back to the start. */
+  /** Whether the records that follow reach back to the start of the context. */
   whole: boolean;
-  /** The policy. */
+  /** The policy of the agent. */
   policy: Description;
-  /** Seconds since the context began. */
+  /** The seconds since the context began. */
   now: number;
   /** Whether the context's clock is stopped. */
   paused: boolean;
 }
 
-/** A live activation, and its rule. */
+/** A live activation, and the name of its rule. */
 export interface Alive {
   id: number;
   state: string;
@@ -541,14 +540,14 @@ export interface State {
   paused: boolean;
 }
 
-/** The next records, in order. */
+/** The next records of the trace, in order. */
 export interface Records {
   type: "records";
   /** The records. */
   records: TraceRecord[];
-  /** How many records before these are left out. */
+  /** How many records just before these are left out. */
   missed: number;
-  /** How many records are still to come. */
+  /** How many records the server has not sent yet. */
   behind: number;
   now: number;
   paused: boolean;
@@ -568,17 +567,17 @@ export interface Changed {
 
 /** A conversation in a list. */
 export interface Conversation {
-  /** Its name. */
+  /** The conversation's name. */
   visitor: string;
-  /** The visitor's own name, if it is known. */
+  /** The name of the person; None if it is unknown. */
   name: string | null;
-  /** Milliseconds since 1970 (UTC). */
+  /** The time of its start, in milliseconds since 1970 (UTC). */
   began: number;
-  /** The start of the visitor's last words, if there are any. */
+  /** The start of the visitor's last words; None if they have said nothing. */
   said: string | null;
 }
 
-/** The newest conversations, oldest first, and how many more there are. */
+/** The newest conversations, oldest first; `more` is how many others there are. */
 export interface Conversations {
   type: "conversations";
   conversations: Conversation[];
@@ -591,7 +590,7 @@ export interface ExplainedClause {
   gates: [string, boolean][];
 }
 
-/** The current state of a rule: what it holds, lacks and waits for. */
+/** The current state of a rule: the spikes that it holds and lacks, and the rules that it waits for. */
 export interface Explained {
   type: "explained";
   rule: string;
@@ -601,7 +600,7 @@ export interface Explained {
   activations: ActivationState[];
 }
 
-/** Why a rule did not fire. */
+/** The answer to `Why`: why a rule did not fire. */
 export interface Answer {
   type: "why";
   rule: string;
@@ -637,7 +636,7 @@ export interface DrawnEdge {
   box: [number, number, number, number] | null;
 }
 
-/** The diagram with some modules unfolded; lengths in pixels. */
+/** The diagram, in which only the modules `unfolded` show their rules. Lengths are in pixels. */
 export interface Drawing {
   type: "diagram";
   unfolded: string[];
@@ -647,20 +646,20 @@ export interface Drawing {
   edges: DrawnEdge[];
 }
 
-/** The conversation is over, and why; the server closes the connection. */
+/** The conversation is over; `text` says why. The server then closes the connection. */
 export interface Ended {
   type: "ended";
   text: string;
 }
 
-/** A fault in a frame or a connection. */
+/** A fault in a frame from the page, or in the connection. */
 export interface Error {
   type: "error";
   /** One word for programs. */
   code: string;
   /** An explanation for people. */
   text: string;
-  /** The type of the frame that is refused. */
+  /** The type of the refused frame; empty if no single frame is refused. */
   of?: string;
 }
 

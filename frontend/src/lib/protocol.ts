@@ -1,12 +1,12 @@
 // Written by tools/protocol.py from ravestate.modules.platform.webio.protocol: change that file, and run the tool.
 
-/** The version of the protocol. A new frame or field keeps the number; any other change raises it. */
+/** The version of the protocol. A new frame or field keeps this number; any other change increases it. */
 export const VERSION = 1;
 
-/** The maximum number of characters that a visitor may say at once. */
+/** The maximum number of characters in one utterance of a visitor. */
 export const LONGEST_TEXT = 10000;
 
-/** The WebSocket's closing code for each error; any other error closes with the code of `malformed`. */
+/** Error code → the WebSocket's closing code; any other error closes with the code of `malformed`. */
 export const CLOSING_CODES = {
   ended: 1000,
   closing: 1001,
@@ -24,9 +24,9 @@ export interface Hello {
   type: "hello";
   /** The version of the protocol. */
   v: number;
-  /** The conversation to resume; without one, a new conversation begins. */
+  /** The id of the conversation to resume; if it is missing, a new conversation begins. */
   session?: string;
-  /** The number of the last message that the client has. */
+  /** The number of the last message that the client has; 0 if it has none. */
   last?: number;
   /** The server's token, if the server asks for one. */
   token?: string;
@@ -41,7 +41,7 @@ export interface Say {
   text: string;
 }
 
-/** The visitor is writing; the client repeats this now and then. */
+/** The visitor is typing; the client repeats this frame while they type. */
 export interface Writing {
   type: "writing";
 }
@@ -51,7 +51,7 @@ export interface Bye {
   type: "bye";
 }
 
-/** A question for a `Pong`. Browsers need it: they cannot send the WebSocket's own pings. */
+/** A request for a `Pong`. Browsers need it: they cannot send the WebSocket's own pings. */
 export interface Ping {
   type: "ping";
 }
@@ -61,23 +61,23 @@ export interface Welcome {
   type: "welcome";
   /** The version of the protocol. */
   v: number;
-  /** The conversation: a secret, with which a client resumes it. */
+  /** The conversation's secret id; a client sends it to resume. */
   session: string;
-  /** Whether the client asked for this conversation. */
+  /** Whether this resumes the conversation that the client asked for. */
   resumed: boolean;
   /** The number of the oldest message that the server keeps. */
   first: number;
   /** The agent's name. */
   agent: string;
-  /** The address of the board for this conversation, relative to the page. */
+  /** The address of the board for this conversation, relative to the page; None without a board. */
   inside?: string;
-  /** The number of the newest message; 0 before the first. */
+  /** The number of the newest message; 0 before the first message. */
   last?: number;
-  /** Whether the server takes `Writing`. The first servers did not. */
+  /** Whether the server accepts `Writing` frames. Early server releases did not. */
   writing?: boolean;
   /** A few things that the visitor could say first. */
   suggestions?: string[];
-  /** A line to show once, until the visitor has said something. */
+  /** A line of text that the page shows until the visitor has said something; None for no line. */
   note?: string;
 }
 
@@ -90,23 +90,23 @@ export interface Renamed {
 /** An utterance. */
 export interface Message {
   type: "message";
-  /** Its number: the first message has 1, and no number is left out. */
+  /** The message's number: the first message of a conversation has 1, and no number is left out. */
   n: number;
   from: "user" | "agent";
   /** Plain text. */
   text: string;
-  /** Milliseconds since 1970 (UTC). */
+  /** The time of the utterance, in milliseconds since 1970 (UTC). */
   time: number;
-  /** The `id` of the client's `Say`, if it came from one. */
+  /** The `id` of the client's `Say`, if the utterance came from a `Say`. */
   id?: string;
 }
 
 /** A piece of an utterance that is still growing: `text` replaces everything from character `at` on. */
 export interface Piece {
   type: "piece";
-  /** A place in the utterance, in UTF-16 units as JavaScript counts. */
+  /** The position in the utterance where `text` begins, in UTF-16 units as JavaScript counts. */
   at: number;
-  /** The new end of the utterance. */
+  /** The utterance from `at` to its new end. */
   text: string;
 }
 
@@ -122,20 +122,20 @@ export interface Paused {
   on: boolean;
 }
 
-/** The conversation is over, and why; the server closes the connection. */
+/** The conversation is over; `text` says why. The server then closes the connection. */
 export interface Ended {
   type: "ended";
   text: string;
 }
 
-/** A fault in a frame or a connection. */
+/** A fault in a frame from the client, or in the connection. */
 export interface Error {
   type: "error";
   /** One word for programs. */
   code: string;
   /** An explanation for people. */
   text: string;
-  /** The `id` of the `Say` that is refused, if it is one. */
+  /** The refused frame's `id`, if that frame is a `Say`. */
   id?: string;
 }
 

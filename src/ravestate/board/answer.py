@@ -1,4 +1,4 @@
-"""The answer to why a rule did not fire, as data (L25). `ravestate.board.why_not` derives it from a trace."""
+"""The explanation of why a rule did not fire, as data (L25). `ravestate.board.why_not` derives it from a trace."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from ravestate.engine.reasons import Verdict
 
 @dataclass(frozen=True, slots=True)
 class Raiser:
-    """A rule that may raise a missing signal, and the outcome in this causal group.
+    """A rule that may raise a missing signal, and the outcome of its run in this causal group.
 
     Attributes:
-        outcome: The outcome of its run, ``running``, or ``not run``.
-        words: The outcome as text.
+        outcome, words: The outcome of the rule's run, ``running``, or ``not run``; the same as text.
+        time: The time of the outcome (seconds); None if there is none.
     """
 
     rule: str
@@ -34,7 +34,7 @@ class Missing:
 
 @dataclass(frozen=True, slots=True)
 class Moment:
-    """Something that happened to the rule for this cause; `rules` are the other rules involved."""
+    """Something that happened to the rule for this cause, at `time` (seconds); `rules` are the other rules involved."""
 
     time: float
     words: str
@@ -43,15 +43,15 @@ class Moment:
 
 @dataclass(frozen=True, slots=True)
 class WhyNot:
-    """How far a rule came for an input, and why it came no further.
+    """How far a rule came towards a run for an input, and why it came no further.
 
     Attributes:
-        rule, spike, signal, time: The question; the time is the spike's birth (seconds).
+        rule, spike, signal, time: The rule and the spike in question; the time is the spike's birth (seconds).
         verdict: How far the rule came at best.
-        words: The reason, in a sentence or two.
-        at: The time at which this was decided (seconds); None while it is undecided.
-        clause: The number of the clause that took a spike, if one did.
-        missing: The signals that the rule lacked.
+        words: The reason for the verdict, in a sentence or two.
+        at: The time at which the verdict was decided (seconds); None while it is undecided.
+        clause: The number of the clause that took a spike; None if no clause did.
+        missing: The signals that the rule lacked; empty if it lacked none, or if another reason decided.
         moments: The rule's history for this cause. Beyond 200 moments, the middle is left out and one moment says so.
         whole: Whether the trace reaches back to before the spike; otherwise the answer may be incomplete.
     """

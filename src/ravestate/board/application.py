@@ -1,4 +1,4 @@
-"""The board's routes, mounted beside the chat page and behind its checks."""
+"""The board's routes, mounted beside the chat page and protected by the same checks."""
 
 from __future__ import annotations
 
@@ -23,20 +23,20 @@ from ravestate.runtime.agent import Agent
 from ravestate.runtime.context import Context
 
 PAGE = Path(__file__).parent / "page"
-"""The page that ``npm run build`` in ``frontend/`` makes."""
+"""The folder of the board's page, which ``npm run build`` in ``frontend/`` makes."""
 
 INSIDE = "board/"
 """The board's address, relative to the chat page."""
 
 LARGEST = 64 * 1024 * 1024
-"""The maximum number of bytes of an uploaded recording: twice the page's largest export, which has some 125,000 records
+"""The maximum number of bytes in an uploaded recording: twice the page's largest export, which has some 125,000 records
 of 270 bytes."""
 
 AT_ONCE = 4
-"""The maximum number of uploads at once."""
+"""The maximum number of uploads at the same time."""
 
 LONGEST = 300.0
-"""The maximum number of seconds for an upload."""
+"""The maximum number of seconds that an upload may take."""
 
 
 class RecordedAgent(Agent):
@@ -47,7 +47,7 @@ class RecordedAgent(Agent):
         self.recorders = Recorders()
 
     def context(self, **options: Any) -> Context:
-        """Make a context, and record it."""
+        """Return a new context, which is recorded from its start."""
         context = super().context(**options)
         self.recorders.of(context, whole=True)
         return context
@@ -63,13 +63,13 @@ def routes(
 
     Args:
         recorders: The recorders of a `RecordedAgent`. Without them, recording starts when a board opens.
-        recording: The recording to show, unless a page asks for a conversation.
-        title: The agent's name; None for the name that the agent gives itself.
+        recording: The recording to show, unless a page asks for a conversation; None to show conversations only.
+        title: The agent's name on the page; None for the name that the agent gives itself.
     """
     known = Recorders() if recorders is None else recorders
     recordings = Recordings(recording)
     receiving = asyncio.Semaphore(AT_ONCE)
-    reading = asyncio.Lock()  # one recording at a time: reading takes many times its size in memory
+    reading = asyncio.Lock()  # one recording at a time: reading a file takes many times its size in memory
 
     async def inspect(socket: WebSocket) -> None:
         state = socket.app.state
@@ -96,7 +96,7 @@ def routes(
         except TimeoutError:
             return PlainTextResponse(f"the upload took more than {LONGEST:g} s", 408)
         except ClientDisconnect:
-            return Response(status_code=400)  # the client never reads it
+            return Response(status_code=400)  # the client is gone, and never reads the answer
         try:
             async with reading:
                 recording = await asyncio.to_thread(read_apart, bytes(data))
@@ -111,7 +111,7 @@ def routes(
         return RedirectResponse(INSIDE, 307)
 
     return [
-        *([] if recording is None else [Route("/", look)]),  # a recording has no chat
+        *([] if recording is None else [Route("/", look)]),  # beside a recording there is no chat page
         Route("/board", redirect),
         Mount(
             "/board",

@@ -1,6 +1,6 @@
 """A policy as plain values, for the board and for recorded traces.
 
-JSON can express all of it, so a trace is readable without its agent.
+JSON can express all these values, so a trace file is readable without its agent.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ class ConstraintView:
 
 @dataclass(frozen=True, slots=True)
 class GateView:
-    """A slot predicate of a clause, and its source text."""
+    """A slot predicate of a clause: the slot, and the predicate as text."""
 
     slot: str
     text: str
@@ -40,7 +40,7 @@ class GateView:
 
 @dataclass(frozen=True, slots=True)
 class Term:
-    """One addend of a utility: −ln(rules / |Λ|) nats, where `rules` have the signal on their pathways (L9)."""
+    """One addend of a utility: −ln(rules / |Λ|) nats; `rules` is how many rules have the signal on a pathway (L9)."""
 
     signal: str
     rules: int
@@ -52,10 +52,10 @@ class ClauseView:
     """A clause, and the parts of its utility (nats).
 
     Attributes:
-        condition: Its source text.
+        condition: The clause as text.
         terms: The addends of the pathway with the least utility, which decides the clause's utility.
-        pathways: The number of pathways.
-        predicates: The number of predicates, which add ln 2 each.
+        pathways: The number of the clause's pathways.
+        predicates: The number of the clause's predicates, which add ln 2 each.
         utility: The sum of all addends (L9).
         base: Utility × weight: the effective utility without a cooldown.
     """
@@ -121,7 +121,7 @@ class SlotView:
 
 @dataclass(frozen=True, slots=True)
 class Description:
-    """A policy. |Λ| is the number of its rules."""
+    """A policy as plain values. |Λ| is the number of its rules."""
 
     modules: tuple[str, ...]
     rules: tuple[RuleView, ...]
@@ -130,16 +130,16 @@ class Description:
     diagram: Diagram
 
     def rule(self, name: str) -> RuleView | None:
-        """Return the rule with a given name, if there is one."""
+        """Return the rule with this name, or None."""
         return next((rule for rule in self.rules if rule.name == name), None)
 
     def signal(self, name: str) -> SignalView | None:
-        """Return the signal with a given name, if there is one."""
+        """Return the signal with this name, or None."""
         return next((signal for signal in self.signals if signal.name == name), None)
 
 
 def describe(policy: Policy) -> Description:
-    """Describe a policy. A hundred rules take milliseconds, so describe each policy once.
+    """Return the description of a policy. A hundred rules take milliseconds, so describe each policy once.
 
     Example:
         >>> import ravestate as rs
@@ -242,7 +242,7 @@ def _slot(plan: SlotPlan, readers: _Users, writers: _Users) -> SlotView:
 
 
 def _users(policy: Policy) -> tuple[_Users, _Users]:
-    """Return the rules that read each slot, and those that write it."""
+    """Return slot's name → the rules that read the slot, and slot's name → the rules that write it."""
     readers: _Users = {}
     writers: _Users = {}
     for name, rule in policy.rules.items():

@@ -1,6 +1,6 @@
-"""An index of a trace for one causal group: its spikes, and the attempts of each rule on them.
+"""An index of a trace for one causal group: the group's spikes, and each rule's attempts to run on them.
 
-Each question builds such an index from the records alone.
+Each question builds such an index anew, from the records alone.
 """
 
 from __future__ import annotations
@@ -23,14 +23,14 @@ class Attempt:
     """One activation of a rule, as far as the trace shows it.
 
     Attributes:
-        records: All its records, in order.
-        held: The spikes that it took, in order.
+        records: All records of the activation, in order.
+        held: The records of the spikes that it took, in order.
         lacks: The signals that it lacked before it ended.
-        complete: The time at which it had all spikes (seconds); None if it never did.
+        complete: The time at which it had all its spikes (seconds); None if it never had.
         waits: The records of its waits.
-        gave_up: The spikes that it gave up at its end.
-        started: The record of its run's start.
-        settled: The record of its run's end.
+        gave_up: The records of the spikes that it gave up at its end.
+        started: The record of the start of its run; None without a run.
+        settled: The record of the end of its run; None before.
     """
 
     id: int
@@ -54,14 +54,14 @@ class Attempt:
 
     @property
     def end(self) -> float | None:
-        """The time of its end (seconds); None before."""
+        """The time at which the attempt ended (seconds); None before."""
         if self.settled is not None:
             return self.settled.time
         return self.gave_up[-1].time if self.over and self.gave_up else None
 
     @property
     def spikes(self) -> Iterable[int]:
-        """The spikes of its run; without a run, those that it took."""
+        """The numbers of the spikes of the attempt's run; without a run, of the spikes that it took."""
         return [held.spike for held in self.held] if self.started is None else self.started.spikes
 
     def take(self, record: t.Held) -> None:
@@ -86,14 +86,14 @@ class History:
     """A trace, indexed for questions about the causal group of one spike.
 
     Args:
-        records: The trace, in order.
-        spike: The number of a spike in it.
+        records: The records of the trace, in order.
+        spike: The number of a spike in the trace.
 
     Attributes:
-        raising: A pair for each signal that a run raised: the run's number and the signal.
+        raising: The pairs (run's number, signal) of all signals that runs raised.
 
     Raises:
-        LookupError: The trace does not contain the spike, or no longer does.
+        LookupError: The trace does not contain the spike, or not any more.
     """
 
     def __init__(self, records: Iterable[t.Record], spike: int) -> None:
@@ -110,7 +110,7 @@ class History:
         self.first = self.last = 0.0
         self._runs: dict[int, Attempt] = {}
         self._into: dict[int, int] = {}
-        self._answers: list[Attempt] = []  # in the order of their end
+        self._answers: list[Attempt] = []  # in the order of their ends
         self._of: dict[str, list[Attempt]] = {}
         self._spans: dict[str, tuple[list[float], list[float]]] = {}
         started = False
@@ -126,7 +126,7 @@ class History:
         self.group = {id for id, born in self.born.items() if self.root(born.group) == root}
 
     def root(self, group: int) -> int:
-        """Return the group that a group has finally merged into."""
+        """Return the group into which a group has finally merged; without a merger, the group itself."""
         root = group
         while root in self._into:
             root = self._into[root]
@@ -141,7 +141,7 @@ class History:
         return self._of[rule]
 
     def raised(self, signal: str) -> list[t.Born]:
-        """Return the spikes of a signal in the group."""
+        """Return the records of the spikes of a signal in the group."""
         return [self.born[id] for id in self.group if self.born[id].signal == signal]
 
     def ran(self, rule: str, time: float) -> bool:
@@ -161,11 +161,11 @@ class History:
         return begun > 0 and ends[begun - 1] >= time
 
     def answered(self, hears: Mapping[str, Sequence[Collection[str]]]) -> Attempt | None:
-        """Return the first run that answered for the group.
+        """Return the first run that answered the cause of the group; None if no run of the given rules did.
 
         Args:
-            hears: For each rule to consider, the signals that each of its clauses consumes. A detached constraint
-                consumes none (L19).
+            hears: Rule to consider → for each of its clauses, the signals that the clause consumes. A detached
+                constraint consumes none (L19).
         """
         return next((a for a in self._answers if a.rule in hears and self._is_taken(a, hears[a.rule][a.clause])), None)
 
@@ -186,7 +186,7 @@ class History:
         return ""
 
     def value(self, slot: str, time: float) -> t.Set | None:
-        """Return the last write of a slot up to a time (seconds), if the trace has one."""
+        """Return the record of the last write of a slot up to a time (seconds); None if the trace has no such."""
         written = self.values.get(slot, [])
         number = bisect_right(written, time, key=BY_TIME)
         return written[number - 1] if number else None
@@ -214,7 +214,7 @@ class History:
                 self._attempt(record.run, record).started = record
             case t.GaveUp() | t.Waits():
                 attempt = self._runs.get(record.activation)
-                if attempt is not None:  # otherwise the attempt began before the trace
+                if attempt is not None:  # None: the attempt began before the trace
                     attempt.records.append(record)
                     if isinstance(record, t.GaveUp):
                         attempt.lose(record)

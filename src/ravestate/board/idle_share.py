@@ -1,4 +1,4 @@
-"""The idle share of a process: an inspector uses part of it, so that the agent comes first."""
+"""The idle share of a process: inspectors and recorders use part of the idle time, so that the agent comes first."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ SCHEDULE = "/proc/thread-self/schedstat"
 
 
 class IdleShare:
-    """The share of time in which the process was idle since the last call. Use it in one thread only.
+    """Measures the share of time in which the process was idle since the last `share` call. Use it in one thread only.
 
     The processor time of all threads counts as busy. Time in which this thread waited for a processor counts as busy,
     too, where the system measures it (Linux).
@@ -25,7 +25,7 @@ class IdleShare:
         self._kept = _kept_waiting()
 
     def share(self) -> float:
-        """Return the share, from 0 (always busy) to 1 (always idle)."""
+        """Return the idle share since the last call, from 0 (always busy) to 1 (always idle)."""
         since, busy, kept = perf_counter(), process_time(), _kept_waiting()
         passed = since - self._since
         used = busy - self._busy + kept - self._kept
@@ -34,7 +34,7 @@ class IdleShare:
 
 
 def _kept_waiting() -> float:
-    """Return the seconds for which this thread waited for a processor."""
+    """Return the seconds for which this thread has waited for a processor so far; 0 if the system does not know."""
     try:
         with open(SCHEDULE, encoding="ascii") as file:
             return int(file.read().split()[1]) / 1e9

@@ -26,16 +26,16 @@ if TYPE_CHECKING:
     from ravestate.modules.platform.webio.sessions import Sessions
 
 FRAME = 0.05
-"""Seconds between two frames of records."""
+"""The least number of seconds between two frames of records."""
 
 SHARE = 0.015
-"""The share of the loop's time that one inspector may use. So a long pause follows a slow frame."""
+"""The share of the event loop's time that one inspector may use. So a long pause follows a slow frame."""
 
 OF_SPARE = 0.5
-"""The share of the process's idle time that an inspector may use as well."""
+"""The share of the process's idle time that one inspector may use in addition."""
 
 MOST = 800
-"""The maximum number of records in a frame; more would delay the agent."""
+"""The maximum number of records in a frame; a longer frame would delay the agent."""
 
 BACKLOG = 20_000
 """The maximum number of past records that a new inspector gets."""
@@ -44,19 +44,19 @@ LAG = 25_000
 """The maximum number of records that an inspector may lag behind. Beyond it, the server skips to the present."""
 
 BURST, SPEED = 60, 30.0
-"""The rate limit: the size of a burst, and commands a second after that."""
+"""The rate limit for a page's commands: the size of a burst, and the number of commands per second after it."""
 
 LISTED = 1.0
-"""Seconds between two checks of the list of conversations."""
+"""The seconds between two checks of the list of conversations."""
 
 LIST = 100
 """The maximum number of conversations in the list: the newest ones, and the one that the page shows."""
 
 WORDS = 48
-"""The maximum number of characters of a visitor's last words in the list."""
+"""The maximum number of characters of a visitor's last words in the list of conversations."""
 
 REPLIES = 64
-"""The maximum number of answers in the queue for a client."""
+"""The maximum number of answers that wait to be sent to one page."""
 
 HELLO = f'{{"type": "hello", "v": {protocol.VERSION}}}'
 
@@ -66,11 +66,11 @@ class Inspector:
 
     Args:
         socket: The connection, not accepted yet.
-        access: Checks the token.
-        sessions: The conversations.
-        recorders: The recorders of their contexts.
-        recordings: The recordings.
-        title: The agent's name; None for the name that the agent gives itself.
+        access: The check of the client's token.
+        sessions: The server's conversations.
+        recorders: The recorders of the conversations' contexts.
+        recordings: The recordings that the server holds.
+        title: The agent's name on the page; None for the name that the agent gives itself.
     """
 
     def __init__(
@@ -90,7 +90,7 @@ class Inspector:
         self._title = title
 
     def wake(self) -> None:
-        """Ignore changes in the conversation: the records contain them all."""
+        """Ignore a change in the conversation: the records contain it."""
 
     async def run(self) -> None:
         """Serve the page until either side closes."""
@@ -110,7 +110,7 @@ class Inspector:
             title = self._title_of(session)
         try:
             if session is not None:
-                await asyncio.sleep(0)  # lets a new conversation begin
+                await asyncio.sleep(0)  # so that a new conversation begins
             seen = max(source.first - 1, source.last - BACKLOG)
             visitor = None if session is None else session.visitor
             whole = source.whole and seen == 0
@@ -217,9 +217,9 @@ class Inspector:
     # ------------------------------------------------------------------------------------ to the page
 
     async def _write(self, source: Source, session: Session | None, seen: int, title: str) -> None:
-        """Send records, at most some twenty times a second, and answers."""
+        """Send the page new records, at most some twenty times a second, and answers."""
         idle = IdleShare()
-        sent: bool | None = None  # whether the clock was stopped in the last frame
+        sent: bool | None = None  # whether the clock was stopped, as the last frame said
         listed: protocol.Conversations | None = None
         now, looked = asyncio.get_running_loop().time, -LISTED
         while True:
@@ -262,7 +262,7 @@ class Inspector:
             await self._pause(seconds if source.live else 0.0, seen < source.last)
 
     async def _pause(self, seconds: float, more: bool) -> None:
-        """Wait for the next frame, or for an answer to send."""
+        """Wait until the next frame is due, or until there is an answer to send."""
         if seconds == 0.0 and not more:
             await self._channel.woken.wait()
             return
@@ -276,7 +276,7 @@ class Inspector:
         return session.agent if self._title is None else self._title
 
     def _conversations(self, own: Session) -> protocol.Conversations:
-        """Return the newest conversations, and the one that the page shows."""
+        """Return the list of the newest conversations and the one that the page shows."""
         running = list(self._sessions)
         listed = running[-LIST:]
         if own in running[:-LIST]:

@@ -1,4 +1,4 @@
-"""Checks of values and payloads that a user of the board types. JSON has to be able to express them."""
+"""Checks of the values and payloads that a user of the board types as JSON."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ def check_value(slot: Slot[Any], value: object, holds: object) -> None:
     """Refuse a value that a user may not write to a slot. `Slot.check` makes further checks during the write.
 
     Args:
-        slot: The slot.
+        slot: The slot to write.
         value: The value from JSON.
-        holds: The slot's current value, which stands in for a missing type.
+        holds: The slot's current value; its type stands in if the slot declares none.
 
     Raises:
-        RavestateError: JSON cannot express the slot's type, or the value has another type.
+        RavestateError: JSON cannot express the slot's type, or the value is of another type.
     """
     if isinstance(slot, Flag) and not isinstance(value, bool):
         raise RavestateError(f"{slot.name} is a flag: write true or false, not {value!r}")
@@ -43,9 +43,9 @@ def check_payload(signal: Signal[Any], command: Emit, slot: Slot[Any] | None, ho
     """Refuse a payload that is missing, superfluous, or of the wrong type.
 
     Args:
-        signal: The signal.
+        signal: The signal to raise.
         command: The user's command.
-        slot: The slot that the signal belongs to, if any.
+        slot: The slot that the signal belongs to; None if it belongs to none.
         holds: The current value of that slot.
 
     Raises:
@@ -90,14 +90,14 @@ def _check_holds(slot: Slot[Any], holds: object) -> None:
 
 
 def _is_expressible(takes: Any) -> bool:
-    """Return whether JSON can express a value of a type."""
+    """Return whether JSON can express some value of these types; None stands for any type."""
     return takes is None or any(isinstance(sample, takes) for sample in SAMPLES)
 
 
 def _checkable(kind: Any) -> Any:
-    """Return the types for an `isinstance` check, or None if no such check is possible.
+    """Return the type or types for an `isinstance` check of a value, or None if no such check is possible.
 
-    ``list[int]`` checks for a list, and not for its items.
+    For ``list[int]``, the check accepts any list, whatever its items.
     """
     takes = checkable(kind)
     if takes is not None:

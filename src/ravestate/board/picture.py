@@ -1,4 +1,4 @@
-"""The layout of the Signal-Rule-Slot diagram, as a frame for the page."""
+"""The laid-out Signal-Rule-Slot diagram, as a frame for the page."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from ravestate.draw.sizes import label_size, node_size
 
 
 def draw(diagram: Diagram, unfolded: Sequence[str]) -> Drawing:
-    """Lay out a diagram with some modules unfolded. Hundreds of nodes take a second or so."""
+    """Return the laid-out diagram, in which only the modules `unfolded` show their rules. 500 nodes take about 1 s."""
     folded = fold(diagram, frozenset(unfolded))
     sizes = {node.id: node_size(node) for node in folded.nodes}
     layout = lay_out(folded, sizes, [label_size(edge.label) for edge in folded.edges])

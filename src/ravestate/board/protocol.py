@@ -29,12 +29,12 @@ __all__ = [
 ]  # fmt: skip
 
 LOSSES: dict[str, str] = {reason.value: reason.words for reason in LossReason}
-"""Why an activation gave up a spike: the phrase for each reason."""
+"""Reason for which an activation gave up a spike → a phrase for people."""
 
 VERDICTS: dict[str, dict[str, str]] = {
     verdict.value: {"title": verdict.words, "tone": verdict.tone} for verdict in Verdict
 }
-"""The title and the tone of each verdict."""
+"""Verdict → its title and its tone (the colour on the page)."""
 
 Name = Annotated[str, Field(min_length=1, max_length=300)]
 
@@ -47,16 +47,16 @@ class _Frame(pydantic.BaseModel):
 
 
 class Hello(_Frame):
-    """The first frame: it says what to show.
+    """The first frame: it names the conversation or the recording to show.
 
     Without `session`, `visitor` and `recording`, the server shows the recording that it was started with, or else the
     newest conversation. It begins a conversation if there is none.
 
     Attributes:
         v: The version of the protocol.
-        session: The secret of a conversation, which its visitor's page has.
-        visitor: The name of a conversation, as in `Conversations`.
-        recording: The name of an uploaded recording.
+        session: The secret id of the conversation to show; its visitor's page has the id.
+        visitor: The name of the conversation to show, as in `Conversations`.
+        recording: The name of the uploaded recording to show.
         token: The server's token, if the server asks for one.
     """
 
@@ -75,7 +75,7 @@ class Clock(_Frame):
 
 
 class Put(_Frame):
-    """Write a slot."""
+    """Write a slot from outside the rules."""
 
     type: Literal["put"]
     slot: Name
@@ -83,7 +83,7 @@ class Put(_Frame):
 
 
 class Emit(_Frame):
-    """Raise a signal."""
+    """Raise a signal from outside the rules."""
 
     type: Literal["emit"]
     signal: Name
@@ -98,20 +98,20 @@ class Say(_Frame):
 
 
 class Look(_Frame):
-    """A question for a `State`."""
+    """A request for a `State`."""
 
     type: Literal["look"]
 
 
 class Explain(_Frame):
-    """A question for an `Explained`: what a rule holds, lacks and waits for now."""
+    """A request for an `Explained`: the spikes that a rule holds and lacks now, and the rules that it waits for."""
 
     type: Literal["explain"]
     rule: Name
 
 
 class Why(_Frame):
-    """A question for an `Answer`: why a rule did not fire for the cause of a spike."""
+    """A request for an `Answer`: why a rule did not fire for the cause of a spike."""
 
     type: Literal["why"]
     rule: Name
@@ -119,14 +119,14 @@ class Why(_Frame):
 
 
 class Unfold(_Frame):
-    """A question for a `Drawing` with some modules unfolded."""
+    """A request for a `Drawing` in which only the modules `unfolded` show their rules."""
 
     type: Literal["diagram"]
     unfolded: list[Name]
 
 
 class Ping(_Frame):
-    """A question for a `Pong`."""
+    """A request for a `Pong`."""
 
     type: Literal["ping"]
 
@@ -142,10 +142,10 @@ class Welcome:
         v: The version of the protocol.
         title: The agent's name.
         live: Whether this is a running conversation, not a recording.
-        visitor: The name of the conversation.
-        whole: Whether the records that follow reach back to the start.
-        policy: The policy.
-        now: Seconds since the context began.
+        visitor: The name of the conversation; None for a recording.
+        whole: Whether the records that follow reach back to the start of the context.
+        policy: The policy of the agent.
+        now: The seconds since the context began.
         paused: Whether the context's clock is stopped.
     """
 
@@ -162,7 +162,7 @@ class Welcome:
 
 @dataclass(frozen=True, slots=True)
 class Alive(ActivationState):
-    """A live activation, and its rule."""
+    """A live activation, and the name of its rule."""
 
     rule: str
 
@@ -180,12 +180,12 @@ class State:
 
 @dataclass(frozen=True)
 class Records:
-    """The next records, in order.
+    """The next records of the trace, in order.
 
     Attributes:
         records: The records.
-        missed: How many records before these are left out.
-        behind: How many records are still to come.
+        missed: How many records just before these are left out.
+        behind: How many records the server has not sent yet.
     """
 
     records: list[TraceRecord]
@@ -217,10 +217,10 @@ class Conversation:
     """A conversation in a list.
 
     Attributes:
-        visitor: Its name.
-        name: The visitor's own name, if it is known.
-        began: Milliseconds since 1970 (UTC).
-        said: The start of the visitor's last words, if there are any.
+        visitor: The conversation's name.
+        name: The name of the person; None if it is unknown.
+        began: The time of its start, in milliseconds since 1970 (UTC).
+        said: The start of the visitor's last words; None if they have said nothing.
     """
 
     visitor: str
@@ -231,7 +231,7 @@ class Conversation:
 
 @dataclass(frozen=True)
 class Conversations:
-    """The newest conversations, oldest first, and how many more there are."""
+    """The newest conversations, oldest first; `more` is how many others there are."""
 
     conversations: list[Conversation]
     more: int
@@ -248,7 +248,7 @@ class ExplainedClause:
 
 @dataclass(frozen=True)
 class Explained:
-    """The current state of a rule: what it holds, lacks and waits for."""
+    """The current state of a rule: the spikes that it holds and lacks, and the rules that it waits for."""
 
     rule: str
     now: float
@@ -260,7 +260,7 @@ class Explained:
 
 @dataclass(frozen=True, slots=True)
 class Answer(WhyNot):
-    """Why a rule did not fire."""
+    """The answer to `Why`: why a rule did not fire."""
 
     type: Literal["why"] = "why"
 
@@ -294,7 +294,7 @@ class DrawnEdge:
 
 @dataclass(frozen=True)
 class Drawing:
-    """The diagram with some modules unfolded; lengths in pixels."""
+    """The diagram, in which only the modules `unfolded` show their rules. Lengths are in pixels."""
 
     unfolded: list[str]
     width: float
@@ -306,7 +306,7 @@ class Drawing:
 
 @dataclass(frozen=True)
 class Ended:
-    """The conversation is over, and why; the server closes the connection."""
+    """The conversation is over; `text` says why. The server then closes the connection."""
 
     text: str
     type: Literal["ended"] = "ended"
@@ -314,12 +314,12 @@ class Ended:
 
 @dataclass(frozen=True)
 class Error:
-    """A fault in a frame or a connection.
+    """A fault in a frame from the page, or in the connection.
 
     Attributes:
         code: One word for programs.
         text: An explanation for people.
-        of: The type of the frame that is refused.
+        of: The type of the refused frame; empty if no single frame is refused.
     """
 
     code: str
@@ -348,7 +348,7 @@ SERVER: TypeAdapter[ServerFrame] = TypeAdapter(Annotated[ServerFrame, _BY_TYPE])
 
 
 def parse(text: str | bytes) -> ClientFrame:
-    """Return the frame that a text stands for.
+    """Return the frame that a JSON text describes.
 
     Raises:
         ValueError: The text is not a frame; the message says why.
@@ -375,7 +375,7 @@ def parse(text: str | bytes) -> ClientFrame:
 
 
 def serialise(frame: ServerFrame) -> str:
-    """Return a frame as text. A field that has its default is left out.
+    """Return a frame as JSON text, without the fields that have their default values.
 
     The text is ASCII, because values may hold lone surrogates, which no other encoding carries.
     """
@@ -383,7 +383,7 @@ def serialise(frame: ServerFrame) -> str:
 
 
 def fields_of(record: Any) -> dict[str, Any]:
-    """Return the fields of a dataclass."""
+    """Return field's name → value for a dataclass instance; the values are not copied."""
     return {field.name: getattr(record, field.name) for field in dataclasses.fields(record)}
 
 

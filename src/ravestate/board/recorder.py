@@ -33,19 +33,19 @@ IN_ALL = 500_000
 """The maximum number of records of all contexts together. Each takes about 136 bytes plus its payload."""
 
 BATCH = 100
-"""The number of records between two reports of growth."""
+"""The number of records between two calls of `grown`."""
 
 BURST = 20_000
-"""The maximum number of records at once."""
+"""The maximum number of records in one burst."""
 
 RATE = 2_000
-"""The records per second that are kept after a burst, if the agent is always busy."""
+"""The records per second that a recorder keeps after a burst, while the process is always busy."""
 
 SPARE = 60_000
-"""Additional records a second, multiplied by the idle share of the process."""
+"""Additional records per second in an idle process; the idle share of the process multiplies this number."""
 
 PAUSE = 0.1
-"""Seconds without listening, after too many records."""
+"""Seconds for which a recorder stops listening after too many records."""
 
 
 @dataclass(slots=True)
@@ -53,7 +53,7 @@ class Gap:
     """A gap in the records.
 
     Attributes:
-        time: Its start (seconds).
+        time: The start of the gap (seconds on the context's clock).
         spikes: How many spikes the recorder missed; -1 while that is unknown.
     """
 
@@ -67,11 +67,11 @@ class Recorder:
     Args:
         context: A context, running or not.
         kept: The maximum number of records to keep.
-        burst: The maximum number of records at once.
-        rate: Records a second after a burst.
-        spare: Additional records a second, multiplied by the idle share of the process.
-        whole: Whether the context has not started yet, so that the records are complete.
-        grown: A callback after each `BATCH` of records.
+        burst: The maximum number of records in one burst.
+        rate: The number of records per second after a burst.
+        spare: Additional records per second in an idle process, as for `SPARE`.
+        whole: True if the context has not started: the records are then complete.
+        grown: A callback that runs after every `BATCH` records.
     """
 
     def __init__(
@@ -91,9 +91,9 @@ class Recorder:
         self._rate = rate
         self._spare = spare
         self._idle_share = IdleShare()
-        self._left = 0  # records that it may still take; the first record earns a burst
+        self._left = 0  # how many records it may still take: 0 at first; the first record sets it to `burst`
         self._granted: float | None = None
-        self._spike = 0  # the newest spike so far
+        self._spike = 0  # the number of the newest spike so far
         self._gap: Gap | None = None
         self._leave: Callable[[], None] = lambda: None
         self.records: deque[Record | Gap] = deque(maxlen=kept)
@@ -103,7 +103,7 @@ class Recorder:
         self.missed = 0
         """How many spikes the recorder missed."""
         self.whole = whole
-        """Whether it has listened from the start."""
+        """Whether it has listened since the context started."""
         self._listen()
 
     @property
@@ -112,10 +112,10 @@ class Recorder:
         return self.last - len(self.records) + 1
 
     def since(self, number: int, most: int) -> list[Record | Gap]:
-        """Return at most `most` records after a number."""
+        """Return the records with numbers greater than `number`, oldest first, at most `most`."""
         skip = max(0, number - self.first + 1)
         length = len(self.records)
-        if length - skip < skip:  # a deque is fast at both ends
+        if length - skip < skip:  # a deque is fast at its ends only, so begin at the nearer end
             tail = list(islice(reversed(self.records), length - skip))
             tail.reverse()
             return tail[:most]
@@ -156,10 +156,10 @@ class Recorder:
             self._gap = None
             self._leave()
             self._listen()
-        self._take(record)  # may begin the next gap
+        self._take(record)  # this call may begin the next gap
 
     def _rest(self) -> None:
-        """Add the allowance that the passed time has earned; if nothing is left, stop listening for a moment."""
+        """Add the records that the passed time allows; if none is allowed, stop listening for a moment."""
         loop = asyncio.get_running_loop()
         now = loop.time()
         earned = self._burst if self._granted is None else (now - self._granted) * self._speed()
@@ -207,7 +207,7 @@ class Recorders:
 
     def _grow(self) -> None:
         self._grown += BATCH
-        if self._grown * 50 >= self._in_all:  # rarely, so that it costs almost nothing for each record
+        if self._grown * 50 >= self._in_all:  # seldom true, so a record costs almost nothing
             self._grown = 0
             recorders = [found for known in self._of.values() if (found := known()) is not None]
             length = _fair([len(recorder.records) for recorder in recorders], self._in_all)

@@ -16,10 +16,10 @@ from ravestate.board.repr_chunks import repr_chunks
 from ravestate.declare.slot import Entry
 
 DEEPEST = 6
-"""The maximum depth of nested containers."""
+"""The maximum depth of nested containers in JSON; a deeper value is shown by its ``repr``."""
 
 TRACEBACK = 8000
-"""The maximum number of characters of a traceback; the end is kept."""
+"""The maximum number of characters of a traceback; of a longer one, the end is kept."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,9 +27,9 @@ class Rendered:
     """A value as text.
 
     Attributes:
-        text: JSON, or a ``repr``.
+        text: The value as JSON, or its ``repr``.
         json: Whether the text is JSON for the whole value, which a user may edit and write back.
-        cut: Whether the text is only a part.
+        cut: Whether the text is only the beginning.
     """
 
     text: str
@@ -62,7 +62,7 @@ def render(value: object, most: int = 2000) -> Rendered:
             if len(whole) <= most:
                 return Rendered(whole)
         return Rendered(json.dumps(well_formed(text[:most]), ensure_ascii=False)[:most], False, True)
-    if kind is Entry:  # an item of a collection: its key matters most
+    if kind is Entry:  # an item of a collection: the key comes first, since it matters most
         key, item = cast("Entry", value)
         name = render(str(key), most).text
         return Rendered((name if item is None else f"{name}: {render(item, most).text}")[:most], False)
@@ -86,13 +86,13 @@ def not_json(value: object, most: int = 2000) -> bool:
         return False
     try:
         _start(_json(value, 0), most)
-    except Exception:  # JSON cannot express it, or its own code fails
+    except Exception:  # JSON cannot express the value, or the value's own code fails
         return True
     return False
 
 
 def _start(chunks: Iterator[str], most: int) -> str:
-    """Join chunks until there are more than `most` characters."""
+    """Return the chunks joined, up to the first chunk that makes the text longer than `most` characters."""
     text = ""
     for chunk in chunks:
         text += chunk
@@ -121,7 +121,7 @@ def _json(value: object, depth: int) -> Iterator[str]:
             yield (", " if number else "") + json.dumps(well_formed(key[:1000]), ensure_ascii=False) + ": "
             yield from _json(item, depth + 1)
         yield "}"
-    elif type(value) is list:  # a tuple would come back as a list
+    elif type(value) is list:  # only lists: JSON would turn a tuple into a list
         yield "["
         for number, item in enumerate(cast("list[object]", value)):
             if number:

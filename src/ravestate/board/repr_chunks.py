@@ -1,4 +1,4 @@
-"""The ``repr`` of a value in chunks: for a huge value, only the chunks that are read are made."""
+"""The ``repr`` of a value in chunks. For a huge value, no more chunks are made than the caller reads."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from types import MappingProxyType
 from typing import Any, NamedTuple, cast
 
 DEEPEST = 30
-"""The maximum depth of nested containers."""
+"""The maximum depth of nested containers; the content of deeper ones is left out."""
 
 LONGEST = 100_000
-"""The maximum number of characters, or bytes, of one text."""
+"""The maximum number of characters of a text, or of bytes, within a value; the rest is left out."""
 
 TEXTS: dict[Any, Any] = {kind.__repr__: kind for kind in (str, bytes, bytearray)}
 
@@ -24,16 +24,16 @@ _WALKS: dict[Any, Any] = {
     **{kind: kind.__iter__ for kind in _ROWS},
     **{kind: kind.items for kind in _TABLES},
 }
-"""The iterator of each built-in container, so that a subclass cannot override it here."""
+"""Built-in container → its own method of iteration, so that a subclass's method is never called."""
 
 BUILT_IN: dict[Any, Any] = {kind.__repr__: kind for kind in _WALKS}
-"""The built-in containers, by their ``__repr__``."""
+"""``__repr__`` method → the built-in container that defines it."""
 
 
 class _Box(NamedTuple):
     """The parts of a container's ``repr``: the text around its items, and the items, each with its prefix.
 
-    `again` stands for the container within itself; by default, that is three dots in its brackets.
+    `again` is the text for the container within itself; if it is empty, that is three dots within its brackets.
     """
 
     opening: str
@@ -51,7 +51,7 @@ def repr_chunks(value: object, around: tuple[int, ...] = ()) -> Iterator[str]:
 
     Args:
         value: The value.
-        around: The `id` of each container around it.
+        around: The `id` of each container around the value.
 
     Example:
         >>> "".join(repr_chunks(({1: {"Ada"}}, b"x")))
@@ -85,7 +85,7 @@ def repr_chunks(value: object, around: tuple[int, ...] = ()) -> Iterator[str]:
 
 
 def _box(value: Any, made_by: Any, around: tuple[int, ...]) -> _Box | None:
-    """Return the parts of a value's ``repr``, by its type's `__repr__`; None if they are unknown."""
+    """Return the parts of a value's ``repr``, which `made_by` determines; None if the parts are unknown."""
     own = cast("type[Any]", type(value))
     kind = BUILT_IN.get(made_by)
     if kind is not None:
@@ -100,7 +100,7 @@ def _box(value: Any, made_by: Any, around: tuple[int, ...]) -> _Box | None:
 
 
 def _built_in(value: Any, kind: Any, around: tuple[int, ...]) -> _Box | None:
-    """Return the parts of a built-in container or of a subclass; None if it is empty and has its own ``repr``."""
+    """Return the parts of the ``repr`` of a built-in container or a subclass; None if it is empty and short."""
     name = type(value).__name__
     size: int = kind.__len__(value)
     items = _WALKS[kind](value)
@@ -139,7 +139,7 @@ def _named(items: Iterable[tuple[str, object]]) -> Iterator[tuple[Iterable[str],
 
 
 def _fields(own: type[Any], made_by: Any) -> list[str]:
-    """Return the fields in a dataclass's `__repr__`, which a base class may have made."""
+    """Return the names of the fields in a dataclass's `__repr__`, which it may have from a base class."""
     maker: Any = next(base for base in own.__mro__ if vars(base).get("__repr__") is made_by)
     return [field.name for field in dataclasses.fields(maker) if field.repr]
 

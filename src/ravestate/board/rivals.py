@@ -1,4 +1,4 @@
-"""The other rules in an answer: those that a rule waited for, and the one that answered instead."""
+"""The other rules in an explanation of why a rule did not run: those it waited for, and the one that answered."""
 
 from __future__ import annotations
 
@@ -14,23 +14,23 @@ class Rivals:
     """Phrases about other rules.
 
     Args:
-        history: The trace.
-        description: The policy.
+        history: The history of the context, from its trace.
+        description: The description of the context's policy.
     """
 
     def __init__(self, history: History, description: Description) -> None:
         self._history = history
         self._description = description
-        self._first: dict[str, Attempt | None] = {}  # the run that answered first, by the rule that lost to it
+        self._first: dict[str, Attempt | None] = {}  # losing rule → the run that answered first
 
     def waited(self, rule: RuleView, attempt: Attempt) -> str:
-        """Say which rules an attempt waited for; empty if it did not wait."""
+        """Return which rules the attempt last waited for, as a phrase; empty if it did not wait."""
         if not attempt.waits:
             return ""
         return f"it was ready and waited for {self.names(rule, attempt, attempt.waits[-1])}"
 
     def names(self, rule: RuleView, attempt: Attempt, wait: Waits) -> str:
-        """Name the rules that an attempt waited for, each with the reason."""
+        """Return the names of the rules that the attempt waited for, each with the reason."""
         parts: list[str] = []
         for name in wait.for_:
             if name == rule.name:
@@ -44,7 +44,7 @@ class Rivals:
         return join(parts)
 
     def ahead(self, name: str, rule: RuleView, attempt: Attempt, time: float) -> str:
-        """Say by how much another rule is ahead; empty if it is not."""
+        """Return, in brackets, by how much the utility of the rule `name` is ahead; empty if it is not ahead."""
         other = self._description.rule(name)
         if other is None or name == rule.name:
             return ""
@@ -55,16 +55,16 @@ class Rivals:
         return " (equal utility, declared earlier)" if abs(nats) <= 1e-8 else ""
 
     def answerer(self, rule: RuleView, lost: GaveUp | Passed) -> tuple[str, str]:
-        """Return the rule that answered a lost spike, and its path, which includes the rule that raised its input."""
+        """Return the answering rule, and a path: that rule, preceded by the one that raised its input."""
         by, run = (lost.by, lost.run) if lost.by else self._answered(rule, lost.time)
         before = self._history.before(run)
         return by, f"{before} → {by}" if before else by
 
     def pressure(self, rule: RuleView, end: float) -> str:
-        """Say which other rule waited until the patience of `rule` ran out."""
+        """Say which other rule waited until the patience of `rule` ran out, at the latest at `end` (seconds)."""
         pressed = self._history.pressed.get(rule.name, [])
-        times = bisect_right(pressed, end, key=lambda one: one.until)  # in order: a rule's patience never changes
-        ended = f"its patience ran out at {seconds(end)}"
+        times = bisect_right(pressed, end, key=lambda one: one.until)  # sorted: a rule's patience never changes
+        ended = f"this rule's patience ran out at {seconds(end)}"
         if not times:
             return ended
         last = pressed[times - 1]
@@ -77,7 +77,7 @@ class Rivals:
         return min(1.0, (time - fired[times - 1]) / rule.cooldown) if rule.cooldown and times else 1.0
 
     def _answered(self, rule: RuleView, time: float) -> tuple[str, int]:
-        """Return the first other rule that had answered with one of `rule`'s slots by a time (seconds), and its run."""
+        """Return the first other rule that wrote one of `rule`'s slots before `time`, and the number of its run."""
         if rule.name not in self._first:
             slots = set(rule.writes)
             self._first[rule.name] = self._history.answered(

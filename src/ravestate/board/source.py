@@ -1,4 +1,4 @@
-"""The source of an inspector's data: a running conversation or a recording."""
+"""The sources of an inspector's data: a running conversation or a recording."""
 
 from __future__ import annotations
 
@@ -42,11 +42,11 @@ class LiveSource:
 
     Args:
         session: The conversation.
-        recorder: The recorder of its context.
+        recorder: The recorder of the conversation's context.
 
     Attributes:
-        description: The policy.
-        opens: Evaluates slot predicates.
+        description: The description of the policy.
+        opens: A function that evaluates slot predicates (`gates_of`).
     """
 
     live = True
@@ -71,16 +71,16 @@ class LiveSource:
 
     @property
     def whole(self) -> bool:
-        """Whether the records reach back to the start without a gap."""
+        """Whether the records reach back to the start of the context without a gap."""
         recorder = self._recorder
         return recorder.whole and recorder.first == 1 and not recorder.missed
 
     def since(self, number: int, most: int) -> list[Record | Gap]:
-        """Return at most `most` records after a number."""
+        """Return the records with numbers greater than `number`, oldest first, at most `most`."""
         return self._recorder.since(number, most)
 
     def renewed(self) -> bool:
-        """Describe the policy again if a rule was added; return whether one was."""
+        """Describe the policy again if a rule was added since the last call; return whether one was."""
         if self._context.policy is self._policy:
             return False
         self._policy = self._context.policy
@@ -89,7 +89,7 @@ class LiveSource:
         return True
 
     def clock(self) -> tuple[float, bool]:
-        """Return the time (seconds), and whether the clock is stopped."""
+        """Return the time on the context's clock (seconds), and whether the clock is stopped."""
         return round(self._context.now, 6), self._context.paused
 
     def look(self) -> State:
@@ -106,7 +106,7 @@ class LiveSource:
         )
 
     def explain(self, rule: str) -> Explained:
-        """Return what a rule holds, lacks and waits for.
+        """Return the current state of a rule: the spikes that it holds and lacks, and the rules that it waits for.
 
         Raises:
             DeclarationError: There is no such rule.
@@ -116,7 +116,7 @@ class LiveSource:
         return Explained(rule, found.now, found.retired, clauses, list(found.activations))
 
     async def act(self, command: ClientFrame) -> None:
-        """Carry out a command.
+        """Carry out a command from the page.
 
         Raises:
             RavestateError: The command is refused.
@@ -155,7 +155,7 @@ class LiveSource:
                 raise RavestateError(f"an agent takes no {command.type!r}")
 
     def leave(self) -> None:
-        """Start a stopped clock again, after the last inspector has left."""
+        """Start the context's clock again if it is stopped; call this when the last inspector has left."""
         if self._session.ended is None and self._context.paused:
             self._context.resume()
             self._session.notify()
@@ -174,7 +174,7 @@ class LiveSource:
 
 
 async def _outside_of_any_task(function: Callable[[], T]) -> T:
-    """Call a function on the loop, outside this task: the task may be cancelled, but rules must not be."""
+    """Call a function on the loop, outside this task, and return its result. A cancelled task must not cancel rules."""
     loop = asyncio.get_running_loop()
     called: asyncio.Future[T] = loop.create_future()
 
@@ -182,7 +182,7 @@ async def _outside_of_any_task(function: Callable[[], T]) -> T:
         try:
             result = function()
         except Exception as error:
-            if not called.done():  # otherwise the caller is gone
+            if not called.done():  # if it is done, the caller is gone
                 called.set_exception(error)
         else:
             if not called.done():
@@ -193,7 +193,7 @@ async def _outside_of_any_task(function: Callable[[], T]) -> T:
 
 
 def gates_of(policy: Policy) -> Opens:
-    """Return a function that evaluates the slot predicates of a policy."""
+    """Return a function that evaluates the slot predicates of a policy (see `Opens`)."""
     guards = {(rule.name, clause.number): clause.guards for rule in policy.rule_plans for clause in rule.clauses}
 
     def opens(rule: str, clause: int, number: int, value: Any) -> bool | None:
@@ -202,14 +202,14 @@ def gates_of(policy: Policy) -> Opens:
             return None
         try:
             return bool(found[number][1].predicate(value))
-        except Exception:  # a user's predicate that fails counts as false
+        except Exception:  # a user's predicate may raise anything; it then counts as false
             return False
 
     return opens
 
 
 class RecordedSource:
-    """A recording."""
+    """A recording, as a source: its policy, and its records, numbered from 1."""
 
     live = False
     opens = None
@@ -223,11 +223,11 @@ class RecordedSource:
         self.last = len(recording.records)
 
     def since(self, number: int, most: int) -> list[Record | Gap]:
-        """Return at most `most` records after a number."""
+        """Return the records with numbers greater than `number`, oldest first, at most `most`."""
         return list(self._records[number : number + most])
 
     def clock(self) -> tuple[float, bool]:
-        """Return the time of its end (seconds); the clock is stopped."""
+        """Return the time of the recording's end (seconds), and True: its clock is stopped."""
         return self._records[-1].time if self._records else 0.0, True
 
     def look(self) -> State:
@@ -237,11 +237,11 @@ class RecordedSource:
         return State(slots, [], *self.clock())
 
     def explain(self, rule: str) -> Explained:
-        """Refuse to explain: only an agent can."""
+        """Refuse to explain the state of a rule: only a running agent has one."""
         raise RavestateError("this is a recording: there is no agent to ask")
 
     async def act(self, command: ClientFrame) -> None:
-        """Refuse every command."""
+        """Refuse every command: there is no agent."""
         raise RavestateError(f"this is a recording: there is no agent to take {command.type!r}")
 
 

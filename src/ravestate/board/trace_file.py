@@ -28,17 +28,17 @@ from ravestate.policy.policy import Policy
 FORMAT = "ravestate-trace"
 
 MOST_VALUES = 6_000_000
-"""The maximum number of commas and brackets in a file: more would fill the memory. 64 MB of records have some four
-million."""
+"""The maximum number of commas and opening brackets in a file: more would fill the memory. 64 MB of records have some
+four million."""
 
 LONGEST = 120
-"""The maximum number of seconds for reading a file."""
+"""The maximum number of seconds that reading a file may take."""
 
 CHUNK = 1000
 """The number of records in a message between processes. No other thread runs while a message is unpacked."""
 
 SURROGATE = re.compile(r"\\u[dD][89a-fA-F]")
-"""One half of a surrogate pair in JSON."""
+"""A pattern for one half of a surrogate pair, as JSON writes it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,7 +47,7 @@ class Recording:
 
     Attributes:
         title: The agent's name.
-        whole: Whether the trace begins with the context.
+        whole: Whether the trace begins with the start of the context.
     """
 
     title: str
@@ -90,7 +90,7 @@ def save_trace(
 
 
 def open_trace(path: Path) -> Recording:
-    """Read a trace from a file.
+    """Return the trace in a file.
 
     Raises:
         PlatformError: The file cannot be read, or is not a trace.
@@ -104,7 +104,7 @@ def open_trace(path: Path) -> Recording:
 
 
 def read_trace(text: str | bytes) -> Recording:
-    """Read a trace. Lone surrogates in its texts are replaced.
+    """Return the trace that the text of a file describes. Lone surrogates in the text are replaced by question marks.
 
     Raises:
         ValueError: The text is not a trace; the message names the place of the fault.
@@ -126,7 +126,7 @@ def read_trace(text: str | bytes) -> Recording:
 
 
 def read_apart(data: bytes) -> Recording:
-    """Read a trace in a separate process, so that the other threads of this one keep running.
+    """Return the trace that `data` describes, read in a separate process: so this process's other threads keep running.
 
     Raises:
         ValueError: The data is not a trace, or reading takes too long.
@@ -157,7 +157,7 @@ def _parsed(text: str) -> Any:
 
 def _main() -> int:
     """Read a trace from the standard input, and write it to the standard output for `read_apart`."""
-    from ravestate.board import trace_file  # not `__main__`: pickled records name their module
+    from ravestate.board import trace_file  # not `__main__`: pickled records contain the name of their module
 
     try:
         read = trace_file.read_trace(sys.stdin.buffer.read())

@@ -18,7 +18,7 @@ from ravestate.engine.reasons import DropReason, LossReason, Outcome, PassReason
 from ravestate.engine.trace import GaveUp, Passed, Record, Settled, Waits
 
 DEEPEST = 3
-"""The maximum depth of causes in an answer."""
+"""The maximum number of causes behind each other in an answer."""
 
 MOST = 200
 """The maximum number of moments in an answer. If there are more, the middle is left out."""
@@ -36,14 +36,14 @@ def why_not(
     opens: Opens | None = None,
     whole: bool = True,
 ) -> WhyNot:
-    """Explain why a rule did not fire for the cause of a spike, or that it did.
+    """Return an explanation of why a rule did not fire for the cause of a spike, or how it did.
 
     Args:
-        records: The trace.
-        description: The policy.
+        records: The records of the trace.
+        description: The description of the policy.
         rule: The rule's name.
         spike: The number of a spike in the trace, for example one of an input.
-        opens: Evaluates the slot predicates of a live policy.
+        opens: A function that evaluates the slot predicates of a live policy; None for a recording.
         whole: Whether the trace reaches back to the start of the context.
 
     Raises:
@@ -57,10 +57,10 @@ def why_not(
 
 
 Reached = tuple[Verdict, str, float | None]
-"""How far a rule came, the reason as text, and the time of that decision."""
+"""How far a rule came, the reason as text, and the time of that decision (seconds), or None while it is undecided."""
 
 Judgement = tuple[Verdict, str, float | None, Attempt | None]
-"""A `Reached`, and the attempt that reached this point."""
+"""A `Reached`, and the attempt that came this far; None if there was no attempt."""
 
 ORDER = {verdict: place for place, verdict in enumerate(Verdict)}
 
@@ -71,7 +71,7 @@ class _Inquiry:
         self.description = description
         self.opens = opens
         self.rivals = Rivals(history, description)
-        self.asked: list[str] = []  # the rules that are being explained; causes may be circular
+        self.asked: list[str] = []  # the rules whose explanation is in progress; causes may be circular
         self._judged: dict[str, Judgement] = {}
 
     def answer(self, rule: RuleView, whole: bool) -> WhyNot:
@@ -88,7 +88,7 @@ class _Inquiry:
     # ------------------------------------------------------------------------------------ the verdict
 
     def judge(self, rule: RuleView) -> Judgement:
-        """Return how far a rule came in this group."""
+        """Return how far a rule came at best in this group."""
         if rule.name not in self._judged:
             tried = [(*self._judge(rule, attempt), attempt) for attempt in self.history.of(rule.name)]
             self._judged[rule.name] = (
@@ -116,7 +116,7 @@ class _Inquiry:
 
     def _judge(self, rule: RuleView, attempt: Attempt) -> Reached:
         settled = attempt.settled
-        if settled is not None:  # a gap in the trace may hide the start
+        if settled is not None:  # the start of the run may be in a gap of the trace
             began = settled.time if attempt.started is None else attempt.started.time
             return self._ran(attempt, began, settled)
         if attempt.started is not None:
@@ -175,7 +175,7 @@ class _Inquiry:
         return Verdict.FIRED, join(parts), at
 
     def _pending(self, rule: RuleView, clause: ClauseView, attempt: Attempt, ripe: float | None) -> Reached:
-        """Judge an attempt that still holds spikes."""
+        """Return how far an attempt that still holds spikes has come."""
         if attempt.lacks or attempt.complete is None:
             held = join(dict.fromkeys(held.signal for held in attempt.held))
             return Verdict.LACKED, f"it has {held} and still lacks {join(attempt.lacks)}", None
@@ -196,7 +196,7 @@ class _Inquiry:
         return shut is True or (shut is None and wait.until is not None and wait.until < last)
 
     def _ripe(self, clause: ClauseView, attempt: Attempt) -> float | None:
-        """Return when all spikes of an attempt are old enough (seconds); None if it never had all."""
+        """Return the time at which all spikes of an attempt are old enough (seconds); None if it never had them all."""
         if attempt.complete is None:
             return None
         ripe = attempt.complete
@@ -232,7 +232,7 @@ class _Inquiry:
         return last.reason != LossReason.CONSUMED or (ripe is not None and ripe < last.time and not attempt.waits)
 
     def _lost(self, rule: RuleView, last: GaveUp, clause: ClauseView) -> str:
-        """Say how an attempt lost its spikes."""
+        """Return a phrase that says how an attempt lost its spikes."""
         at = seconds(last.time)
         if last.reason == LossReason.AGE:
             ages = [c.max_age for c in clause.constraints if c.signal == last.signal and c.max_age is not None]
@@ -242,14 +242,14 @@ class _Inquiry:
         return f"{why_given_up(last)} at {at}"
 
     def _passed(self, rule: RuleView, signal: str = "") -> list[Passed]:
-        """Return the spikes of the group, or those of one signal, that a rule did not take."""
+        """Return the records of the group's spikes that a rule did not take: all, or those of one signal."""
         passed = [p for p in self.history.passed.get(rule.name, ()) if p.spike in self.history.group]
         return [p for p in passed if p.signal == signal] if signal else passed
 
     # ------------------------------------------------------------------------------------ missing signals
 
     def missing(self, rule: RuleView, attempt: Attempt | None) -> tuple[Missing, ...]:
-        """Return the signals that a rule lacked in the clause it tried; if it tried none, the signals of all
+        """Return the signals that a rule lacked in its best attempt; without an attempt, the signals of all its
         clauses."""
         if attempt is not None:
             names = dict.fromkeys(attempt.lacks)
@@ -299,7 +299,7 @@ class _Inquiry:
             return Raiser(name, "not run", None, f"{name} did not run")
         self.asked.append(name)
         verdict, words, at, attempt = self.judge(rule)
-        if verdict in (Verdict.LACKED, Verdict.UNTOUCHED):  # explain one step further back
+        if verdict in (Verdict.LACKED, Verdict.UNTOUCHED):  # explain also why these signals were missing
             for lack in dict.fromkeys(attempt.lacks if attempt is not None else ()):
                 lacked = self.description.signal(lack)
                 for raiser in () if lacked is None else lacked.raisers:
@@ -311,7 +311,7 @@ class _Inquiry:
     # ------------------------------------------------------------------------------------ the history
 
     def moments(self, rule: RuleView) -> Iterator[Moment]:
-        """Yield what happened to a rule in this group."""
+        """Yield the moments at which something happened to a rule in this group."""
         for passed in self._passed(rule):
             yield Moment(passed.time, words_of(passed))
         for attempt in self.history.of(rule.name):
@@ -320,7 +320,7 @@ class _Inquiry:
                 match record:
                     case Waits():
                         words = words_of(record, others=self.rivals.names(rule, attempt, record))
-                        if words != waited:  # the engine may ask for consent again
+                        if words != waited:  # the engine may ask for consent again, for the same reason
                             yield Moment(record.time, words, record.for_)
                         waited = words
                     case GaveUp(by=by):

@@ -19,22 +19,22 @@ from ravestate.board.rendering import Rendered, render, traceback_of
 from ravestate.engine.trace import Record
 
 VERSION = 1
-"""The version of the protocol and of trace files. Additions keep the number; any other change raises it."""
+"""The version of the protocol and of trace files. Additions keep the number; any other change increases it."""
 
 PAYLOAD = 400
-"""The maximum number of characters of a payload."""
+"""The maximum number of characters of a payload in a record."""
 
 VALUE = 2000
-"""The maximum number of characters of a slot's value."""
+"""The maximum number of characters of a slot's value in a record or a `State`."""
 
 KINDS: dict[str, type[Any]] = {kind.__name__.lower(): kind for kind in (*get_args(Record), Gap)}
-"""Each kind of record."""
+"""Name of a kind of record → its class."""
 
 RENDERED = {"payload": PAYLOAD, "value": VALUE}
 
 
 def _shape(name: str, kind: type[Any]) -> Any:
-    """Return the type of a record's data."""
+    """Return the type of the data of a record of the class `kind`."""
     hints = get_type_hints(kind)
     fields: dict[str, Any] = {"kind": Literal[name]}
     for field in dataclasses.fields(kind):
@@ -53,7 +53,7 @@ else:
     TraceRecord = typing_extensions.TypeAliasType(
         "TraceRecord",
         Annotated[
-            Union[tuple(_shape(name, kind) for name, kind in KINDS.items())],  # noqa: UP007  # known only now
+            Union[tuple(_shape(name, kind) for name, kind in KINDS.items())],  # noqa: UP007  # known only at run time
             pydantic.Field(discriminator="kind"),
         ],
     )
@@ -62,7 +62,7 @@ _RECORD: pydantic.TypeAdapter[dict[str, Any]] = pydantic.TypeAdapter(TraceRecord
 
 
 def data_of(record: Record | Gap) -> TraceRecord:
-    """Return a record as data.
+    """Return a record as plain data for JSON.
 
     Example:
         >>> from ravestate.engine.trace import Merged
@@ -73,7 +73,7 @@ def data_of(record: Record | Gap) -> TraceRecord:
 
 
 def record_of(data: Any) -> Record | Gap:
-    """Return the record that data stands for. Its values stay rendered.
+    """Return the record that `data` describes. Its values stay `Rendered`.
 
     Raises:
         ValueError: The data is not a record.
@@ -82,13 +82,13 @@ def record_of(data: Any) -> Record | Gap:
 
 
 def checked_record(data: TraceRecord) -> Record | Gap:
-    """Return the record that validated data stands for."""
+    """Return the record that `data`, already validated, describes."""
     fields = {f"{name}_" if name == "for" else name: value for name, value in data.items()}
     return KINDS[fields.pop("kind")](**fields)
 
 
 def rendered_data(rendered: Rendered) -> dict[str, Any]:
-    """Return a rendered value as data, without defaults."""
+    """Return a rendered value as plain data, without the fields that have their default values."""
     data: dict[str, Any] = {"text": rendered.text}
     if not rendered.json:
         data["json"] = False
@@ -105,7 +105,7 @@ _FREQUENT: dict[Any, dict[str, Any]] = {
 
 
 def _quickly(value: Any) -> dict[str, Any] | None:
-    """Return a frequent value as `render` would; None for other values."""
+    """Return the data of a frequent kind of value, as `render` would make it; None for any other value."""
     if value is None or value is True or value is False:
         return _FREQUENT[value]
     if type(value) is str and len(value) < 60 and value.isascii():

@@ -20,9 +20,9 @@ __all__ = ["UsageError", "main", "script"]
 COMMANDS = {
     "chat": "talk with the complete agent on the console",
     "run": "run an agent from modules or an agent file",
-    "board": "talk with an agent on a web page and look inside it, or into a recorded trace",
+    "board": "talk with an agent on a web page and look inside it, or look at a recorded trace",
     "check": "print an agent's faults, and findings such as ties, endless loops and undeclared writes",
-    "graph": "draw the Signal-Rule-Slot diagram of the complete agent or of another",
+    "graph": "draw the Signal-Rule-Slot diagram of the complete agent or of another agent",
     "nlp": "show what the agent sees in a text: words, names, triples, yes or no, signals",
     "memory": "list, show, export and forget what an agent knows",
     "model": "list, fetch and remove language models for small talk",
@@ -35,7 +35,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     """Run the command line.
 
     Args:
-        argv: The arguments; those of the process by default.
+        argv: The arguments of the command; by default those of the process.
 
     Returns:
         The exit code.
@@ -58,7 +58,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         parser.epilog = listing()
     for name, summary in COMMANDS.items():
         command = commands.add_parser(name, help=summary, description=summary.capitalize() + ".")
-        if name in arguments:  # the other commands are only listed, without their options
+        if name in arguments:  # the help lists the other commands without their options
             import_module(f"ravestate.cli.{name}").add_arguments(command)
     first = next((word for word in arguments if not word.startswith("-")), "chat")
     if first not in COMMANDS and (hint := nearest(first, COMMANDS)):
@@ -90,7 +90,7 @@ def script() -> int:
     import threading
 
     code = main()
-    atexit._run_exitfuncs()  # pyright: ignore[reportPrivateUsage]  # handlers that wait for threads
+    atexit._run_exitfuncs()  # pyright: ignore[reportPrivateUsage]  # this runs the handlers that wait for threads
     if any(thread.daemon for thread in threading.enumerate()):
         for stream in (sys.stdout, sys.stderr):
             with contextlib.suppress(OSError, ValueError):
@@ -100,13 +100,13 @@ def script() -> int:
 
 
 class CommandParser(argparse.ArgumentParser):
-    """A parser for one command, or for one of its actions. Its errors show its own usage."""
+    """A parser for one command, or for one of a command's actions. Its errors show its own usage."""
 
     def __init__(self, *, allow_abbrev: bool = False, **options: Any) -> None:
         super().__init__(allow_abbrev=allow_abbrev, **options)
 
     def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:  # type: ignore[override]  # which has overloads
-        """Refuse unknown arguments here: the parser above would show its own usage."""
+        """Parse the arguments. Refuse unknown ones here: the parser of ``ravestate`` would show its own usage."""
         options, unknown = super().parse_known_args(args, namespace)
         many = [action.dest for action in self._get_positional_actions() if action.nargs in ("+", "*")]
         if many and unknown and all(not word.startswith("-") for word in unknown):  # they continue an argument

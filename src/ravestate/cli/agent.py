@@ -13,7 +13,7 @@ from ravestate.modules import BUILT_IN
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the arguments that name an agent."""
+    """Add the arguments that name an agent to a command's parser."""
     parser.add_argument(
         "modules",
         nargs="*",
@@ -30,7 +30,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="MODULE.KEY=VALUE",
         help="a setting, which overrides the file and the environment (may be repeated)",
     )
-    parser.add_argument("--seed", type=int, help="the seed of all random choices, to repeat a run")
+    parser.add_argument("--seed", type=int, help="the seed of all random choices: with the same seed, a run repeats")
 
 
 def load_agent(options: argparse.Namespace, first: Iterable[str] = (), *, announce: bool = False) -> AgentSpec:
@@ -38,8 +38,8 @@ def load_agent(options: argparse.Namespace, first: Iterable[str] = (), *, announ
 
     Args:
         options: The parsed arguments.
-        first: Modules that the agent has in any case.
-        announce: Whether to print which Python code agent files run, before it runs. Commands that only inspect do so.
+        first: The names of modules that the agent has in any case.
+        announce: Whether to print first which Python code the agent files run. Commands that only inspect it do so.
 
     Raises:
         UsageError: A module, file or setting is wrong. The message lists all mistakes of agent files and of ``--set``.

@@ -35,7 +35,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--browser",
         action=argparse.BooleanOptionalAction,
         default=None,
-        help="open a browser; by default if the session has a screen",
+        help="open a browser; the default if the session has a screen",
     )
 
 
@@ -44,7 +44,7 @@ def run(options: argparse.Namespace) -> int:
 
     named = bool(options.modules or options.file)
     if options.without and (named or options.recording):
-        raise UsageError("--without is for the complete agent: leave the modules out")
+        raise UsageError("--without works only on the complete agent: name no MODULE or file with it")
     if options.recording and named:
         raise UsageError("--open shows a recording, which has no agent: leave the modules out")
     try:
@@ -80,7 +80,7 @@ async def _serve(made: Agent, beside: list[BaseRoute], inside: str, talks: bool,
 
 
 async def _first(*waits: Callable[[], Awaitable[object]]) -> None:
-    """Wait for the first of some awaitables, and raise its exception."""
+    """Wait until the first of several awaitables ends; raise its exception, if there is one."""
     tasks = [asyncio.ensure_future(wait()) for wait in waits]
     done, _ = await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
     for task in tasks:

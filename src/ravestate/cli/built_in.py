@@ -11,7 +11,7 @@ from ravestate.modules import BUILT_IN
 
 
 def listing() -> str:
-    """Return the built-in modules, each with the first line of its docstring. Imports none of them."""
+    """Return a list of the built-in modules, each with the first line of its docstring, without importing any."""
     width = min(shutil.get_terminal_size().columns, 120) - 2
     lines = ["built-in modules:"]
     for name, folder in sorted(BUILT_IN.items()):

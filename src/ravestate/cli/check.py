@@ -14,13 +14,13 @@ from ravestate.cli import agent
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     agent.add_arguments(parser)
     parser.epilog = (
-        "Exit code 1: the agent has faults, or findings that break a rule when it runs (undeclared, unknown, await)."
+        "Exit code 1: the agent has faults, or findings that make a rule fail at run time (undeclared, unknown, await)."
     )
     parser.add_argument("--utilities", action="store_true", help="also list every rule with its utility in nats")
 
 
 def run(options: argparse.Namespace) -> int:
-    """Run the command; return 1 if there are faults, or findings that break a rule when it runs."""
+    """Run the command; return 1 if there are faults, or findings that make a rule fail at run time, else 0."""
     from ravestate.errors import DeclarationError, DeclarationErrors
     from ravestate.modules import BUILT_IN
     from ravestate.policy.compile import compile_policy
@@ -35,7 +35,7 @@ def run(options: argparse.Namespace) -> int:
         for fault in error.exceptions if isinstance(error, DeclarationErrors) else [error]:
             _print(f"fault: {fault}", error=True)
         return 1
-    # A built-in module may offer signals and cooldowns that this agent does not need.
+    # A built-in module may offer signals and cooldowns that this agent does not use: that is no mistake.
     findings = [
         f
         for f in policy.findings(inspect.getsource)
@@ -51,7 +51,7 @@ def run(options: argparse.Namespace) -> int:
     sizes = {"rule": len(policy.rules), "signal": len(policy.signals), "slot": len(policy.slots)}
     counts = ", ".join(_count(number, noun) for noun, number in sizes.items())
     breaking = sum(finding.kind in BREAKING for finding in findings)
-    note = f" ({breaking} break{'s' if breaking == 1 else ''} a rule when it runs)" if breaking else ""
+    note = f" ({breaking} make{'s' if breaking == 1 else ''} a rule fail at run time)" if breaking else ""
     print(f"{counts}: no faults, {_count(len(findings), 'finding')}{note}")
     return 1 if breaking else 0
 

@@ -28,7 +28,7 @@ COMPLETE = (
     "genqa",
     "wildtalk",
 )
-"""The modules of the complete text agent, without a platform."""
+"""The names of the modules of the complete text agent, without a platform."""
 
 PACKAGES = {
     "nlp": ("spacy",),
@@ -38,11 +38,11 @@ PACKAGES = {
     "genqa": ("numpy", "onnxruntime", "tokenizers"),
     "conio": ("prompt_toolkit",),
 }
-"""The packages that a module needs with its default settings."""
+"""Name of a module → the packages that the module needs with its default settings."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the option ``--without``."""
+    """Add the option ``--without`` to a command's parser."""
     parser.add_argument(
         "--without",
         action="append",
@@ -53,7 +53,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def explain_memory(parser: argparse.ArgumentParser) -> None:
-    """Say in the help text where the agent keeps its memory."""
+    """Add to a command's help text where the agent keeps its memory."""
     parser.formatter_class = argparse.RawDescriptionHelpFormatter
     parser.epilog = (
         "The complete agent keeps its memory of you on this machine:\n"
@@ -64,7 +64,7 @@ def explain_memory(parser: argparse.ArgumentParser) -> None:
 
 
 def names(options: argparse.Namespace) -> list[str]:
-    """Return the names of the modules, without those that the options leave out.
+    """Return the names of the complete agent's modules, except those that the options leave out.
 
     Raises:
         UsageError: The complete agent has no such module.
@@ -76,7 +76,7 @@ def names(options: argparse.Namespace) -> list[str]:
 
 
 def leave_out_absent(agent: AgentSpec, command: str) -> None:
-    """Leave out modules whose packages are absent, and print how to install them. Modules with settings stay."""
+    """Remove modules whose packages are not installed, and print how to install them. Modules with settings stay."""
     present = [module.name for module in with_required(agent.modules)]
     needs = {name: PACKAGES[name] for name in present if name in PACKAGES}
     absent = {name for name, packages in needs.items() if not all(map(find_spec, packages))}
@@ -89,11 +89,11 @@ def leave_out_absent(agent: AgentSpec, command: str) -> None:
         *(name for name in absent if any(v.startswith(variable_of(name, "")) for v in os.environ)),
     }
     out = absent - chosen
-    for module in agent.modules:  # each comes after those that it requires
+    for module in agent.modules:  # each module comes after those that it requires
         if module.name in COMPLETE and any(required.name in out for required in module.requires):
             out.add(module.name)
     agent.modules = [module for module in agent.modules if module.name not in out]
-    out -= {module.name for module in with_required(agent.modules)}  # the user's modules need these
+    out -= {module.name for module in with_required(agent.modules)}  # the user's modules need these modules
     for name in out:
         agent.settings.pop(name, None)
     left = (
@@ -130,11 +130,11 @@ def choose_small_talk(agent: AgentSpec, command: str) -> str:
 
 
 def shown(kind: Literal["data", "state"], *parts: str) -> str:
-    """Return the path of a file of the user, with ``~`` for their home."""
+    """Return the path of a file in the user's folder of this kind, with ``~`` for their home."""
     from ravestate.folders import user_folder
 
     try:
         path, home = user_folder(kind).joinpath(*parts), Path.home()
-    except RuntimeError:  # the user has no home
+    except RuntimeError:  # the user has no home folder
         return "/".join(parts)
     return f"~/{path.relative_to(home).as_posix()}" if path.is_relative_to(home) else str(path)

@@ -39,19 +39,19 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_index(parser: argparse.ArgumentParser, *, later: bool = False) -> None:
-    """Add the option for the index. With `later`, it may follow an action, and does not reset an earlier value."""
+    """Add the option ``--index``. With `later`, the option follows an action, and does not reset an earlier value."""
     parser.add_argument(
         "--index",
         metavar="FILE",
         default=argparse.SUPPRESS if later else None,
-        help="the index; by default RAVESTATE_GENQA_INDEX of the environment, or else a file in your data folder",
+        help="the index file; by default RAVESTATE_GENQA_INDEX of the environment, or else a file in your data folder",
     )
 
 
 def run(options: argparse.Namespace) -> int:
     try:
         return _run(options)
-    except PlatformError as error:  # its message is for an agent; here a different option names the index
+    except PlatformError as error:  # the message is for an agent's user; this command names the index by another option
         said = str(error).removeprefix("genqa: ").replace("--set genqa.index=", "--index ")
         raise PlatformError(said) from error
 
@@ -76,7 +76,7 @@ def _run(options: argparse.Namespace) -> int:
 
 
 def _settings(index: str | None) -> Settings:
-    """Return the module's settings, as for an agent without a file."""
+    """Return the settings of the module genqa, as for an agent without an agent file."""
     from ravestate.modules.skill import genqa
     from ravestate.settings import load_settings
 
@@ -106,7 +106,7 @@ def _index(index: Index, paths: Iterable[str]) -> int:
 
 
 def _collected(found: Found, index: Index) -> Iterator[Outcome]:
-    """Collect the files, with a progress bar in bytes on a terminal."""
+    """Yield the outcome of reading each file, with a progress bar in bytes on a terminal."""
     from ravestate.modules.skill.genqa.collecting import collect
 
     try:
@@ -118,14 +118,14 @@ def _collected(found: Found, index: Index) -> Iterator[Outcome]:
         try:
             sizes[path] = path.stat().st_size
         except OSError:
-            sizes[path] = 0  # `collect` reports it
+            sizes[path] = 0  # `collect` reports the error
     with tqdm(
         total=sum(sizes.values()), unit="B", unit_scale=True, disable=not sys.stderr.isatty(), leave=False
     ) as bar:
 
         def reading(path: Path, number: int) -> None:
             bar.set_postfix_str(f"{path.name[-40:]}, part {number + 1}", refresh=False)
-            bar.update(0)  # redraws now and then
+            bar.update(0)  # this redraws the bar now and then
 
         for outcome in collect(found, index, reading):
             bar.update(sizes.get(outcome.path, 0))
@@ -139,7 +139,7 @@ def _warn(text: str) -> None:
     if sys.stderr.isatty():
         from tqdm import tqdm
 
-        tqdm.write(line, file=sys.stderr)  # above the bar
+        tqdm.write(line, file=sys.stderr)  # above the progress bar
     else:
         print(line, file=sys.stderr)
 

@@ -10,38 +10,38 @@ from ravestate.cli import agent, complete
 from ravestate.errors import UsageError, nearest
 
 SUFFIXES = {".svg": "svg", ".dot": "dot", ".gv": "dot", ".mmd": "mermaid", ".mermaid": "mermaid"}
-"""The format for each ending of an output file's name."""
+"""The ending of an output file's name → the format of the diagram."""
 
 LARGE = 40
-"""The number of rules above which modules fold automatically: with more, text is too small to read on a screen."""
+"""Above this number of rules, modules fold automatically: otherwise the text is too small to read on a screen."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     agent.add_arguments(parser)
     complete.add_arguments(parser)
     parser.description = (
-        "Draw the Signal-Rule-Slot diagram of an agent; without a MODULE, of the complete agent that `ravestate chat` "
-        "runs. The diagram has the slots and signals that some rule touches. Folded, each module is one box, and one "
-        "arrow shows the strongest relation of two modules: writes, emits, condition, then reads."
+        "Draw the Signal-Rule-Slot diagram of an agent; without a MODULE, draw the complete agent that `ravestate "
+        "chat` runs. The diagram has the slots and signals that some rule uses. A folded module is one box, and one "
+        "arrow shows the strongest relation between two modules: writes, emits, condition, then reads."
     )
     parser.add_argument("-o", "--output", metavar="FILE", help="the file to write; standard output by default")
     parser.add_argument(
         "--format",
         choices=["svg", "dot", "mermaid"],
-        help="the format; by default the end of the file's name decides, else svg",
+        help="the format; by default, the ending of the file's name decides, and without a file it is svg",
     )
     parser.add_argument(
         "--fold",
         action=argparse.BooleanOptionalAction,
         default=None,
-        help=f"draw each module as one box; by default for agents of more than {LARGE} rules",
+        help=f"draw each module as one box; the default for agents with more than {LARGE} rules",
     )
     parser.add_argument(
         "--unfold",
         action="append",
         default=[],
         metavar="MODULE",
-        help="draw the rules of this module, and fold the others (may be repeated)",
+        help="draw the rules of this module, and fold all other modules (may be repeated)",
     )
 
 
@@ -53,11 +53,11 @@ def run(options: argparse.Namespace) -> int:
 
     named = bool(options.modules or options.file)
     if options.output is None and not options.format and sys.stdout.isatty():
-        raise UsageError("the diagram is not for reading on a terminal: name a file, e.g. -o agent.svg")
+        raise UsageError("a terminal cannot show the diagram: name an output file, e.g. -o agent.svg")
     if named and options.without:
-        raise UsageError("--without is for the complete agent: leave the modules out")
+        raise UsageError("--without works only on the complete agent: name no MODULE or file with it")
     if options.unfold and options.fold is False:
-        raise UsageError("--unfold draws some modules, --no-fold all: write only one of them")
+        raise UsageError("--unfold folds the other modules, --no-fold folds none: use only one")
     format = options.format or (SUFFIXES.get(Path(options.output).suffix) if options.output else "svg")
     if format is None:
         raise UsageError(
@@ -74,8 +74,8 @@ def run(options: argparse.Namespace) -> int:
         diagram = fold(diagram, options.unfold)
         if not (options.fold or options.unfold):
             print(
-                f"ravestate graph: folded {len(policy.rules)} rules into their modules: --unfold MODULE draws the rules "
-                "of one, --no-fold all",
+                f"ravestate graph: folded {len(policy.rules)} rules into their modules: --unfold MODULE draws the "
+                "rules of one module, --no-fold draws those of all modules",
                 file=sys.stderr,
             )
     text = FORMATS[format](diagram)

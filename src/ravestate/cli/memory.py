@@ -20,15 +20,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     _add_place(parser)
     does = parser.add_subparsers(dest="does", metavar="WHAT", required=True)
     listing = does.add_parser("list", help="list all nodes")
-    listing.add_argument("type", nargs="?", default="", metavar="TYPE", help="a type, e.g. Person")
-    listing.add_argument("--types", action="store_true", help="only count, by type")
+    listing.add_argument("type", nargs="?", default="", metavar="TYPE", help="list this type only, e.g. Person")
+    listing.add_argument("--types", action="store_true", help="only count the nodes of each type")
     showing = does.add_parser("show", help="show a node with its relations")
     showing.add_argument("which", metavar="NAME|ID")
-    exporting = does.add_parser("export", help="write everything as JSON")
-    exporting.add_argument("to", nargs="?", default="-", metavar="FILE", help="by default standard output")
+    exporting = does.add_parser("export", help="write the whole memory as JSON")
+    exporting.add_argument("to", nargs="?", default="-", metavar="FILE", help="the file; standard output by default")
     loading = does.add_parser("load", help="add the nodes of an exported file")
-    loading.add_argument("document", metavar="FILE", help="a file from export; - for standard input")
-    forgetting = does.add_parser("forget", help="forget a person with everything about them")
+    loading.add_argument("document", metavar="FILE", help="a file that export wrote; - for standard input")
+    forgetting = does.add_parser("forget", help="forget a node, e.g. a person, with everything about it")
     forgetting.add_argument("which", metavar="NAME|ID")
     forgetting.add_argument("-y", "--yes", action="store_true", help="do not ask")
     resetting = does.add_parser("reset", help="remove all files of the memory, even damaged ones")
@@ -38,7 +38,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_place(parser: argparse.ArgumentParser, *, later: bool = False) -> None:
-    """Add the options that choose a memory. With `later`, they may follow an action, and keep earlier values."""
+    """Add the options that choose a memory. With `later`, the options follow an action, and keep earlier values."""
     default = argparse.SUPPRESS if later else None
     parser.add_argument(
         "--path",
@@ -60,7 +60,7 @@ def _add_place(parser: argparse.ArgumentParser, *, later: bool = False) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Run the command; return 1 if memory cannot be used."""
+    """Run the command, and return the exit code: 1 if the memory cannot be used, or if the user says no."""
     from ravestate.modules.meta.ontology.opening import open_memory, path_of
 
     settings = _settings(options)
@@ -76,7 +76,7 @@ def run(options: argparse.Namespace) -> int:
     try:
         try:
             memory.opened().result()
-        except PlatformError as error:  # its message is for an agent; here another option names the file
+        except PlatformError as error:  # its message is for an agent; this command has another option
             raise PlatformError(str(error).replace("--set ontology.path=", "--path ")) from error
         unseen = memory.undeclared().result()
         if unseen:
@@ -92,7 +92,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _leftover(path: Path) -> str:
-    """Return a hint at the files that a deleted memory has left behind; empty if there are none."""
+    """Return a hint about files that a deleted memory at this path has left behind; empty if there are none."""
     from ravestate.modules.meta.ontology.files import MemoryFiles
 
     names = ", ".join(file.name for file in MemoryFiles(path).present())
@@ -156,7 +156,7 @@ def _export(memory: Memory, options: argparse.Namespace) -> int:
     target = Path(options.to)
     new = target.with_name(target.name + ".new")
     try:
-        new.unlink(missing_ok=True)  # others may be able to read an earlier file
+        new.unlink(missing_ok=True)  # other users may be able to read an earlier file
         new.touch(mode=0o600)  # the document has personal data
         new.write_text(text, encoding="utf-8")
         new.replace(target)
@@ -233,7 +233,7 @@ def _everything(memory: Memory) -> list[Node]:
 
 
 def _chosen(memory: Memory, which: str) -> Node:
-    """Return the one node with this id or name, ignoring case.
+    """Return the only node with this id or this name; upper and lower case do not matter in names.
 
     Raises:
         UsageError: No node matches, or several nodes do.
@@ -258,7 +258,7 @@ def _name(node: Node) -> str:
 
 
 def _shown(value: object) -> str:
-    """Return a value in one line, safe for a terminal."""
+    """Return a value as text in one line of at most 200 characters, safe for a terminal."""
     from ravestate.modules._text import printable
 
     text = " ".join(printable(str(value)).split())

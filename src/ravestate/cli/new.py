@@ -21,7 +21,7 @@ FILES = {
     "module.py": "{package}.py",
     "test_module.py": "tests/test_{package}.py",
 }
-"""Each template, with its path in the new project."""
+"""Template → its path in the new project."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -56,7 +56,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _named(command: str) -> str:
-    """Return the name of a command of this environment, or its path if the shell would not find it."""
+    """Return the name of a command of this Python environment, or its path if the shell would not find it."""
     place = Path(sys.executable).with_name(command)
     found = shutil.which(command)
     is_found = found is not None and Path(found) == place

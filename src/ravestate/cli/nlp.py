@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("text", nargs="*", metavar="TEXT", help="the text; each line of standard input by default")
+    parser.add_argument("text", nargs="*", metavar="TEXT", help="the text; by default, each line of standard input")
     parser.add_argument("--json", action="store_true", help="print one line of JSON for each text")
     parser.add_argument(
         "--pipeline",
@@ -62,7 +62,7 @@ def _lines() -> Iterator[str]:
 
 
 def _table(seen: Analysis) -> str:
-    """Return the analysis for people: the words in columns, then the rest."""
+    """Return the analysis as a text for people: the words in columns, then everything else."""
     rows = [("TOKEN", "LEMMA", "POS", "TAG", "DEP", "HEAD")]
     rows += [(w.text, w.lemma, w.pos, w.tag, w.dep, seen.tree.head(w).text) for w in seen.tree.words]
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
@@ -93,7 +93,7 @@ def _signals(seen: Analysis) -> list[str]:
 
 
 def _plain(text: str, seen: Analysis) -> dict[str, Any]:
-    """Return the analysis for programs."""
+    """Return the analysis as data for programs."""
 
     def part(value: Any) -> Any:
         return value if isinstance(value, str) else {"asks_for": value.name}

@@ -1,4 +1,4 @@
-"""``ravestate run``: run an agent until it ends, or Ctrl-C."""
+"""``ravestate run``: run an agent until it ends, or until the user presses Ctrl-C."""
 
 from __future__ import annotations
 

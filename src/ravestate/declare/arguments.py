@@ -1,4 +1,4 @@
-"""Checks of the arguments of a declaration: every message ends with the text to write instead."""
+"""Checks of the arguments of a declaration. Every error message ends with the code to write instead."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ R = TypeVar("R")
 
 
 def keywords(*options: str) -> Callable[[Callable[P, R]], Callable[P, R]]:
-    """Make a method refuse an unknown keyword; the message names the nearest known one.
+    """Return a decorator that makes a method refuse an unknown keyword; the message names the nearest known keyword.
 
     Args:
         options: Keywords that the method takes besides those in its signature.
@@ -48,7 +48,7 @@ def keywords(*options: str) -> Callable[[Callable[P, R]], Callable[P, R]]:
 
 
 def check_name(name: object, what: str) -> None:
-    """Refuse an invalid name; `what` names the declaration in the message."""
+    """Refuse an invalid `name`; the message begins with `what`, the declaration."""
     if not isinstance(name, str) or not name.replace("-", "_").isidentifier():
         raise DeclarationError(
             f"{what}: {name!r} is not a name: use letters, digits, '_' and '-', beginning with a letter"
@@ -56,7 +56,7 @@ def check_name(name: object, what: str) -> None:
 
 
 def check_options(keep: object = "all", limit: object = 1, *, what: str) -> None:
-    """Refuse invalid values of `keep` and `limit`."""
+    """Refuse invalid values of the options `keep` and `limit`; the message begins with `what`, the declaration."""
     if keep not in ("all", "latest"):
         raise DeclarationError(f"{what}: keep={keep!r}: write keep='all' or keep='latest'")
     if not isinstance(limit, int) or limit < 1:
@@ -67,10 +67,10 @@ def check_function(function: object, title: str, *, named: bool, where: str, dec
     """Refuse a value that cannot be a rule's function.
 
     Args:
-        function: The value.
-        title: The rule's name within its module: the given name, or the function's own.
-        named: Whether the name was given.
-        where: The rule and its place, for messages.
+        function: The value to check.
+        title: The rule's name within its module: the name in the declaration, or else the function's own.
+        named: Whether the declaration gives a name.
+        where: The rule and the place of its declaration, for messages.
         decorator: The decorator as the user types it, for messages.
     """
     if isinstance(function, Rule):
@@ -80,7 +80,7 @@ def check_function(function: object, title: str, *, named: bool, where: str, dec
         )
     if not callable(function):
         raise DeclarationError(f"{decorator} stands above a function, not {function!r}")
-    if not named and not title.isidentifier():  # a lambda, a partial, an object
+    if not named and not title.isidentifier():  # a lambda, a partial or a callable object
         raise DeclarationError(f"{where} has no name of its own: write name='...'")
     check_name(title, where)
     if inspect.isgeneratorfunction(function) or inspect.isasyncgenfunction(function):
@@ -93,13 +93,13 @@ def check_function(function: object, title: str, *, named: bool, where: str, dec
 
 
 def condition(value: object, what: str, where: str, home: str) -> Condition:
-    """Return a condition, or refuse any other value.
+    """Return `value` if it is a condition; refuse any other value.
 
     Args:
-        value: The value.
-        what: The argument's name.
-        where: The rule and its place, for messages.
-        home: The rule's module; messages spell the module's own names without it.
+        value: The value to check.
+        what: The name of the argument, e.g. ``when``.
+        where: The rule and the place of its declaration, for messages.
+        home: The name of the rule's module; in messages, the module's own names appear without it.
     """
     if isinstance(value, Slot):
         slot = cast("Slot[Any]", value)
@@ -117,7 +117,7 @@ def number(value: object, what: str, where: str) -> Number:
 
 
 def several(values: Any, kind: type[T], what: str, where: str, home: str) -> tuple[T, ...]:
-    """Turn a slot or signal, or several, into a tuple without duplicates. For the arguments, see `condition`."""
+    """Turn one slot or signal, or several, into a tuple without duplicates. Other arguments: see `condition`."""
     if isinstance(values, kind):
         return (values,)
     try:

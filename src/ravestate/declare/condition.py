@@ -20,12 +20,12 @@ if TYPE_CHECKING:
     from ravestate.declare.slot import Slot
 
 DEFAULT_MAX_AGE = 5.0
-"""The default of a constraint's `max_age`, in seconds (L4)."""
+"""The default `max_age` of a constraint, in seconds (L4)."""
 
-Predicate = Callable[[Any], object]
+Predicate = Callable[[Any], object]  # a function of a payload or of a slot's value
 
 LATER = inspect.CO_GENERATOR | inspect.CO_COROUTINE | inspect.CO_ASYNC_GENERATOR
-"""Flags of a function whose call only makes a generator or a coroutine."""
+"""The flags of a code object whose call only makes a generator or a coroutine."""
 
 
 class Condition:
@@ -56,7 +56,7 @@ class Condition:
 
 @dataclass(frozen=True, slots=True, repr=False)
 class Constraint(Condition):
-    """A signal with the ages (seconds) at which a spike counts, and with predicates over the payload."""
+    """A signal with limits on the age of its spikes (seconds), and with predicates on their payload."""
 
     signal: Signal[Any]
     min_age_: Number = 0.0
@@ -65,11 +65,11 @@ class Constraint(Condition):
     predicates: tuple[Predicate, ...] = ()
 
     def min_age(self, seconds: Number) -> Constraint:
-        """Count a spike only when it is at least `seconds` old; the argument is a number or a setting."""
+        """Accept a spike only when it is at least `seconds` old; `seconds` is a number or a setting."""
         return replace(self, min_age_=_age(seconds, "min_age"))
 
     def max_age(self, seconds: Number | None) -> Constraint:
-        """Give up a spike that is older than `seconds`; with ``None``, keep it for ever. The default is 5 s."""
+        """Give up a spike when it is older than `seconds`; with ``None``, keep it for ever. The default is 5 s."""
         return replace(self, max_age_=None if seconds is None else _age(seconds, "max_age"))
 
     def detached(self) -> Constraint:
@@ -105,7 +105,7 @@ class Constraint(Condition):
 
 @dataclass(frozen=True, slots=True, repr=False)
 class Holds(Condition):
-    """A predicate on a slot's current value. It gates a rule without a spike (L4)."""
+    """A predicate on a slot's current value. The rule runs only while it is true; it needs no spike (L4)."""
 
     slot: Slot[Any]
     predicate: Predicate
@@ -133,7 +133,7 @@ class AnyOf(Compound):
 
 
 def checked_predicate(predicate: object, what: str, of: str) -> Predicate:
-    """Return a predicate that is a plain function; refuse any other value.
+    """Return `predicate` if it is a plain function; refuse any other value. `what` and `of` are for the message.
 
     A call of an asynchronous function or a generator only creates an object, and that object always counts as true.
 
@@ -181,7 +181,7 @@ def _age(seconds: object, what: str) -> Number:
 
 
 def _written(condition: Condition) -> str:
-    """Return a condition of any depth as code."""
+    """Return a condition of any depth as Python code."""
     words: list[str] = []
     stack: list[Condition | str] = [condition]
     while stack:

@@ -27,7 +27,7 @@ error = core.signal("error", payload=RuleFailure, input=True)
 """Raised when a rule fails (L18)."""
 
 activity = core.flag("activity", input=True, keep="latest")
-"""True while some activation of a non-background rule holds a spike or runs."""
+"""True while some activation of a rule without `background` holds a spike or runs."""
 
 pressure = core.flag("pressure", input=True, keep="latest")
 """True while some ready activation has to wait for consent."""

@@ -35,12 +35,12 @@ class Module:
     """A named collection of signals, slots and rules.
 
     Args:
-        name: Letters, digits, ``_`` and ``-``; the first part of the names of its signals, slots and rules.
-        requires: Modules whose signals and slots this one uses: `Module` values, or Python modules that contain one
+        name: Letters, digits, ``_`` and ``-``; the first part of the names of the module's signals, slots and rules.
+        requires: Modules whose signals and slots this module uses: `Module` values, or Python modules that contain one
             (``from ravestate.modules import rawio``).
         settings: A subclass of ``rs.Settings`` with the values that a user may configure.
         serve: An async function, for platforms that serve many users at once. ``rs.run`` calls it with the `Agent`
-            instead of running one context. The function makes a context for each user, and ends when cancelled.
+            instead of running one context. The function makes a context for each user, and returns when cancelled.
 
     Example:
         >>> import ravestate as rs
@@ -68,7 +68,7 @@ class Module:
         self.name = name
         self.origin = place_of_call()
         if isinstance(requires, (Module, ModuleType, str)):
-            requires = (requires,)  # type: ignore[assignment]  # a str is refused below as a whole
+            requires = (requires,)  # type: ignore[assignment]  # `as_module` refuses a str; do not iterate over it
         self.requires: list[Module] = []
         for required in requires:
             try:
@@ -118,7 +118,7 @@ class Module:
 
         Args:
             name: The slot's name within the module.
-            default: The value before the first write. Each context starts with a copy of its own.
+            default: The slot's value before the first write. Each context starts with a copy of its own.
             type: The value's type, e.g. ``str`` or ``str | Path``. Writing a value of another type fails; None is
                 allowed if it is the default. Types that ``isinstance`` cannot check are not enforced.
             options: See `SlotOptions`.
@@ -171,16 +171,16 @@ class Module:
         Args:
             when: The condition: signals, combined with ``&`` and ``|``.
             reads: The slot or slots whose values the function may read.
-            writes: The slot or slots that it may write and read. Rules that write the same slot for the same cause
-                exclude each other (L10).
-            emits: The signal or signals that it may emit.
+            writes: The slot or slots that the function may write and read. Rules that write the same slot for the same
+                cause exclude each other (L10).
+            emits: The signal or signals that the function may emit.
             weight: Factor that multiplies the utility (L9), above 0.
             cooldown: Seconds over which the utility recovers from 0 after a run (L9).
-            patience: Seconds that the rule has to become ready while others wait (L16); by default the context's.
+            patience: Seconds that the rule has to become ready while others wait (L16); the context's by default.
             until: A condition that interrupts a run (L21).
             timeout: Seconds that a run may take (L18); no limit by default.
             detached: Whether the rule's effects begin new causal groups (L19).
-            background: Whether the rule leaves ``rs.activity`` alone (L22).
+            background: Whether the rule never makes ``rs.activity`` true (L22).
             name: The rule's name within the module; by default the function's name.
 
         Raises:
@@ -221,7 +221,7 @@ def as_module(value: object) -> Module:
     """Return the `Module` that a value denotes: the value itself, or the ``module`` of a Python module.
 
     Raises:
-        DeclarationError: The value is neither.
+        DeclarationError: The value is neither, or the Python module contains no `Module` or several.
     """
     if isinstance(value, Module):
         return value

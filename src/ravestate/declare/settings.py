@@ -1,4 +1,4 @@
-"""A reference to a setting in a declaration; a context looks the value up when it starts.
+"""References to settings in declarations; a context looks up the value of each setting when it starts.
 
 The `Settings` model is in ``ravestate/settings.py``: it needs pydantic, and the pure packages use no third-party code.
 """
@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class SettingRef:
-    """The name of a numeric setting, and the settings class that defines it, if known."""
+    """The name of a numeric setting, and the settings class that defines it; None for the rule's own module."""
 
     name: str
     owner: type | None = None

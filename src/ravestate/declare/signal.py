@@ -11,11 +11,11 @@ from ravestate.declare.settings import Number
 T = TypeVar("T")
 
 Keep = Literal["all", "latest"]
-"""The fate of older live spikes when a new one arrives: ``"all"`` keeps them up to a limit, ``"latest"`` withdraws them
-(L20, L23)."""
+"""The effect of a new spike on its signal's older live spikes: ``"all"`` keeps them up to a limit, ``"latest"``
+withdraws them (L20, L23)."""
 
 DEFAULT_LIMIT = 100_000
-"""The default of a signal's `limit`."""
+"""The default of a signal's `limit`: its maximum number of live spikes."""
 
 
 class SignalOptions(TypedDict, total=False):
@@ -24,8 +24,8 @@ class SignalOptions(TypedDict, total=False):
     Attributes:
         input: Whether code outside the rules may raise the signal even if a rule raises it too (L8). A signal that no
             rule raises is always an input.
-        keep: ``"all"`` or ``"latest"``. With ``"latest"``, a new spike withdraws the older ones (L20).
-        limit: The maximum number of live spikes, 100,000 by default. If there are more, the oldest is dropped (L23).
+        keep: ``"all"`` or ``"latest"``. With ``"latest"``, a new spike withdraws the signal's older spikes (L20).
+        limit: The maximum number of live spikes, 100,000 by default. Beyond it, the oldest spike is dropped (L23).
     """
 
     input: bool
@@ -42,8 +42,8 @@ class Signal(Condition, Generic[T]):
         payload: The payload's type. It is None if there is no payload; it is also None for a slot's signal, whose
             payload has the slot's type.
         input: Whether code outside the rules may raise the signal even if a rule raises it too (L8).
-        keep: ``"all"`` or ``"latest"``.
-        limit: The maximum number of live spikes.
+        keep: ``"all"`` or ``"latest"``, as for `SignalOptions`.
+        limit: The signal's maximum number of live spikes.
         origin: The place of the declaration, ``file:line``.
     """
 
@@ -56,19 +56,19 @@ class Signal(Condition, Generic[T]):
     limit: int = DEFAULT_LIMIT
 
     def min_age(self, seconds: Number) -> Constraint:
-        """Constrain the signal: see `Constraint.min_age`."""
+        """Return a constraint on this signal: see `Constraint.min_age`."""
         return Constraint(self).min_age(seconds)
 
     def max_age(self, seconds: Number | None) -> Constraint:
-        """Constrain the signal: see `Constraint.max_age`."""
+        """Return a constraint on this signal: see `Constraint.max_age`."""
         return Constraint(self).max_age(seconds)
 
     def detached(self) -> Constraint:
-        """Constrain the signal: see `Constraint.detached`."""
+        """Return a constraint on this signal: see `Constraint.detached`."""
         return Constraint(self).detached()
 
     def where(self, predicate: Predicate) -> Constraint:
-        """Constrain the signal: see `Constraint.where`."""
+        """Return a constraint on this signal: see `Constraint.where`."""
         return Constraint(self).where(predicate)
 
     def __repr__(self) -> str:

@@ -21,7 +21,7 @@ class SlotOptions(SignalOptions, total=False):
     """The options of a value slot and of a flag.
 
     Attributes:
-        always: Whether writing an equal value also raises the signals, for example when the same utterance comes twice.
+        always: Whether writing an equal value also raises the slot's signals, e.g. when the same utterance comes twice.
     """
 
     always: bool
@@ -40,9 +40,9 @@ class Slot(Generic[T]):
     Attributes:
         name: The qualified name, ``module:name``.
         default: The value before the first write; each context gets a copy of its own.
-        type: The type that `isinstance` checks at each write; with None, nothing is checked.
+        type: The type that `isinstance` checks at each write; None if writes are not checked.
         declared: The type as the designer wrote it, such as ``list[int]``; None if the designer gave no type.
-        always: Whether writing an equal value also raises the signals.
+        always: Whether writing an equal value also raises the slot's signals.
         signals: All signals of the slot, `changed` first.
         origin: The place of the declaration, ``file:line``.
     """
@@ -79,7 +79,7 @@ class Slot(Generic[T]):
 
         Args:
             value: The value to write.
-            writer: The writer's name, for the message.
+            writer: The name of the rule or code that writes the value, for the message.
 
         Raises:
             RuleError: The value is of another type.
@@ -116,7 +116,7 @@ class Slot(Generic[T]):
 
 
 def checkable(kind: Any) -> Any:
-    """Return a type for `isinstance`; None if `isinstance` cannot check it. A float slot takes integers too."""
+    """Return the type that `isinstance` can check in place of `kind`, else None. A float slot also takes integers."""
     if kind is float:
         kind = int | float
     try:
@@ -127,7 +127,7 @@ def checkable(kind: Any) -> Any:
 
 
 class Flag(Slot[bool]):
-    """A boolean slot with the signals ``.changed``, ``.true`` and ``.false`` (payload: the new value)."""
+    """A boolean slot with the signals ``.changed``, ``.true`` and ``.false`` (payload: the flag's new value)."""
 
     __slots__ = ("false", "true")
     kind = "flag"

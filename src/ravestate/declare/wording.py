@@ -5,14 +5,14 @@ from __future__ import annotations
 import sys
 
 LENGTH = 60
-"""The maximum number of characters of a value in a message."""
+"""The maximum number of characters that a value takes up in a message."""
 
 HERE = __file__.removesuffix("wording.py")
-CORE = HERE + "core.py"  # the only file here that declares something
+CORE = HERE + "core.py"  # the only file in this folder that declares signals
 
 
 def spelt(name: str, home: str = "") -> str:
-    """Return a qualified name as it appears in code of the module `home`, where the module's own names are variables.
+    """Return a qualified name as Python code in the file of the module `home`, whose own names are plain variables.
 
     Example:
         >>> spelt("rawio:input:changed", "guide"), spelt("guide:face", "guide"), spelt("core:error", "guide")
@@ -26,7 +26,7 @@ def spelt(name: str, home: str = "") -> str:
 
 def place_of_call() -> str:
     """Return the place of the nearest caller outside this folder, as ``file:line``."""
-    frame = sys._getframe(1)  # pyright: ignore[reportPrivateUsage]  # messages name the line of the mistake
+    frame = sys._getframe(1)  # pyright: ignore[reportPrivateUsage]  # a message names the line of the mistake
     while frame.f_back is not None and frame.f_code.co_filename.startswith(HERE):
         if frame.f_code.co_filename == CORE:
             break
@@ -35,18 +35,18 @@ def place_of_call() -> str:
 
 
 def shown(value: object) -> str:
-    """Return the `repr` of a value, or its type if the `repr` fails."""
+    """Return the `repr` of a value; if the `repr` fails, return the name of its type."""
     try:
         return repr(value)
-    except Exception:  # a value's own code may raise anything, and the message must still appear
+    except Exception:  # the value's own `__repr__` may raise anything, and the message must still appear
         return f"<{type(value).__name__} without a repr>"
 
 
 def said(exception: BaseException) -> str:
-    """Return the message of an exception, or its type if the message fails."""
+    """Return the message of an exception, or its `repr` if making the message fails."""
     try:
         return str(exception)
-    except Exception:  # its `__str__` may raise anything, and the message must still appear
+    except Exception:  # the exception's `__str__` may raise anything, and the message must still appear
         return shown(exception)
 
 

@@ -21,18 +21,18 @@ if TYPE_CHECKING:
 __all__ = ["FORMATS", "draw"]
 
 FORMATS: dict[str, Callable[[Diagram], str]] = {"svg": svg, "dot": dot, "mermaid": mermaid}
-"""The writer of each format."""
+"""Format → the function that writes a diagram in this format."""
 
 
 def draw(policy: Policy, format: str = "svg") -> str:
-    """Draw the rules of a policy.
+    """Return the Signal-Rule-Slot diagram of a policy as text.
 
     Args:
         policy: The compiled policy.
         format: ``"svg"``, ``"dot"`` or ``"mermaid"``.
 
     Raises:
-        ValueError: The format is none of these.
+        ValueError: The format is unknown.
 
     Example:
         >>> from ravestate.declare.module import Module

@@ -1,8 +1,8 @@
-"""Acyclic graphs: their topological order, and a small feedback arc set, whose edges the layout reverses.
+"""Acyclic graphs: a topological order, and a small set of edges whose reversal makes a graph acyclic.
 
 The heuristic of Eades, Lin and Smyth (1993) runs within each strongly connected component. It orders the vertices from
-both ends at once; the edges that point backwards in this order form the set. Two refinements: weak edges are reversed
-first, and ties are broken by number, so that the result depends on the input alone.
+both ends at once; the edges that point backwards in this order are reversed. Two refinements: weak edges are reversed
+before strong ones, and ties are broken by number, so that the result depends on the input alone.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ STRONG = 1 << 20
 
 
 def feedback_arcs(count: int, edges: Sequence[tuple[int, int, int]]) -> list[bool]:
-    """Return for each edge (tail, head, weight) of a graph with `count` vertices whether to reverse it."""
+    """Return, for each edge (tail, head, weight) of a graph with `count` vertices, whether to reverse the edge."""
     after: list[list[int]] = [[] for _ in range(count)]
     for u, v, _ in edges:
         after[u].append(v)
@@ -35,7 +35,7 @@ def topological(after: Sequence[Sequence[int]]) -> list[int]:
     """Return the vertices of a graph in topological order, without the vertices on a cycle or behind a cycle.
 
     Args:
-        after: The vertices to which the arcs of each vertex lead.
+        after: Vertex → the vertices to which its arcs lead.
 
     Example:
         >>> topological([[2], [0], []])
@@ -52,7 +52,7 @@ def topological(after: Sequence[Sequence[int]]) -> list[int]:
 
 
 def _peel(count: int, edges: Sequence[tuple[int, int, int]]) -> list[int]:
-    """Number the vertices so that few edges point backwards, preferably weak ones."""
+    """Return vertex → its number in an order in which few edges point backwards, preferably weak ones."""
     after: list[list[tuple[int, int]]] = [[] for _ in range(count)]
     before: list[list[tuple[int, int]]] = [[] for _ in range(count)]
     out = [0] * count
@@ -69,7 +69,7 @@ def _peel(count: int, edges: Sequence[tuple[int, int, int]]) -> list[int]:
     while heap:
         rank, gain, v = heapq.heappop(heap)
         if place[v] >= 0 or (rank, gain) != _urgency(out[v], into[v]):
-            continue  # outdated: the heap has a newer entry
+            continue  # outdated: the heap has a newer entry for this vertex
         if rank in _LAST:
             place[v], last = last, last - 1
         else:
@@ -82,11 +82,11 @@ def _peel(count: int, edges: Sequence[tuple[int, int, int]]) -> list[int]:
     return place
 
 
-_LAST = (0, 2)
+_LAST = (0, 2)  # the ranks of `_urgency` whose vertices get the last free number, not the first
 
 
 def _urgency(out: int, into: int) -> tuple[int, int]:
-    """Return the sort key of a vertex: sinks, sources, then both if only strong edges count, then the rest."""
+    """Return a vertex's sort key (rank, gain): sinks, sources, sinks and sources among strong edges, the rest."""
     if out == 0:
         return (0, 0)
     if into == 0:

@@ -1,8 +1,8 @@
 """Layers of bounded size, for pictures that would be too tall for a screen.
 
 With the shortest edges, layers may be few and crowded: all neighbours of a hub share one layer. If the picture is then
-tall and narrow, the layers get a bound. Surplus vertices move to a later layer, as in the scheduling of Coffman and
-Graham (1972). A vertex that has just become ready goes first, so that a chain continues before another chain begins.
+tall and narrow, the layers get a bound. Vertices beyond the bound move to a later layer, as in the scheduling of
+Coffman and Graham (1972). A vertex goes first if its predecessors were placed just now, so that a chain continues.
 """
 
 from __future__ import annotations
@@ -17,18 +17,18 @@ Extent = tuple[float, float]
 """Width and height in pixels."""
 
 _SCREEN = 720.0  # pixels: a picture of this height fits a screen, however narrow it is
-_TALLEST = 1.2  # minimum width : height
+_TALLEST = 1.2  # the minimum of width : height; a narrower picture is too tall
 _ASPECT = 1.6  # desired width : height
-_SPLITS = 16
+_SPLITS = 16  # the maximum number of parts into which the largest layer is split
 
 
 def fit_to_screen(ranks: Sequence[int], arcs: Sequence[Arc], extent: Callable[[Sequence[int]], Extent]) -> list[int]:
-    """Return layers that suit a landscape screen: the given ones, or bounded ones if the picture would be too tall.
+    """Return layers that suit a landscape screen: `ranks`, or bounded layers if the picture would be too tall.
 
     Args:
         ranks: The layer of each vertex, from 0.
-        arcs: The constraints of the layers: each arc spans at least its length.
-        extent: Estimates the size of the picture for some layers.
+        arcs: The constraints on the layers: each arc spans at least its length.
+        extent: A function that estimates the size of the picture for given layers.
     """
     best, (width, height) = list(ranks), extent(ranks)
     if height <= _SCREEN or width >= _TALLEST * height:
@@ -59,7 +59,7 @@ def bounded_layers(ranks: Sequence[int], arcs: Sequence[Arc], most: int) -> list
     for u, v, _, length in arcs:
         after[u].append((v, length))
         waiting[v] += 1
-    tail = [0] * count  # the longest path from the vertex, in layers
+    tail = [0] * count  # vertex → the longest path from it, in layers
     for u in reversed(topological([[v for v, _ in ahead] for ahead in after])):
         tail[u] = max((tail[v] + length for v, length in after[u]), default=0)
     found = list(ranks)

@@ -14,17 +14,17 @@ from ravestate.draw.acyclic import topological
 from ravestate.draw.layered import LayeredGraph, places
 
 _GAPS = {(True, True): 16.0, (True, False): 12.0, (False, True): 12.0, (False, False): 9.0}
-"""Minimum pixels between two neighbours of a layer; `False` stands for a dummy vertex."""
+"""(upper, lower neighbour in a layer) → the minimum pixels between them; `False` stands for a dummy vertex."""
 
 
 def separation(graph: LayeredGraph, upper: int, lower: int) -> float:
-    """Return the minimum distance in pixels between the middles of two neighbours of a layer."""
+    """Return the minimum distance in pixels between the middles of two adjacent vertices of a layer."""
     solid = (graph.kind[upper] != "dummy", graph.kind[lower] != "dummy")
     return (graph.height[upper] + graph.height[lower]) / 2 + _GAPS[solid]
 
 
 def brandes_koepf(graph: LayeredGraph) -> list[float]:
-    """Return the vertical middle of each vertex in pixels; the topmost border is at 0."""
+    """Return the vertical middle of each vertex in pixels; the upper border of the topmost vertex is at 0."""
     crossed = _forbidden(graph)
     ways = ((True, True), (True, False), (False, True), (False, False))
     found = [_aligned(graph, crossed, from_left, downwards) for from_left, downwards in ways]
@@ -39,7 +39,7 @@ def brandes_koepf(graph: LayeredGraph) -> list[float]:
 
 
 def _forbidden(graph: LayeredGraph) -> set[int]:
-    """Return the segments that cross a segment between two dummies. These type 1 conflicts are never aligned."""
+    """Return the segments that cross a segment between two dummies (type 1 conflicts); they are never aligned."""
     place = places(graph.order)
     by_layer: list[list[tuple[int, int, int, bool]]] = [[] for _ in graph.order]
     for segment in range(len(graph.segments)):
@@ -58,15 +58,15 @@ def _forbidden(graph: LayeredGraph) -> set[int]:
 
 
 def _aligned(graph: LayeredGraph, crossed: set[int], from_left: bool, downwards: bool) -> list[float]:
-    """Return the coordinates for one of the four alignments."""
+    """Return the vertical middle of each vertex in one of the four alignments."""
     count = len(graph.layer)
     sign = 1.0 if downwards else -1.0
     order = graph.order if from_left else graph.order[::-1]
     if not downwards:
         order = [layer[::-1] for layer in order]
     place = places(order)
-    # For each vertex: (place of the neighbour, neighbour, offset below the neighbour at which alignment puts the
-    # vertex, segment).
+    # Vertex → (place of a neighbour, the neighbour, the offset below the neighbour at which alignment puts the vertex,
+    # the segment between the two).
     towards: list[list[tuple[int, int, float, int]]] = [[] for _ in range(count)]
     for segment, (low, high) in enumerate(graph.segments):
         p, q = graph.ports[low], graph.ports[high]
@@ -74,7 +74,7 @@ def _aligned(graph: LayeredGraph, crossed: set[int], from_left: bool, downwards:
             p, q = q, p
         towards[q.vertex].append((place[p.vertex], p.vertex, sign * (p.offset - q.offset), segment))
     root = list(range(count))
-    shift = [0.0] * count  # offset from the root of the block to the vertex
+    shift = [0.0] * count  # vertex → its offset from the root of its block
     taken = [False] * count
     for layer in order:
         limit = -1
@@ -96,7 +96,7 @@ def _aligned(graph: LayeredGraph, crossed: set[int], from_left: bool, downwards:
 def _packed(
     graph: LayeredGraph, order: Sequence[Sequence[int]], root: Sequence[int], shift: Sequence[float]
 ) -> list[float]:
-    """Move each block as far up as possible, and then as far down as its lower neighbours allow."""
+    """Return each vertex's middle after each block moved up as far as possible, then down as far as there is room."""
     count = len(root)
     lower: list[list[tuple[int, float]]] = [[] for _ in range(count)]
     upper: list[list[tuple[int, float]]] = [[] for _ in range(count)]

@@ -18,7 +18,7 @@ from ravestate.policy.clauses import normal_form
 
 
 def build(rules: Iterable[Rule[Any, Any]]) -> Diagram:
-    """Return the diagram of some rules, in their order.
+    """Return the diagram of the given rules, with nodes in the order of the rules.
 
     Raises:
         DeclarationError: A condition has too many alternatives.
@@ -113,7 +113,7 @@ def _label(term: Constraint | Holds) -> str:
 
 
 def _ages(least: Number, most: Number | None) -> str:
-    """Return the ages at which a spike counts; empty for the defaults (L4)."""
+    """Return the ages of a spike that a constraint accepts, as text; empty for the default ages (L4)."""
     if least == 0.0:
         if most is None:
             return "any age"
@@ -126,6 +126,6 @@ def _number(number: Number) -> str:
 
 
 def _predicate(what: str, predicate: Callable[[Any], object]) -> str:
-    """Return a predicate with its name, if it has one."""
+    """Return the word `what`, followed by the name of the predicate if it has one."""
     name = getattr(predicate, "__name__", type(predicate).__name__)
     return what if name == "<lambda>" else f"{what} {name}"

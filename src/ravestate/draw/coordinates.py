@@ -1,7 +1,7 @@
 """Coordinate assignment: the best of several methods.
 
 Brandes and Köpf's alignment suits small pictures, and relaxation (`relax`) suits crowded ones. Each candidate is
-straightened. The candidate with the shortest lines and the fewest steps wins; among equals, the first wins.
+straightened. The candidate with the shortest lines and the fewest steps wins; among equal candidates, the first wins.
 """
 
 from __future__ import annotations
@@ -11,9 +11,9 @@ from ravestate.draw.layered import LayeredGraph
 from ravestate.draw.relax import relax
 from ravestate.draw.straighten import straighten
 
-_STEP = 70.0  # the cost of a step, in pixels of length
-_SPREADS = (1.0, 1.15)
-_LEVEL = 0.01
+_STEP = 70.0  # the cost of a step in a line, in pixels of length
+_SPREADS = (1.0, 1.15)  # factors on the minimum distances: one candidate of `relax` for each
+_LEVEL = 0.01  # pixels: a smaller step counts as none
 
 
 def assign_coordinates(graph: LayeredGraph, room: float | None = None) -> list[float]:

@@ -1,8 +1,8 @@
 """Crossing minimisation: the order of the vertices within their layers.
 
 Barycentre sweeps run forwards and backwards, each followed by transpositions of neighbours (Sugiyama, Tagawa and Toda 1981;
-Gansner et al. 1993). There are two initial orders; the best order that the sweeps find wins. The initial orders come
-from a depth-first search in declaration order, which keeps related declarations together.
+Gansner et al. 1993). There are two initial orders; the result is the best order that the sweeps find. The
+initial orders come from a depth-first search in declaration order, which keeps related declarations together.
 """
 
 from __future__ import annotations
@@ -12,8 +12,8 @@ from itertools import pairwise
 
 from ravestate.draw.layered import LayeredGraph, places
 
-_WORK = 400_000  # segments x sweeps
-_PATIENCE = 4  # sweeps without improvement
+_WORK = 400_000  # the maximum of segments x sweeps
+_PATIENCE = 4  # sweeps without improvement before the search ends
 
 
 def minimise_crossings(graph: LayeredGraph, *, centred: bool = False) -> None:
@@ -21,7 +21,7 @@ def minimise_crossings(graph: LayeredGraph, *, centred: bool = False) -> None:
 
     Args:
         graph: Any layered graph.
-        centred: Begin with each dummy between the neighbours that share its port, instead of in the order of creation.
+        centred: Whether each dummy begins between the neighbours that share its port, instead of in order of creation.
             A hyperedge through many layers then runs straight, with branches to both sides.
     """
     before, after = graph.neighbours()
@@ -30,7 +30,7 @@ def minimise_crossings(graph: LayeredGraph, *, centred: bool = False) -> None:
         after = [_dummies_centred(graph, vertices) for vertices in after]
     sweeps = max(4, min(24, _WORK // (1 + len(graph.segments))))
     best = graph.order
-    least = count_crossings(best, after) + 1  # a better initial order replaces the order of creation
+    least = count_crossings(best, after) + 1  # + 1: an initial order that is no worse replaces the order of creation
     for downwards in (True, False):
         order, crossed = _sweep(_start(graph, before, after, downwards), before, after, sweeps)
         if crossed < least:
@@ -45,7 +45,7 @@ def count_crossings(order: Sequence[Sequence[int]], after: Sequence[Sequence[int
 
     Args:
         order: The vertices of each layer.
-        after: For each vertex its neighbours in the next layer.
+        after: Vertex → its neighbours in the next layer.
     """
     total = 0
     for layer, following in pairwise(order):
@@ -93,7 +93,7 @@ def _start(
 
 
 def _dummies_centred(graph: LayeredGraph, vertices: Sequence[int]) -> list[int]:
-    """Return the same vertices, with the dummies in the middle."""
+    """Return `vertices` in another order: the dummies in the middle."""
     others = [v for v in vertices if graph.kind[v] != "dummy"]
     half = len(others) // 2
     return [*others[:half], *(v for v in vertices if graph.kind[v] == "dummy"), *others[half:]]
@@ -124,7 +124,7 @@ def _sweep(
 
 
 def _by_barycentre(layer: list[int], neighbours: Sequence[Sequence[int]], place: list[int], flip: bool) -> None:
-    """Sort a layer by the mean place of the neighbours. Vertices without any stay; with `flip`, ties swap."""
+    """Sort the vertices with neighbours by the mean place of these; other vertices stay. With `flip`, ties swap."""
     moving = [(sum(place[w] for w in neighbours[v]) / len(neighbours[v]), v) for v in layer if neighbours[v]]
     if flip:
         moving.reverse()
@@ -138,7 +138,7 @@ def _by_barycentre(layer: list[int], neighbours: Sequence[Sequence[int]], place:
 def _transpose(
     order: list[list[int]], before: Sequence[Sequence[int]], after: Sequence[Sequence[int]], place: list[int]
 ) -> None:
-    """Swap neighbours while a swap saves crossings."""
+    """Swap adjacent vertices in `order` while a swap saves crossings."""
     for _ in range(4):
         saved = False
         for layer in order:
@@ -159,9 +159,9 @@ def _transpose(
 
 
 def _gain(upper: Sequence[int], lower: Sequence[int]) -> int:
-    """Return how many crossings a swap of two neighbours saves, given their sorted ends."""
+    """Return how many crossings a swap of two vertices saves, given the sorted places of their neighbours."""
     gain = before = upto = 0
-    for end in upper:  # lower ends before `end` cross now; those after it would cross after the swap
+    for end in upper:  # lower ends before `end` cross now; lower ends after it would cross after the swap
         while before < len(lower) and lower[before] < end:
             before += 1
         while upto < len(lower) and lower[upto] <= end:

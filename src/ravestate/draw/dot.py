@@ -68,5 +68,5 @@ def _quoted(text: str) -> str:
 
 
 def _escaped(text: str) -> str:
-    """Escape quotes and backslashes, and ampersands, which Graphviz would read as entities."""
+    """Return the text with quotes and backslashes escaped, and ampersands, which Graphviz would read as entities."""
     return clean(text).replace("&", "&amp;").replace("\\", "\\\\").replace('"', '\\"')

@@ -18,12 +18,12 @@ _STRONGEST_FIRST: tuple[EdgeKind, ...] = (
 
 
 def fold(diagram: Diagram, unfolded: Collection[str] = ()) -> Diagram:
-    """Return the diagram with one node for each module.
+    """Return the diagram with one node for each folded module.
 
     Edges inside a folded module disappear. Several edges with the same ends become one arrow of the strongest kind.
 
     Args:
-        diagram: The whole diagram.
+        diagram: The diagram without folds.
         unfolded: Names of the modules that keep their own nodes.
 
     Example:
@@ -55,7 +55,7 @@ def fold(diagram: Diagram, unfolded: Collection[str] = ()) -> Diagram:
 
 
 def _modules(diagram: Diagram) -> dict[str, str]:
-    """Return the module of each node. A junction belongs to the module of its rule."""
+    """Return node's id → the node's module. A junction belongs to the module of its rule."""
     home = {node.id: node.module for node in diagram.nodes}
     leads = {edge.source: edge.target for edge in diagram.edges if edge.kind.startswith("condition")}
     kinds = {node.id: node.kind for node in diagram.nodes}

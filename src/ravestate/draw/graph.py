@@ -1,4 +1,4 @@
-"""The diagram as a value: nodes and edges, without places or colours."""
+"""The diagram as a value: nodes and edges, without coordinates or colours."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ class Node:
     """A slot, a signal, a rule, a folded module, or the junction of a conjunction or disjunction.
 
     Attributes:
-        id: Its unique name within the diagram.
-        kind: Its kind.
-        label: The text in it; empty for a junction.
-        module: The module that declares it; empty for a junction and for a module.
+        id: The node's unique name within the diagram.
+        kind: The node's kind.
+        label: The text inside the node; empty for a junction.
+        module: The module that declares the slot, signal or rule; empty for a junction and for a module.
         note: Options such as a weight, or the number of rules of a module; may be empty.
     """
 
@@ -35,7 +35,7 @@ class Node:
 
 @dataclass(frozen=True, slots=True)
 class Edge:
-    """An arrow from `source` to `target` (both are ids of nodes), perhaps with a few words beside it."""
+    """An arrow from `source` to `target` (both are ids of nodes), with `label` beside it if that is not empty."""
 
     source: str
     target: str
@@ -45,7 +45,7 @@ class Edge:
 
 @dataclass(frozen=True, slots=True)
 class Diagram:
-    """Nodes and edges in declaration order.
+    """The nodes and edges of a picture, in declaration order.
 
     Raises:
         ValueError: Two nodes share an id, an edge has an unknown end, or an edge joins a node to itself.

@@ -16,24 +16,24 @@ from ravestate.draw.graph import EdgeKind
 
 VertexKind = Literal["node", "label", "dummy"]
 
-_SOLID: tuple[EdgeKind, ...] = ("writes", "emits")  # solid lines may overlap; dashes would not match
+_SOLID: tuple[EdgeKind, ...] = ("writes", "emits")  # solid lines may overlap; overlapping dashes would not match
 
 
 @dataclass(frozen=True, slots=True)
 class Link:
-    """An edge of the acyclic graph, from the lower to the higher layer; `is_reversed` if its arrow points the other way."""
+    """An edge of the acyclic graph, from the lower to the higher layer; `is_reversed` if its arrow points back."""
 
     low: int
     high: int
     kind: EdgeKind
     is_reversed: bool
     label: tuple[float, float] | None
-    """The width and height of its label in pixels."""
+    """The width and height of the edge's label in pixels; None without a label."""
 
 
 @dataclass(slots=True)
 class Port:
-    """A point where lines touch a vertex: on the `right` or left side, `offset` pixels below the middle."""
+    """A point where lines touch a vertex: on its `right` or left side, `offset` pixels below its middle."""
 
     vertex: int
     right: bool
@@ -55,12 +55,12 @@ class LayeredGraph:
     height: list[float] = field(default_factory=list[float])
     ports: list[Port] = field(default_factory=list[Port])
     segments: list[tuple[int, int]] = field(default_factory=list[tuple[int, int]])
-    """Pairs of ports: one on the right of a vertex, one on the left of a vertex in the next layer."""
+    """Pairs of ports: one on the right side of a vertex, one on the left side of a vertex in the next layer."""
     chains: list[Chain] = field(default_factory=list[Chain])
     labels: list[int | None] = field(default_factory=list[int | None])
-    """For each link the vertex of its label, or ``None``."""
+    """Link → the vertex of its label; None if the link has no label."""
     order: list[list[int]] = field(default_factory=list[list[int]])
-    """The vertices of each layer."""
+    """Layer → its vertices, from top to bottom."""
 
     def ends(self, segment: int) -> tuple[int, int]:
         """Return the two vertices that a segment joins."""
@@ -68,7 +68,7 @@ class LayeredGraph:
         return self.ports[low].vertex, self.ports[high].vertex
 
     def neighbours(self) -> tuple[list[list[int]], list[list[int]]]:
-        """Return for each vertex its neighbours in the layer before and in the layer after, once for each segment."""
+        """Return vertex → its neighbours in the layer before, and those in the layer after, once for each segment."""
         before: list[list[int]] = [[] for _ in self.layer]
         after: list[list[int]] = [[] for _ in self.layer]
         for segment in range(len(self.segments)):
@@ -79,7 +79,7 @@ class LayeredGraph:
 
 
 def proper_layering(ranks: Sequence[int], sizes: Sequence[tuple[float, float]], links: Sequence[Link]) -> LayeredGraph:
-    """Return the graph with a dummy wherever a link passes a layer. Within layers, vertices are in order of creation."""
+    """Return the graph, with a dummy wherever a link passes a layer. A layer's vertices are in order of creation."""
     graph = LayeredGraph()
     builder = _Builder(graph)
     for rank, (width, height) in zip(ranks, sizes, strict=True):
@@ -89,7 +89,7 @@ def proper_layering(ranks: Sequence[int], sizes: Sequence[tuple[float, float]], 
     for link in links:
         share_low = from_low[_low(link)] >= from_high[_high(link)]
         if link.label is not None or link.kind not in _SOLID:
-            # The label is near the arrow's head, on its own line. Overlapping dashes match only from a common start.
+            # A label is near the arrow's head, on a line of its own. Overlapping dashes match only from a common start.
             share_low = not link.is_reversed
         builder.link(link, ranks[link.low], ranks[link.high], share_low)
     graph.order = [[] for _ in range(max(graph.layer, default=-1) + 1)]
@@ -99,7 +99,7 @@ def proper_layering(ranks: Sequence[int], sizes: Sequence[tuple[float, float]], 
 
 
 def places(order: Sequence[Sequence[int]]) -> list[int]:
-    """Return the place of each vertex within its layer, given the vertices of each layer."""
+    """Return vertex → its place within its layer, given the vertices of each layer."""
     found = [0] * sum(map(len, order))
     for layer in order:
         for place, vertex in enumerate(layer):

@@ -36,7 +36,7 @@ _TURN = 2.0  # average pixels that each port adds to a gap, for the turns of its
 _BETWEEN = 36.0  # pixels between components
 _ASPECT = 1.6  # desired width : height of packed components
 
-_STRENGTH: dict[EdgeKind, int] = {
+_STRENGTH: dict[EdgeKind, int] = {  # kind → the cost of reversing such an edge
     "writes": 3 * STRONG,
     "emits": 4 * STRONG,
     "condition": 4 * STRONG,
@@ -48,7 +48,7 @@ _STRENGTH: dict[EdgeKind, int] = {
 
 @dataclass(frozen=True, slots=True)
 class Box:
-    """A rectangle: left and upper border, width and height, in pixels."""
+    """A rectangle: its left and upper border, its width and height, in pixels."""
 
     x: float
     y: float
@@ -65,9 +65,9 @@ class Layout:
     """Places of nodes, lines and labels, in pixels from the upper left corner.
 
     Attributes:
-        boxes: The box of each node, by id.
+        boxes: Node's id → the node's box.
         lines: For each edge, in the order of the diagram, the points of its line from source to target.
-        labels: For each edge the box of its label, or ``None``.
+        labels: For each edge the box of its label; None if the edge has no label.
         width: The width of the picture.
         height: The height of the picture.
     """
@@ -80,12 +80,12 @@ class Layout:
 
 
 def lay_out(diagram: Diagram, nodes: Mapping[str, Size], labels: Sequence[Size | None]) -> Layout:
-    """Lay out a diagram.
+    """Return the layout of a diagram.
 
     Args:
         diagram: The diagram.
-        nodes: The size of each node, by id.
-        labels: The size of each edge's label, or ``None``.
+        nodes: Node's id → the node's size.
+        labels: The size of each edge's label; None if the edge has no label.
     """
     boxes: dict[str, Box] = {}
     lines: list[tuple[Point, ...]] = [()] * len(diagram.edges)
@@ -175,7 +175,7 @@ def _lay_out_component(
 
 
 def _extent(graph: LayeredGraph) -> Size:
-    """Estimate the size of a graph before its coordinates are known."""
+    """Return an estimate of a graph's size in pixels, before its coordinates are known."""
     width = sum(max(graph.width[v] for v in layer) + _GAP for layer in graph.order)
     width += _TURN * len({low for low, _ in graph.segments})
     height = max(sum(separation(graph, u, v) for u, v in pairwise(layer)) for layer in graph.order)
@@ -183,7 +183,7 @@ def _extent(graph: LayeredGraph) -> Size:
 
 
 def _tightness(edge: Edge, kinds: Mapping[str, NodeKind]) -> int:
-    """Return the cost of an edge's length: junctions stay next to their rule, and signals next to their slot."""
+    """Return the cost of an edge per layer of length: it keeps junctions near their rule, signals near their slot."""
     if kinds[edge.source] in JUNCTIONS:
         return 8
     if edge.kind == "emits" and kinds[edge.source] == "slot":
@@ -192,7 +192,7 @@ def _tightness(edge: Edge, kinds: Mapping[str, NodeKind]) -> int:
 
 
 def _pack(sizes: Sequence[Size]) -> list[Point]:
-    """Pack rectangles into rows, the tallest first."""
+    """Return the upper left corners of rectangles, packed into rows, the tallest rectangle first."""
     order = sorted(range(len(sizes)), key=lambda i: (-sizes[i][1], i))
     area = sum((width + _BETWEEN) * (height + _BETWEEN) for width, height in sizes)
     wide = max([(area * _ASPECT) ** 0.5, *(width for width, _ in sizes)], default=0.0)

@@ -14,19 +14,19 @@ from ravestate.draw.sizes import SMALL
 from ravestate.draw.text import width
 
 NARROWEST = 560.0
-"""Pixels of width that a legend may always use."""
+"""The width in pixels that a legend may use even if the picture is narrower."""
 
-_ROW = 26.0
-_GAP = 20.0
+_ROW = 26.0  # pixels: height of a row
+_GAP = 20.0  # pixels between entries
 _SAMPLE: dict[NodeKind, float] = {kind: 18.0 if kind in JUNCTIONS else 30.0 for kind in NODES}
-_HIGH = 18.0
-_EDGE = 38.0
-_TEXT = 7.0
+_HIGH = 18.0  # pixels: height of a sample node
+_EDGE = 38.0  # pixels: length of a sample edge
+_TEXT = 7.0  # pixels from a sample to its text
 
 
 @dataclass(frozen=True, slots=True)
 class Legend:
-    """SVG elements, with their width and height in pixels."""
+    """The SVG elements of a legend, with their total width and height in pixels."""
 
     elements: str
     width: float
@@ -34,7 +34,7 @@ class Legend:
 
 
 def legend(diagram: Diagram, x: float, y: float, room: float, prefix: str) -> Legend:
-    """Return the legend of a diagram at (x, y), in rows of at most `room` pixels."""
+    """Return the legend of a diagram at (x, y), in rows of at most `room` pixels; ids begin with `prefix`."""
     nodes, edges = used(diagram)
     plain: list[NodeKind] = [kind for kind in nodes if kind not in JUNCTIONS]
     junctions: list[NodeKind] = [kind for kind in nodes if kind in JUNCTIONS]
@@ -59,7 +59,7 @@ def legend(diagram: Diagram, x: float, y: float, room: float, prefix: str) -> Le
 
 
 def _rows(wide: Sequence[float], room: float) -> list[tuple[float, int]]:
-    """Return the left edge and the row of each entry: few rows of about equal length."""
+    """Return the left edge (pixels) and the row of each entry, in as few rows as possible, of about equal length."""
     found = _filled(wide, room)
     while room > max(wide) and (narrower := _filled(wide, room - 10.0))[-1][1] == found[-1][1]:
         found, room = narrower, room - 10.0

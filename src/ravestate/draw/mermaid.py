@@ -28,9 +28,9 @@ _WORDS: dict[EdgeKind, str] = {
     "emits_detached": "detached",
     "condition_detached": "detached",
 }
-"""Words on the line: Mermaid has too few arrows to tell these kinds apart without colour."""
+"""Kind of edge → words on its line: Mermaid has too few arrows to tell these kinds apart without colour."""
 
-_MOST_EDGES = 500
+_MOST_EDGES = 500  # Mermaid's default limit
 _PLAIN = " _:,×≥≤–…"  # characters that need no escape, besides letters and digits
 
 
@@ -79,12 +79,12 @@ def _label(node: Node) -> str:
 def _words(edge: Edge) -> str:
     words = _WORDS.get(edge.kind, "")
     if edge.kind == "condition_detached" and edge.label.startswith("until"):
-        words = ""  # an interruption holds no spikes, so it is not called detached
+        words = ""  # an interruption holds no spikes, so the word "detached" would mislead
     return ", ".join(word for word in (words, edge.label) if word)
 
 
 def _escaped(text: str) -> str:
-    """Replace every character that Mermaid, Markdown or HTML might interpret by a numeric entity."""
+    """Return the text with numeric entities for all characters that Mermaid, Markdown or HTML might interpret."""
     return "".join(
         character if character.isalnum() or character in _PLAIN else f"#{ord(character)};" for character in clean(text)
     )

@@ -12,7 +12,7 @@ NODES: dict[NodeKind, str] = {
     "and": "conjunction",
     "or": "disjunction",
 }
-"""The word for each kind of node."""
+"""Kind of node → its name in the notation."""
 
 EDGES: dict[EdgeKind, str] = {
     "reads": "reads",
@@ -22,14 +22,14 @@ EDGES: dict[EdgeKind, str] = {
     "condition": "condition",
     "condition_detached": "detached condition",
 }
-"""The words for each kind of edge."""
+"""Kind of edge → its name in the notation."""
 
 JUNCTIONS: dict[NodeKind, str] = {"and": "∧", "or": "∨"}
-"""The sign inside a junction."""
+"""Kind of junction → the sign inside it."""
 
 
 def describe(node: Node) -> str:
-    """Return the full name of a node: ``rule hello:greet (×1.2)``, or ``conjunction``."""
+    """Return a node's kind, name and note: ``rule hello:greet (×1.2)``, or ``conjunction``."""
     words = NODES[node.kind]
     if node.name:
         words += f" {node.name}"
@@ -37,7 +37,7 @@ def describe(node: Node) -> str:
 
 
 def used(diagram: Diagram) -> tuple[list[NodeKind], list[EdgeKind]]:
-    """Return the kinds of nodes and of edges of a diagram, in the order of the table, for its legend."""
+    """Return the kinds of nodes and the kinds of edges that a diagram uses, in the order of the paper's table."""
     nodes = {node.kind for node in diagram.nodes}
     edges = {edge.kind for edge in diagram.edges}
     return [kind for kind in NODES if kind in nodes], [kind for kind in EDGES if kind in edges]

@@ -1,4 +1,4 @@
-"""Port placement: on each side of a vertex, ports are in the order of their targets."""
+"""Port placement: on each side of a vertex, ports are in the order of the vertices to which their lines lead."""
 
 from __future__ import annotations
 
@@ -6,11 +6,11 @@ from ravestate.draw.layered import LayeredGraph, places
 
 _PITCH = 10.0  # pixels between ports of one side, where there is room
 _MARGIN = 10.0  # pixels from the first and last port to the corner, which is sometimes round
-_LEAST = 3.0  # minimum pixels between ports; with less room they coincide, except for lines of the other direction
+_LEAST = 3.0  # minimum pixels between ports; with less room they coincide, but entering and leaving lines stay apart
 
 
 def place_ports(graph: LayeredGraph) -> None:
-    """Set the offset of each port. The layers of `graph` are in order."""
+    """Set the offset of each port in place. The layers of `graph` must be in their final order."""
     place = places(graph.order)
     leads: list[list[int]] = [[] for _ in graph.ports]
     for low, high in graph.segments:

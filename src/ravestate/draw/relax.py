@@ -14,7 +14,7 @@ from math import inf
 from ravestate.draw.brandes_koepf import separation
 from ravestate.draw.layered import LayeredGraph
 
-_SWEEPS = 24
+_SWEEPS = 24  # sweeps over all layers, forwards and backwards in turn
 _BEHIND = 0.15  # weight of neighbours ahead of a sweep, relative to those behind it
 
 
@@ -34,7 +34,7 @@ def relax(graph: LayeredGraph, spread: float, room: float | None = None) -> list
         for v, gap in zip(layer, [*gaps[-1], 0.0], strict=True):
             middle[v] = y
             y += gap
-    before: list[list[tuple[int, float, float]]] = [[] for _ in middle]  # neighbour, offset of its port, weight
+    before: list[list[tuple[int, float, float]]] = [[] for _ in middle]  # vertex → (neighbour, port's offset, weight)
     after: list[list[tuple[int, float, float]]] = [[] for _ in middle]
     for low, high in graph.segments:
         p, q = graph.ports[low], graph.ports[high]
@@ -63,8 +63,8 @@ def relax(graph: LayeredGraph, spread: float, room: float | None = None) -> list
 
 
 def _isotonic(wishes: Sequence[float], weights: Sequence[float], gaps: Sequence[float], half: float) -> list[float]:
-    """Return the places from -half to half that keep the gaps and are nearest to the wishes (weighted squares)."""
-    pools: list[tuple[float, float, int]] = []  # mean, weight, how many
+    """Return the places from -half to half that keep the gaps and are nearest to the wishes (by weighted squares)."""
+    pools: list[tuple[float, float, int]] = []  # (mean, weight, number of members)
     offsets: list[float] = []
     offset = 0.0
     for i, (wish, weight) in enumerate(zip(wishes, weights, strict=True)):

@@ -13,12 +13,12 @@ Point = tuple[float, float]
 _BEFORE = 12.0  # pixels from a layer to the first track
 _PITCH = 8.0  # pixels between tracks
 _AFTER = 20.0  # pixels from the last track to the next layer: room for the head of an arrow
-_LEVEL = 0.01
+_LEVEL = 0.01  # pixels: two coordinates that differ by less are equal
 
 
 @dataclass(frozen=True, slots=True)
 class Routed:
-    """The middle of each vertex, the line of each link from low to high, and the width of the picture."""
+    """The middle of each vertex, the line of each link from its lower to its higher layer, and the picture's width."""
 
     middles: list[Point]
     lines: list[list[Point]]
@@ -26,12 +26,12 @@ class Routed:
 
 
 def route(graph: LayeredGraph, middle: Sequence[float]) -> Routed:
-    """Place the layers side by side with room for the lines between them, and route the lines."""
+    """Return the layers side by side, with room between them for the lines, and the route of each line."""
     gaps: list[list[int]] = [[] for _ in graph.order]
     for number in range(len(graph.segments)):
         gaps[graph.layer[graph.ends(number)[0]]].append(number)
     across = [0.0] * len(graph.layer)
-    turns = [(0.0, 0.0)] * len(graph.segments)  # x at which a segment leaves its first height, and reaches its second
+    turns = [(0.0, 0.0)] * len(graph.segments)  # segment → x where it leaves its first y, x where it reaches its second
     x = 0.0
     for layer, numbers in zip(graph.order, gaps, strict=True):
         column = max(graph.width[v] for v in layer)
@@ -80,7 +80,7 @@ def _line(
 
 
 def _simple(points: Sequence[Point]) -> list[Point]:
-    """Remove duplicate points, and points within a straight horizontal piece."""
+    """Return the points without duplicates, and without those inside a straight horizontal piece."""
     found: list[Point] = []
     for point in points:
         if found and abs(found[-1][0] - point[0]) < _LEVEL and abs(found[-1][1] - point[1]) < _LEVEL:

@@ -12,17 +12,17 @@ from ravestate.draw.style import EDGE_STYLES
 _ROUND = 7.0  # pixels: radius of a turn
 _CORNER = 10.0  # pixels: radius of a signal's corners
 _HEAD = 9.0  # pixels: length of an arrow's head
-_BACK = {"full": 6.0, "hollow": 8.5, "open": 1.5}  # pixels between the end of a line and the tip of its head
+_BACK = {"full": 6.0, "hollow": 8.5, "open": 1.5}  # kind of head → pixels between the end of the line and the tip
 
 
 def number(value: float) -> str:
-    """Return a coordinate as short text, to a hundredth of a pixel."""
+    """Return a coordinate (pixels) as short text, rounded to a hundredth."""
     text = f"{value:.2f}".rstrip("0").rstrip(".")
     return "0" if text == "-0" else text
 
 
 def outline(kind: NodeKind, box: Box) -> str:
-    """Return the outline of a node, with the sign of a junction."""
+    """Return the outline of a node as SVG; a junction has its sign inside."""
     x, y, w, h = (number(value) for value in (box.x, box.y, box.width, box.height))
     middle_x, middle_y = box.x + box.width / 2, box.y + box.height / 2
     if kind == "slot":
@@ -62,7 +62,7 @@ def heads(prefix: str) -> str:
 
 
 def line(kind: EdgeKind, points: Sequence[Point], prefix: str) -> str:
-    """Return the line of an edge with round turns and a head; the tip of the head is the last point."""
+    """Return the line of an edge as SVG, with round turns and a head; the tip of the head is at the last point."""
     back = _BACK[EDGE_STYLES[kind].head]
     (ax, ay), (bx, by) = points[-2], points[-1]
     length = ((bx - ax) ** 2 + (by - ay) ** 2) ** 0.5
@@ -78,7 +78,7 @@ def line(kind: EdgeKind, points: Sequence[Point], prefix: str) -> str:
 
 
 def _towards(turn: Point, other: Point) -> Point:
-    """Return the point where a round turn begins or ends."""
+    """Return the point on the way from `turn` to `other` at which a round turn begins or ends."""
     dx, dy = other[0] - turn[0], other[1] - turn[1]
     length = (dx * dx + dy * dy) ** 0.5
     share = min(_ROUND / length, 0.5) if length else 0.0

@@ -13,14 +13,14 @@ from collections.abc import Sequence
 from ravestate.draw.acyclic import topological
 
 Arc = tuple[int, int, int, int]
-"""Tail, head, weight, and minimum length in layers."""
+"""An arc: its tail, its head, its weight, and its minimum length in layers."""
 
 _SAMPLE = 30  # candidates for the leaving arc to compare before one is chosen
-_WORK = 2_000_000  # exchanges x vertices
+_WORK = 2_000_000  # the maximum of exchanges x vertices
 
 
 def network_simplex(count: int, arcs: Sequence[Arc]) -> list[int]:
-    """Return the rank, from 0, of each vertex of an acyclic, connected graph with `count` vertices.
+    """Return the layer, from 0, of each vertex of an acyclic, connected graph with `count` vertices.
 
     Each arc spans at least its length, and the sum of weight x span is minimal. The number of exchanges is bounded: in
     large graphs the sum may be slightly above the minimum.
@@ -40,19 +40,19 @@ class _Simplex:
         self.count = count
         self.arcs = arcs
         self.incident: list[list[int]] = [[] for _ in range(count)]
-        self.surplus = [0] * count  # weight out - weight in
+        self.surplus = [0] * count  # vertex → weight out - weight in
         for i, (u, v, weight, _) in enumerate(arcs):
             self.incident[u].append(i)
             self.incident[v].append(i)
             self.surplus[u] += weight
             self.surplus[v] -= weight
         self.rank = _longest_paths(count, arcs)
-        self.tree_arcs: list[list[int]] = [[] for _ in range(count)]  # the tree arcs of each vertex
-        self.parent = [-1] * count  # the arc towards the root
-        self.low = [0] * count  # the least number in the subtree, in postorder
+        self.tree_arcs: list[list[int]] = [[] for _ in range(count)]  # vertex → its tree arcs
+        self.parent = [-1] * count  # vertex → its tree arc towards the root
+        self.low = [0] * count  # vertex → the least postorder number in its subtree
         self.number = [0] * count
-        self.vertex = [0] * count  # the vertex with each number
-        self.total = [0] * count  # surplus of the subtree
+        self.vertex = [0] * count  # postorder number → vertex
+        self.total = [0] * count  # vertex → the surplus of its subtree
         self.tree: list[int] = []
         self.tight_tree()
         self.number_subtree(0, 0)
@@ -65,8 +65,8 @@ class _Simplex:
         """Find a spanning tree of tight arcs: for each new arc, shift the whole tree until the arc is tight."""
         moved = 0  # the shift of the tree so far; ranks in the tree are stored without it
         inside = [False] * self.count
-        ahead: list[tuple[int, int]] = []  # arcs out of the tree, by slack + moved
-        behind: list[tuple[int, int]] = []  # arcs into the tree, by slack - moved
+        ahead: list[tuple[int, int]] = []  # (slack + moved, arc) for arcs out of the tree
+        behind: list[tuple[int, int]] = []  # (slack - moved, arc) for arcs into the tree
 
         def join(v: int) -> None:
             inside[v] = True
@@ -190,7 +190,7 @@ class _Simplex:
         return True
 
     def balance(self) -> list[int]:
-        """Move each vertex with several equally good ranks to the smallest of these layers."""
+        """Return the ranks after each vertex with several equally good ranks moved to the smallest of these layers."""
         least = min(self.rank)
         rank = [r - least for r in self.rank]
         size = [0] * (max(rank) + 1)

@@ -7,18 +7,18 @@ from ravestate.draw.notation import JUNCTIONS
 from ravestate.draw.text import clean, shorten, width
 
 NAME = 13.0
-"""Font size of a name, pixels."""
+"""The font size of a node's name, in pixels."""
 
 SMALL = 10.5
-"""Font size of a module and of a note, pixels."""
+"""The font size of a node's module and note, in pixels."""
 
 LABEL = 10.5
-"""Font size of an edge's label, pixels."""
+"""The font size of an edge's label, in pixels."""
 
 LONGEST = 250.0
-"""The maximum width of a text in pixels; longer texts are cut, and their title has the whole text."""
+"""The maximum width of a text in pixels; a wider text is cut, and the tooltip shows the whole text."""
 
-_JUNCTION = 22.0
+_JUNCTION = 22.0  # pixels: width and height of a junction
 
 
 def shown(text: str, size: float) -> str:

@@ -11,13 +11,13 @@ from itertools import pairwise
 from ravestate.draw.brandes_koepf import separation
 from ravestate.draw.layered import LayeredGraph
 
-_BEND = 60.0  # the cost of a step, in pixels of length
-_ROUNDS = 4
-_LEVEL = 0.01
+_BEND = 60.0  # the cost of a step in a line, in pixels of length
+_ROUNDS = 4  # the maximum number of passes over all segments
+_LEVEL = 0.01  # pixels: a smaller step counts as none
 
 
 def straighten(graph: LayeredGraph, middle: list[float]) -> None:
-    """Move the middles of the vertices, in place."""
+    """Move the vertices so that lines become straight; this changes `middle`, their vertical middles, in place."""
     _Straightener(graph, middle).run()
 
 
@@ -30,7 +30,7 @@ class _Straightener:
         for layer in graph.order:
             for u, v in pairwise(layer):
                 self.above[v], self.below[u] = u, v
-        self.lines: list[list[tuple[int, float]]] = [[] for _ in middle]  # (neighbour, offset of its port from ours)
+        self.lines: list[list[tuple[int, float]]] = [[] for _ in middle]  # vertex → (neighbour, offset between ports)
         for low, high in graph.segments:
             p, q = graph.ports[low], graph.ports[high]
             self.lines[p.vertex].append((q.vertex, q.offset - p.offset))
@@ -65,13 +65,13 @@ class _Straightener:
                 return
 
     def step(self, segment: int) -> float:
-        """Return how far the right end of a segment is below its left end."""
+        """Return how many pixels the right end of a segment is below its left end."""
         low, high = self.graph.segments[segment]
         p, q = self.graph.ports[low], self.graph.ports[high]
         return self.middle[q.vertex] + q.offset - self.middle[p.vertex] - p.offset
 
     def gain(self, vertex: int, by: float) -> float:
-        """Return the cost that moving the block of a vertex saves; negative if there is no room."""
+        """Return the cost saved by moving a vertex's block down by `by` pixels; negative if there is no room."""
         block = self.block[vertex]
         saved = 0.0
         for v in self.members[block]:

@@ -1,7 +1,7 @@
 """Colours, dashes and heads of the notation. Slots are cyan, rules red, signals green, as in the paper.
 
 Shapes differ too, for readers who cannot tell the colours apart. Slots have double sides, signals round corners, and each
-kind of edge has its own line and head. The dark colours apply if the viewer asks for them.
+kind of edge has its own line and head. The dark colours apply if the viewer prefers a dark colour scheme.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ Head = Literal["full", "hollow", "open"]
 
 @dataclass(frozen=True, slots=True)
 class Paint:
-    """One colour on a light and on a dark background."""
+    """The two values of a colour: on a light and on a dark background."""
 
     light: str
     dark: str
@@ -24,7 +24,7 @@ class Paint:
 
 @dataclass(frozen=True, slots=True)
 class EdgeStyle:
-    """The style of a kind of edge: colour, width in pixels, dashes (in SVG's notation, or empty) and head."""
+    """The style of a kind of edge: its colour, width in pixels, dashes (in SVG's notation, or empty) and head."""
 
     paint: Paint
     width: float
@@ -48,7 +48,7 @@ NODE_COLOURS: dict[NodeKind, tuple[Paint, Paint]] = {
     "and": (PAPER, _INK),
     "or": (PAPER, _INK),
 }
-"""Fill and stroke of each kind of node."""
+"""Kind of node → the colours of its fill and its outline."""
 
 EDGE_STYLES: dict[EdgeKind, EdgeStyle] = {
     "reads": EdgeStyle(_CYAN, 1.5, "6 4", "open"),
@@ -58,7 +58,7 @@ EDGE_STYLES: dict[EdgeKind, EdgeStyle] = {
     "condition": EdgeStyle(_INK, 1.6, "", "open"),
     "condition_detached": EdgeStyle(_INK, 2.0, "0.1 5", "hollow"),
 }
-"""The style of each kind of edge. Dashes of length 0.1 look like dots, since line ends are round."""
+"""Kind of edge → its style. Dashes of length 0.1 look like dots, since line ends are round."""
 
 
 def stylesheet() -> str:

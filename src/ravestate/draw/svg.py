@@ -15,7 +15,7 @@ from ravestate.draw.sizes import LABEL, NAME, SMALL, label_size, node_size, show
 from ravestate.draw.style import stylesheet
 from ravestate.draw.text import clean
 
-_MARGIN = 24.0
+_MARGIN = 24.0  # pixels around the picture and its legend
 _SENTENCES = 60  # the maximum number of edges in the description
 
 
@@ -85,7 +85,7 @@ def _label(edge: Edge, box: Box, nodes: dict[str, Node]) -> str:
 
 
 def _sentence(edge: Edge, nodes: dict[str, Node]) -> str:
-    """Return an edge in words, after the paper's table: subject, verb, object."""
+    """Return an edge as a sentence in the terms of the paper's table: subject, verb, object."""
     source, target = nodes[edge.source], nodes[edge.target]
     if edge.kind == "reads":
         words = f"{_name(target)} reads {_name(source)}"

@@ -20,17 +20,17 @@ _CLASSES: tuple[tuple[float, str], ...] = (
     (1.10, "@"),
 )
 _EMS: dict[str, float] = {character: ems for ems, characters in _CLASSES for character in characters}
-_OTHER = 0.85
-_WIDE = 1.05
+_OTHER = 0.85  # of any other character
+_WIDE = 1.05  # of an East Asian wide character
 
 
 def width(text: str, size: float) -> float:
-    """Estimate the width of a text in pixels at a font size in pixels."""
+    """Return an estimate of the width of a text in pixels; the font's `size` is also in pixels."""
     return size * sum(_ems(character) for character in text)
 
 
 def shorten(text: str, size: float, limit: float) -> str:
-    """Cut the middle out of a text that is wider than `limit` pixels. Names often differ at one end."""
+    """Return the text, without its middle if it is wider than `limit` pixels. Names often differ at one end."""
     if width(text, size) <= limit:
         return text
     room = limit - width("…", size)
@@ -47,7 +47,7 @@ def shorten(text: str, size: float, limit: float) -> str:
 
 
 def clean(text: str) -> str:
-    """Replace control characters, line breaks, noncharacters and direction marks by U+FFFD."""
+    """Return the text with U+FFFD for each control character, line break, noncharacter and direction mark."""
     return "".join("\ufffd" if _unprintable(character) else character for character in text)
 
 

@@ -14,17 +14,17 @@ from dataclasses import dataclass, field
 from ravestate.draw.acyclic import STRONG, feedback_arcs, topological
 
 Segment = tuple[int, int, float, float]
-"""The port on the left, the port on the right, and the y coordinates of both."""
+"""The port at the left end, the port at the right end, and the y coordinates of both (pixels)."""
 
 _NEAR = 5.0  # pixels: closer stubs look like one line
 _APART = 7.0  # pixels: minimum distance of two verticals on one track
-_LEVEL = 0.01
-_TOUCHING = 4 * STRONG  # far above the sum of all crossings
+_LEVEL = 0.01  # pixels: a net whose ends differ by less needs no track
+_TOUCHING = 4 * STRONG  # the cost of overlapping stubs, far above that of all crossings together
 
 
 @dataclass(slots=True)
 class Tracks:
-    """The track of each segment, or ``None`` for a straight line (rarely, for a slanted one)."""
+    """How many tracks there are, and the track of each segment: None for a straight (rarely, a slanted) line."""
 
     count: int
     of: list[int | None]
@@ -108,7 +108,7 @@ def _nets(segments: Sequence[Segment]) -> list[_Net]:
 
 
 def _offending(a: _Net, b: _Net, segments: Sequence[Segment], joined: set[tuple[int, int]]) -> set[int]:
-    """Return the segments whose stubs overlap unless `a` is on the left of `b`: the smaller group of each pair."""
+    """Return the segments whose stubs overlap unless `a` is to the left of `b`; of each overlap, the smaller side."""
     found: set[int] = set()
     for p, y in a.left.items():
         for q, z in b.right.items():
@@ -120,7 +120,7 @@ def _offending(a: _Net, b: _Net, segments: Sequence[Segment], joined: set[tuple[
 
 
 def _cost(a: _Net, b: _Net, joined: set[tuple[int, int]]) -> int:
-    """Return the cost of putting `a` to the left of `b`."""
+    """Return the cost of putting net `a` to the left of net `b`: crossings, and overlapping stubs."""
     cost = 0
     for p, y in b.left.items():
         if a.top < y < a.bottom and p not in a.left:

@@ -4,12 +4,12 @@ An activation is a clause plus the spikes that it has acquired. Once it has cons
 clause also has an activation in stand-by, which holds nothing. Stand-by needs no object: the engine creates one for the
 first spike.
 
-- `GATHERING`: it lacks a spike, a spike is too young, or a predicate on a slot is false.
-- `READY`: it holds all its spikes, all are old enough, and it asks for consent.
-- `WAITING`: it was refused consent, and asks again when something changes.
+- `GATHERING`: the activation lacks a spike, a spike is too young, or a predicate on a slot is false.
+- `READY`: the activation holds all its spikes, all are old enough, and it asks for consent.
+- `WAITING`: a group refused consent; the activation asks again when something changes.
 - `RUNNING`: the rule's function runs.
 - `CANCELLING`: the engine has cancelled the function, which is cleaning up.
-- `ENDED`: it holds nothing.
+- `ENDED`: the activation holds nothing any more.
 
 A step that is not in the table of transitions is a bug in the engine.
 """
@@ -45,12 +45,12 @@ class State(enum.IntEnum):
 class Step(enum.IntEnum):
     """A step in the life of an activation."""
 
-    COMPLETE = 0  # holds all its spikes, they are old enough, and its guards hold (L14)
-    LOSE = 1  # gave a spike up, or a guard no longer holds
+    COMPLETE = 0  # the activation holds all its spikes, they are old enough, and its guards are true (L14)
+    LOSE = 1  # the activation gave a spike up, or a guard became false
     REFUSE = 2  # a group refused consent (L15)
     GRANT = 3  # every group consented (L17)
-    CANCEL = 4  # interrupted, timed out, or wiped (L18, L20, L21)
-    END = 5  # finished, or gave up its last spike
+    CANCEL = 4  # the run was interrupted, timed out, or wiped (L18, L20, L21)
+    END = 5  # the run finished, or the activation gave up its last spike
 
 
 _G, _R, _W, _X, _C, _E = State  # short names, to make the table readable
@@ -81,18 +81,18 @@ COMPLETE, LOSE, REFUSE, GRANT, CANCEL, END = Step
 class Activation:
     """A clause plus the spikes that it has acquired.
 
-    Most activations end before they run or wait. So attributes for running or waiting are defaults on the class.
+    Most activations end before they run or wait. So the class holds the defaults of the attributes for these states.
 
     Attributes:
         id: A number that grows with each new activation; also the number of its run.
-        spikes: The spike for each need of the clause.
-        missing: The bits of the needs without a spike.
+        spikes: Need of the clause → the spike that meets it; None if there is none yet.
+        missing: The bits of the clause's needs without a spike.
     """
 
     ripens: float = NEVER
-    """While a spike is too young: when all its spikes will be old enough (seconds)."""
+    """While one of its spikes is too young: the time at which all will be old enough (seconds)."""
     pressed: float = NEVER
-    """While others wait for it: the end of its patience (seconds; L16)."""
+    """While other activations wait for it: the time at which its patience ends (seconds; L16)."""
     waits_for: tuple[str, ...] = ()
     """While it waits: the names of the rules that it waits for."""
     blockers: tuple[Activation, ...] = ()
@@ -102,19 +102,19 @@ class Activation:
     speculative: bool = False
     """Whether it waits for a rival that may never become ready, so that only the rival's patience ends the wait."""
     recheck: float = NEVER
-    """While it waits: when recovering utilities change the order (L9; seconds)."""
+    """While it waits: the time at which recovering utilities change the order (seconds; L9)."""
     stands_on: tuple[Spike, ...] = ()
     """The non-detached spikes of the run: the parents of the spikes that it raises."""
     groups: tuple[Group, ...] = ()
-    """The groups in which the run has taken slots, as they were when it began."""
+    """The groups in which the run has taken slots, as they were when the run began."""
     wrote: bool = False
     """Whether the run has written a slot."""
     deadline: float = NEVER
-    """When the run times out (seconds)."""
+    """The time at which the run times out (seconds)."""
     told: str = ""
-    """Why the engine cancelled the run."""
+    """The reason for which the engine cancelled the run; empty if it did not."""
     lineage: Lineage | None = None
-    """In an instant with many runs: the rules that led to the run, its own included (L23)."""
+    """In an instant with many runs: the rules that led to the run, including its own rule (L23)."""
 
     def __init__(self, id: int, clause: Clause) -> None:
         self.id = id
@@ -124,7 +124,7 @@ class Activation:
         self.missing = clause.all_bits
 
     def step(self, step: Step) -> None:
-        """Make a transition.
+        """Change the state by one step of the table.
 
         Raises:
             EngineError: The table has no such transition.
@@ -135,14 +135,14 @@ class Activation:
         self.state = state
 
     def held(self, bits: int) -> Spike | None:
-        """Return a spike that it holds for one of the needs in `bits`, if any."""
+        """Return a spike that the activation holds for one of the needs in `bits`, or None."""
         for need in self.clause.needs:
             if need.bit & bits and not need.bit & self.missing:
                 return self.spikes[need.index]
         return None
 
     def firm_groups(self) -> list[Group]:
-        """Return the present causal groups of its non-detached spikes, each once."""
+        """Return the causal groups to which its non-detached spikes belong now, each group once."""
         if len(self.spikes) == 1 and self.clause.firm_bits:
             only = self.spikes[0]
             return [] if only is None else [only.group if only.group.into is None else only.group.root()]

@@ -2,7 +2,7 @@
 
 1. Rules that write no slot start at once.
 2. When none of them is left, ready writers ask for consent (``consent.py``): older causes first, and the greatest
-   utility first within a cause. By then, runs that never suspend have ended.
+   utility first within a cause. By then, rules that never suspend have ended.
 3. When no writer may start either, the engine updates the built-in flags.
 
 So when a classifier ends, a waiting activation asks again in the same instant, but only after everything else that ends
@@ -42,12 +42,12 @@ class Agenda(Slots):
         self._queue: list[tuple[int, float, int, int, Activation]] = []
         self._horizon: Horizon | None = None
         self.ran: dict[int, float] = {}
-        """When each rule with a cooldown last ran (seconds)."""
+        """Number of a rule with a cooldown → the time of its last run (seconds)."""
         self._activity = policy.slot_of["core:activity"]
         self._pressure = policy.slot_of["core:pressure"]
 
     def look(self) -> None:
-        """Unfold all alternatives for an observer; each waits for the best clause of its conflict set."""
+        """Make all alternatives visible to an observer: each becomes an activation that waits for the best clause."""
         for best in list(self.alternatives):
             spike = best.spikes[0]
             assert spike is not None  # it is ready, or runs
@@ -58,7 +58,7 @@ class Agenda(Slots):
                     self._refuse(other, Refusal.by(best, other))
 
     def horizon(self) -> Horizon:
-        """Return the horizon, which stays valid until an activation starts or changes."""
+        """Return the horizon of the engine; it stays valid until an activation starts or changes."""
         if self._horizon is None:
             self._horizon = Horizon(self)
         return self._horizon
@@ -73,7 +73,7 @@ class Agenda(Slots):
         return clause.base
 
     def recovery(self, clause: Clause) -> tuple[float, float, float]:
-        """Return the effective utility (nats), its slope (nats per second), and the time of recovery (seconds)."""
+        """Return a clause's effective utility (nats), its slope (nats per second), and when it recovers (seconds)."""
         rule = clause.rule
         ran = self.ran.get(rule.index)
         if not rule.cooldown or ran is None or self.now - ran >= rule.cooldown:
@@ -81,11 +81,11 @@ class Agenda(Slots):
         return self.effective(clause), clause.base / rule.cooldown, ran + rule.cooldown
 
     def order(self, activation: Activation) -> tuple[float, int, int]:
-        """Return the sort key of ready activations: the greatest utility, the first declared, the oldest."""
+        """Return the sort key of a ready activation: greatest effective utility, then first declared, then oldest."""
         return (-self.effective(activation.clause), activation.clause.index, activation.id)
 
     def _start_free(self) -> None:
-        """Start the ready activations that need no consent."""
+        """Start the ready activations that need no consent, unless a guard is false or another run is in the way."""
         free = self._free
         self._free = []
         for activation in free:
@@ -102,7 +102,7 @@ class Agenda(Slots):
             self._start(activation)
 
     def _claimed(self, activation: Activation) -> Activation | None:
-        """Return a run of the same rule on a common spike. Only such a run excludes a rule without slots (L10)."""
+        """Return a run of the same rule on a common spike, or None. Only this excludes a rule without slots (L10)."""
         for spike in activation.firm_spikes():
             if spike.claims is not None:
                 other = spike.claims.get(activation.clause.rule.index)
@@ -111,7 +111,7 @@ class Agenda(Slots):
         return None
 
     def _guarded(self, activation: Activation) -> bool:
-        """Return whether the predicates on slots hold; if not, the activation is no longer ready."""
+        """Return whether the activation's predicates on slots are true; if not, the activation is no longer ready."""
         clause = activation.clause
         if not all(self.holds(s, g, clause.rule) for s, g in clause.guards):
             self._horizon = None
@@ -121,7 +121,7 @@ class Agenda(Slots):
         return True
 
     def _consent_round(self) -> None:
-        """Ask for consent: older causes first, and the best first within a cause.
+        """Let ready activations ask for consent: older causes first, and the best activation first within a cause.
 
         If a rule has just started, an activation that reads one of its slots asks in the next round instead. So the
         activation sees the values that this rule writes before it suspends.
@@ -153,11 +153,11 @@ class Agenda(Slots):
                 continue
             rule = clause.rule
             if rule.cooldown and (turn := self._turn(activation)) > entry[:4]:
-                heapq.heappush(queue, (*turn, activation))  # its rule has run meanwhile, and is recovering
+                heapq.heappush(queue, (*turn, activation))  # its rule has run meanwhile, so its utility is lower
                 continue
             if written and not rule.readable.isdisjoint(written):
                 if self._is_taken(activation):
-                    later.append(entry)  # in the next round it waits, or has lost its spike
+                    later.append(entry)  # by the next round it waits, or has lost its spike
                 elif self._ask(activation, start=False):
                     later.append(entry)
                     break
@@ -173,18 +173,18 @@ class Agenda(Slots):
                 self._start(best)
 
     def _is_taken(self, activation: Activation) -> bool:
-        """Return whether one of its slots is taken in one of its groups."""
+        """Return whether one of the activation's slots is taken in one of its groups."""
         slots = activation.clause.rule.slots
         return any(slot in group.taken for group in activation.firm_groups() if group.taken for slot in slots)
 
     def _turn(self, activation: Activation) -> tuple[int, float, int, int]:
-        """Return the sort key of the queue: older causes first, and the best first within a cause."""
+        """Return the activation's sort key in the queue: older causes first, and the best first within a cause."""
         groups = activation.firm_groups()
         cause = groups[0].id if len(groups) == 1 else min(group.id for group in groups)
         return (cause, *self.order(activation))
 
     def _ask(self, activation: Activation, *, start: bool = True) -> bool:
-        """Return whether an activation has consent. With consent it starts, unless `start` is false; otherwise it waits."""
+        """Return whether an activation has consent. With consent it starts, unless `start` is false; else it waits."""
         if not activation.clause.rule.slots:
             free = self._claimed(activation) is None
             if free and start:
@@ -204,7 +204,7 @@ class Agenda(Slots):
         return False
 
     def _refuse(self, activation: Activation, refusal: Refusal) -> None:
-        """Make an activation wait."""
+        """Make an activation wait, for the reasons in `refusal`."""
         activation.step(REFUSE)
         self._lose_interest(activation)
         self.waiting[activation] = self._refused[activation] = None
@@ -223,7 +223,7 @@ class Agenda(Slots):
             self.tracer(trace.Waits(self.now, activation.id, activation.clause.rule.name, names, until))
 
     def patience_of_rivals(self, activation: Activation) -> float | None:
-        """Return when the patience of the last pressured rival of a waiting activation ends (seconds)."""
+        """Return when the patience of all pressured rivals of a waiting activation has ended (seconds), or None."""
         names = activation.waits_for
         times: list[float] = []
         for group in activation.firm_groups():
@@ -233,8 +233,8 @@ class Agenda(Slots):
         return max(times, default=None)
 
     def _press(self, group: Group, rival: Clause, member: Activation | None, by: Activation) -> None:
-        """Put a rival under pressure, unless it already is (L16). `member` is the rival's activation, or None if the
-        clause is in stand-by."""
+        """Put a rival under pressure, unless it is already (L16), because `by` waits for it. `member` is the rival's
+        activation, or None if the clause is in stand-by."""
         patience = self.patience if rival.rule.patience is None else rival.rule.patience
         until = self.now + patience
         if member is not None:
@@ -255,8 +255,8 @@ class Agenda(Slots):
             self.tracer(trace.Pressed(self.now, rival.rule.name, by.clause.rule.name, lacks, until))
 
     def _pressed_for_nothing(self, rival: Activation) -> bool:
-        """Return whether a rival survives the end of its patience: no activation waits for it, or it is certain to
-        become ready (L16)."""
+        """Return whether a rival survives the end of its patience: no activation waits for it, or work in progress may
+        still make it ready (L16)."""
         slots = rival.clause.rule.slotset
         groups = rival.firm_groups()
         waited = any(
@@ -313,7 +313,7 @@ class Agenda(Slots):
         self._out.append(Run(activation.id, rule.rule, payloads, values))
 
     def _set_flag(self, flag: SlotPlan, value: bool) -> None:
-        """Change a built-in flag, and signal the change only if something may hear it."""
+        """Change a built-in flag, and raise its signals only if a rule, the tracer or the runtime may hear them."""
         heard = flag.heard or self.tracer is not None or (self.watched and self._watched(flag))
         if heard or flag.index in self.policy.guarded:
             self._change(flag, value, (), None)
@@ -335,10 +335,10 @@ class Agenda(Slots):
 
 
 def _endless(rules: Sequence[RulePlan]) -> str:
-    """Return the message about an endless loop."""
+    """Return the error message about an endless loop of `rules`."""
     names = ", ".join(rule.name for rule in rules)
     whom = "each other" if len(rules) > 1 else "itself"
     return (
-        f"a loop without an end: {names} set {whom} off {MANY + TURNS:,} times within one instant; write "
+        f"an endless loop: {names} set {whom} off {MANY + TURNS:,} times within one instant; write "
         ".min_age(seconds) behind a signal of the loop, so that time passes"
     )

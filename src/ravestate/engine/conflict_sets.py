@@ -2,9 +2,9 @@
 
 A thousand rules that hear the same signal and write the same slot would need a thousand activations. One would run, and
 the rest would give up. So only the best clause gets an activation; the other clauses are its queue of alternatives. If
-it resigns or fails, the next clause takes its place. The queue is *unfolded* into ordinary activations where that could
-make a difference: to judge a rival, to explain something, to retire or add a rule. The number of each activation is
-fixed from the start, so it does not matter when a queue unfolds.
+its run resigns or fails, the next clause takes its place. The queue is *unfolded* into ordinary activations where that
+could make a difference: to judge a rival, to explain something, to retire or add a rule. The number of each activation
+is fixed from the start, so it does not matter when a queue unfolds.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ class ConflictSets(Holdings):
     """The layer of the engine that keeps the queues of alternatives."""
 
     def unfold(self, activation: Activation) -> None:
-        """Create the activations for all alternatives of one activation."""
+        """Create the activations of all alternatives in one activation's queue."""
         clauses, made, base = self.alternatives.pop(activation)
         spike = activation.spikes[0]
         assert spike is not None  # it is ready, or runs
@@ -27,7 +27,7 @@ class ConflictSets(Holdings):
             self._activate(clauses[position], base + position + 1, spike)
 
     def unfold_all(self) -> None:
-        """Create the activations for all alternatives."""
+        """Create the activations of the alternatives in all queues."""
         for activation in list(self.alternatives):
             self.unfold(activation)
 
@@ -37,7 +37,7 @@ class ConflictSets(Holdings):
             if spike.group.finished(clauses[0].rule.slots):
                 for clause in clauses if self.tracer is not None else ():
                     self._pass_by(clause, spike, "consumed")
-                continue  # consumed for all of them
+                continue  # the spike is consumed for all clauses of the set
             clauses = tuple(clause for clause in clauses if self._enters(clause, spike))
             if not clauses:
                 continue
@@ -48,7 +48,7 @@ class ConflictSets(Holdings):
             self.unfold_all()
 
     def _enters(self, clause: Clause, spike: Spike) -> bool:
-        """Return whether a clause takes a spike."""
+        """Return whether a clause takes a spike: its rule has not retired, and its predicates fit the payload."""
         if self.retired and clause.rule.index in self.retired:
             return False
         for predicate in clause.needs[0].predicates:
@@ -58,7 +58,7 @@ class ConflictSets(Holdings):
         return True
 
     def _next(self, clauses: tuple[Clause, ...], position: int, base: int, spike: Spike) -> None:
-        """Make the activation of the clause at a position, with the rest of its conflict set as alternatives."""
+        """Create the activation of the clause at a position; the clauses after it become its alternatives."""
         activation = self._activate(clauses[position], base + position + 1, spike)
         if position + 1 < len(clauses):
             self.alternatives[activation] = (clauses, position + 1, base)
@@ -71,7 +71,7 @@ class ConflictSets(Holdings):
             clauses, made, base = queued
             refused = spike.refused or ()
             while made < len(clauses) and clauses[made].rule.index in refused:
-                made += 1  # another clause of a rule that gave the spike up for good
+                made += 1  # this clause's rule gave the spike up for good
             if made < len(clauses):
                 self._next(clauses, made, base, spike)
 

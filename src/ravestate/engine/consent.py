@@ -1,8 +1,8 @@
 """Consent (L15): whether a ready activation may run now, and if not, which activations it waits for.
 
-A group refuses while one of the activation's slots is taken in it, or while there is a rival. A rival is another clause
-that writes one of these slots and has greater effective utility. It has a stake in the group, and is still viable
-there. A rival with a stake holds a spike of the group, or is in stand-by, downstream of a live rule of the group.
+A group refuses while one of the activation's slots is taken in it, or while there is a rival: another viable clause
+that writes one of these slots, has greater effective utility, and has a stake in the group. A clause has a stake if
+it holds a spike of the group, or if a live rule of the group may trigger it.
 """
 
 from __future__ import annotations
@@ -20,15 +20,15 @@ if TYPE_CHECKING:
 
 
 class Refusal:
-    """The reasons for which an activation must wait. Without a reason, the activation has consent.
+    """The reasons for which an activation must wait. If `names` is empty, the activation has consent.
 
     Attributes:
-        names: The names of the rules that it waits for.
+        names: The names of the rules that the activation waits for.
         blockers: The live activations on whose progress the refusal depends.
-        pressed: The rivals that may never become ready, so that only their patience ends the wait; each with the group.
+        pressed: (group, clause, activation or None) of each rival that may never be ready: its patience ends the wait.
         hopes: Whether the refusal depends on live rules of other groups.
         interests: The groups whose changes may lift the refusal.
-        recheck: The earliest time at which recovering utilities change the order (seconds).
+        recheck: The earliest time at which recovering utilities change the order (seconds); `NEVER` if none does.
     """
 
     __slots__ = ("blockers", "hopes", "interests", "names", "pressed", "recheck")
@@ -55,7 +55,7 @@ class Refusal:
 
 
 def ask(engine: Engine, activation: Activation) -> Refusal:
-    """Ask every causal group of a ready activation, and return the refusal; an empty one is consent."""
+    """Ask every causal group of a ready activation for consent, and return the refusal; an empty refusal is consent."""
     refusal = Refusal()
     clause = activation.clause
     rule = clause.rule
@@ -93,13 +93,13 @@ def ask(engine: Engine, activation: Activation) -> Refusal:
 
 
 def _rivals(engine: Engine, activation: Activation, group: Group) -> Iterator[tuple[Clause, Activation | None]]:
-    """Yield the clauses that write one of the same slots, take precedence, and have a stake in the group."""
+    """Yield the rivals of an activation in a group, each with its activation there, or None for one in stand-by."""
     clause = activation.clause
     slots = clause.rule.slotset
     worth = engine.effective(clause)
     seen: set[Clause] = {clause}
     rules: dict[RulePlan, None] = {}
-    for member in tuple(group.members):  # judging a rival may unfold alternatives
+    for member in tuple(group.members):  # a copy, because judging a rival may unfold alternatives
         theirs = member.clause
         rules[theirs.rule] = None
         if theirs is clause or theirs.rule.slotset.isdisjoint(slots) or member.state >= RUNNING:
@@ -109,7 +109,7 @@ def _rivals(engine: Engine, activation: Activation, group: Group) -> Iterator[tu
     for rule in rules:
         for theirs in engine.policy.causes.downstream(rule):
             if theirs.base < worth:
-                break  # the best come first, and recovery only lowers a utility
+                break  # the best clauses come first, and a cooldown only lowers a utility
             if theirs in seen or theirs.rule.slotset.isdisjoint(slots):
                 continue
             seen.add(theirs)
@@ -125,7 +125,7 @@ def _beats(engine: Engine, theirs: Clause, mine: Clause, worth: float) -> bool:
 
 
 def _crossing(engine: Engine, mine: Clause, theirs: Clause) -> float:
-    """Return the earliest time at which `mine` overtakes `theirs`: both utilities climb linearly to recovery."""
+    """Return the earliest time (seconds) at which `mine` may overtake `theirs`; both utilities climb linearly."""
     now = engine.now
     my_worth, my_slope, my_end = engine.recovery(mine)
     their_worth, their_slope, their_end = engine.recovery(theirs)

@@ -1,4 +1,4 @@
-"""The deadlines, in one heap. An entry becomes stale when its owner gets another deadline or needs none."""
+"""The deadlines, in one heap. An entry becomes stale when its owner gets another deadline or needs none any more."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from typing import Any
 class Kind(enum.IntEnum):
     """A kind of deadline. Deadlines of the same time fall due in this order: gains before losses."""
 
-    RIPEN = 0  # an activation's spikes are old enough
+    RIPEN = 0  # all spikes of an activation are old enough
     RECHECK = 1  # the order of recovering utilities changes
     PATIENCE = 2  # the patience of a pressured activation ends
     STANDBY = 3  # the patience of a pressured stand-by rival ends
     EXPIRE = 4  # a spike is too old for an incomplete activation
     FORGET = 5  # a spike is too old for every detached need
     TIMEOUT = 6  # a run times out
-    WATCH = 7  # the spikes of an `until` are old enough
+    WATCH = 7  # the spikes of an `until` condition are old enough
 
 
 # Reading an attribute of an enumeration costs more than using its value.
@@ -29,7 +29,7 @@ Entry = tuple[float, Kind, int, Any]
 
 
 class Deadlines:
-    """A heap of (time in seconds, kind, number, owner); `valid` says whether an entry still counts."""
+    """A heap of (time in seconds, kind, number, owner); `valid` returns whether an entry still counts."""
 
     __slots__ = ("_count", "_heap", "_limit", "_valid", "earliest")
 
@@ -53,7 +53,7 @@ class Deadlines:
             self._limit = max(256, 2 * len(self._heap))
 
     def next(self) -> float | None:
-        """Return the time of the first valid entry (seconds)."""
+        """Return the time of the first valid entry (seconds); None if there is no valid entry."""
         heap = self._heap
         while heap and not self._valid(heap[0]):
             heapq.heappop(heap)
@@ -61,7 +61,7 @@ class Deadlines:
         return self.earliest if heap else None
 
     def pop(self, now: float) -> Entry | None:
-        """Take the first valid entry that is due."""
+        """Remove the first valid entry, and return it, if it is due at `now` (seconds); else return None."""
         due = self.next()
         return heapq.heappop(self._heap) if due is not None and due <= now else None
 

@@ -13,13 +13,13 @@ CancelReason = Literal["interrupted", "timeout", "wiped"]
 
 @dataclass(slots=True)
 class Run:
-    """Call a rule's function, and report by `Finish`.
+    """An order to call a rule's function, and to report its end by the event `Finish`.
 
     Attributes:
         run: The number of the run, which every event of the run carries.
-        rule: The rule.
-        payloads: The payload of each signal that the run holds, by qualified name.
-        values: The current values of the slots that the run may read (L13), by qualified name.
+        rule: The rule whose function to call.
+        payloads: Qualified name of a signal whose spike the run holds → the spike's payload.
+        values: Qualified name of a slot that the run may read → its current value (L13).
     """
 
     run: int
@@ -30,7 +30,7 @@ class Run:
 
 @dataclass(slots=True)
 class Cancel:
-    """Cancel a run: let it clean up, then report by `Finish`."""
+    """An order to cancel a run: let its function clean up, then report its end by the event `Finish`."""
 
     run: int
     reason: CancelReason
@@ -38,7 +38,7 @@ class Cancel:
 
 @dataclass(slots=True)
 class Failed:
-    """Log a rule's failure once, with its traceback."""
+    """An order to log a rule's failure once, with its traceback."""
 
     rule: str
     exception: BaseException
@@ -46,7 +46,7 @@ class Failed:
 
 @dataclass(slots=True)
 class Spiked:
-    """Report a new spike of a watched signal."""
+    """A report of a new spike of a watched signal."""
 
     signal: str
     payload: Any
@@ -54,8 +54,8 @@ class Spiked:
 
 @dataclass(slots=True)
 class Ended:
-    """Report the outcome of a run, if the engine has `report_ends`. ``fired`` is false if the run resigned, or if it
-    failed or was wiped before it wrote a slot."""
+    """A report of the outcome of a run, made if the engine has `report_ends`. ``fired`` is false if the run resigned,
+    or if it failed or was wiped before it wrote a slot."""
 
     run: int
     rule: str

@@ -30,7 +30,7 @@ from ravestate.policy.policy import Policy
 OUTCOMES = get_args(events.OutcomeKind)
 
 DEFAULT_PATIENCE = 1.0
-"""The patience of a rival under pressure, in seconds (L16)."""
+"""The default patience of a rival under pressure, in seconds (L16)."""
 
 
 class Engine(Agenda):
@@ -57,7 +57,7 @@ class Engine(Agenda):
     # ------------------------------------------------------------------------------------ the four verbs
 
     def receive(self, event: Event, now: float) -> None:
-        """Handle an event at a time (seconds). A time before the last one counts as the last one.
+        """Handle an event at the time `now` (seconds). A time before that of an earlier call counts as the latest time.
 
         Raises:
             UndeclaredError: The event names a signal or slot that the policy does not have.
@@ -76,7 +76,7 @@ class Engine(Agenda):
         handler(self, event)
 
     def advance(self, now: float) -> None:
-        """Let time pass until `now`, deadline by deadline. A repeated or early call changes nothing."""
+        """Let time pass until `now` (seconds), deadline by deadline. A repeated or early call changes nothing."""
         entry = self._deadlines.pop(now)
         while entry is not None:
             self.now = max(self.now, entry[0])
@@ -85,17 +85,17 @@ class Engine(Agenda):
         self.now = max(self.now, now)
 
     def next_deadline(self) -> float | None:
-        """Return the time (seconds) at which to call `advance` next, unless an event comes first."""
+        """Return the time (seconds) at which to call `advance` next, unless an event comes first; None for never."""
         return self._deadlines.next()
 
     @property
     def late_turns(self) -> int:
-        """The number of extra turns that loops have had in this instant, after all other ready rules (L23)."""
+        """The number of deferred turns that endless loops have had in this instant, after all other rules (L23)."""
         return self._loops.late
 
     def effects(self) -> list[Effect]:
-        """Return the effects to perform now. Ask again after performing them, until there are none."""
-        # Reports (of spikes, ends, failures) do not end the loop: only work for the runtime does.
+        """Return the effects to perform now. Call this again after performing them, until the list is empty."""
+        # Reports (of spikes, ends, failures) do not end the loop: only a run to start or cancel does.
         while not self._acts:
             if self._deadlines.earliest <= self.now:
                 self.advance(self.now)
@@ -176,7 +176,7 @@ class Engine(Agenda):
             self._kill(spike, "wiped")
 
     def on_add_rule(self, event: events.AddRule) -> None:
-        """Replace the policy by one that has the same rules in the same order, and more."""
+        """Replace the policy by one that begins with the same rules in the same order, and has more."""
         known, plans = self.policy.rule_plans, event.policy.rule_plans
         if [plan.rule for plan in plans[: len(known)]] != [plan.rule for plan in known]:
             raise EngineError("the new policy does not extend the running one: make it with policy.with_rule(rule)")
@@ -220,7 +220,7 @@ class Engine(Agenda):
             )
         elif told and outcome != "failed":
             outcome = told if outcome != "retired" else outcome
-        # A run that is wiped before it wrote anything has answered nothing: others may answer the remaining spikes.
+        # A run that is wiped before it wrote a slot has answered nothing: other rules may answer the remaining spikes.
         unheard = told == "wiped" and not run.wrote
         fired = (outcome not in ("resigned", "failed") and not unheard) or run.wrote or told == "interrupted"
         if rule.cooldown and fired:
@@ -284,7 +284,7 @@ class Engine(Agenda):
     # ------------------------------------------------------------------------------------ outcomes
 
     def _consume(self, run: Activation, spikes: tuple[Spike, ...]) -> None:
-        """Settle Done: consume the slots in the run's groups; take the spikes from the slots' other writers (L18)."""
+        """Settle a run as Done (L18): consume its slots in its groups; make their other writers give up the spikes."""
         rule = run.clause.rule
         if rule.slots:
             groups = _roots(run)
@@ -306,7 +306,7 @@ class Engine(Agenda):
             self._give_up(run, spikes, "consumed")
 
     def _relinquish(self, run: Activation, spikes: tuple[Spike, ...]) -> None:
-        """Settle Resign, or Error before a write: the slots are free again, and the rule gives these spikes up (L18)."""
+        """Settle Resign, or Error before a write (L18): free the run's slots, and make its rule give up `spikes`."""
         for group in _roots(run):
             for slot in run.clause.rule.slots:
                 group.free(slot, run)
@@ -314,7 +314,7 @@ class Engine(Agenda):
         self._give_up(run, spikes, "resigned")
 
     def _give_up(self, run: Activation, spikes: tuple[Spike, ...], reason: str) -> None:
-        """Make the rule give up spikes for good, in all its other activations."""
+        """Make the run's rule give up `spikes` for good, in all its other activations."""
         rule = run.clause.rule
         for spike in spikes:  # mark all of them first: an activation that loses a spike looks for another at once
             if spike.claims is not None and rule.index in spike.claims:
@@ -326,13 +326,13 @@ class Engine(Agenda):
                     self._lose(other, self._of_spike(other, spike), reason, run)
 
     def _retire(self, rule: RulePlan) -> None:
-        """Take a rule out of the context (L18)."""
+        """Remove a rule from the context (L18)."""
         self.unfold_all()
         self.retired.add(rule.index)
         for activation in list(self.active.get(rule.index, ())):
             if activation.state < RUNNING:
                 self._end(activation, "retired")
-        self._asking.update(self.waiting)  # they may have waited for signals of this rule
+        self._asking.update(self.waiting)  # these may have waited for signals of the retired rule
 
     # ------------------------------------------------------------------------------------ deadlines
 
@@ -347,7 +347,7 @@ class Engine(Agenda):
         elif kind is PATIENCE:
             owner.pressed = NEVER
             if owner.state is not GATHERING:
-                return  # it has become ready in time
+                return  # the activation has become ready in time
             self._dirty.update(dict.fromkeys(owner.firm_groups()))
             if self._pressed_for_nothing(owner):
                 return
@@ -378,7 +378,7 @@ class Engine(Agenda):
 
 
 def _roots(run: Activation) -> list[Group]:
-    """Return the present groups of a run."""
+    """Return the groups to which the run's groups belong now, each once."""
     return list(dict.fromkeys(group.root() for group in run.groups))
 
 

@@ -12,17 +12,17 @@ OutcomeKind = Literal["done", "resigned", "failed", "retired"]
 
 @dataclass(slots=True)
 class Start:
-    """Begin the context: ``core:startup`` occurs."""
+    """The context begins: ``core:startup`` occurs."""
 
 
 @dataclass(slots=True)
 class Stop:
-    """Ask the context to end: ``core:shutdown`` occurs."""
+    """The context is about to end: ``core:shutdown`` occurs."""
 
 
 @dataclass(slots=True)
 class Write:
-    """Write a slot, by a run or (``run=None``) from outside. The value of a collection is a whole mapping."""
+    """A run or (``run=None``) code outside writes a slot. The value of a collection is a whole mapping."""
 
     slot: str
     value: Any
@@ -31,7 +31,7 @@ class Write:
 
 @dataclass(slots=True)
 class Store:
-    """Store an item in a collection."""
+    """A run or (``run=None``) code outside stores an item in a collection."""
 
     slot: str
     key: str
@@ -41,7 +41,7 @@ class Store:
 
 @dataclass(slots=True)
 class Discard:
-    """Remove an item from a collection, if it is there."""
+    """A run or (``run=None``) code outside removes an item from a collection, if it is there."""
 
     slot: str
     key: str
@@ -50,7 +50,7 @@ class Discard:
 
 @dataclass(slots=True)
 class Emit:
-    """Raise a signal, by a run or from outside."""
+    """A run or (``run=None``) code outside raises a signal."""
 
     signal: str
     payload: Any = None
@@ -59,7 +59,7 @@ class Emit:
 
 @dataclass(slots=True)
 class Wipe:
-    """Withdraw the live spikes of a signal and all their descendants (L20)."""
+    """A run or (``run=None``) code outside withdraws the live spikes of a signal and all their descendants (L20)."""
 
     signal: str
     run: int | None = None
@@ -67,7 +67,7 @@ class Wipe:
 
 @dataclass(slots=True)
 class Finish:
-    """Report the end of a run (L18)."""
+    """The function of a run has ended (L18); `reason` and `exception` say why, if it resigned, retired or failed."""
 
     run: int
     kind: OutcomeKind
@@ -77,7 +77,7 @@ class Finish:
 
 @dataclass(slots=True)
 class AddRule:
-    """Replace the policy by one that has more rules."""
+    """The context gets a policy that has the same rules and more."""
 
     policy: Policy
 

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class ClauseState:
-    """A clause: its condition as declared, its utility and its effective utility now (nats)."""
+    """A clause: its condition as declared, its utility and its effective utility now (nats), its slot predicates."""
 
     condition: str
     signals: tuple[str, ...]
@@ -36,10 +36,10 @@ class ActivationState:
 
     Attributes:
         state: ``gathering``, ``ripening``, ``gated``, ``ready``, ``waiting``, ``running`` or ``cancelling``.
-        holds: Signal and age (seconds) of each spike.
-        lacks: The signals that are missing.
-        waits_for: The rules that it waits for, and by how many nats each is ahead (0: a taken slot, or a tie).
-        until: The latest time at which it runs or gives up (seconds); None without a bound.
+        holds: The signal and the age (seconds) of each spike that the activation holds.
+        lacks: The signals of the spikes that it lacks.
+        waits_for: The rules that it waits for, and by how many nats each is ahead (0 for a taken slot or a tie).
+        until: The latest time at which it runs or gives a spike up (seconds); None if there is no such time.
     """
 
     id: int
@@ -57,13 +57,13 @@ class Explanation:
 
     Attributes:
         rule: The rule's name.
-        now: The time (seconds).
+        now: The time of the explanation (seconds).
         retired: Whether the rule has left the context.
-        clauses: Its clauses.
-        activations: Its live activations.
-        missing: A sentence for each of its signals that did not occur in the trace: the rules that may raise the
+        clauses: The rule's clauses.
+        activations: The rule's live activations.
+        missing: A sentence for each of the rule's signals that did not occur in the trace: the rules that may raise the
             signal, and how each rule last ended. Empty without a trace.
-        history: Its latest records in the trace, as text. Empty without a trace.
+        history: The rule's latest records in the trace, as text. Empty without a trace.
     """
 
     rule: str
@@ -103,7 +103,7 @@ class Explanation:
 
 
 def explain(engine: Engine, rule: RulePlan, records: Iterable[Record] = (), limit: int = 12) -> Explanation:
-    """Explain a rule of an engine, with at most `limit` lines of its history from `records`, the trace."""
+    """Return the state of a rule, with at most `limit` lines of its history from `records`, the trace."""
     engine.look()
     records = [*records]
     return Explanation(
@@ -163,7 +163,7 @@ def _activation(engine: Engine, activation: Activation) -> ActivationState:
 
 
 def words_of(record: Record, others: str = "", behind: str = "") -> str:
-    """Return what a record means for its rule, in words; empty for a record without a rule.
+    """Return what a record means for its rule, as a phrase; empty for a record without a rule.
 
     `others` describes the rules that the rule waits for; `behind` is the rule that raised the answering rule's input.
     """
@@ -191,35 +191,35 @@ def words_of(record: Record, others: str = "", behind: str = "") -> str:
 
 
 def why_given_up(lost: GaveUp, behind: str = "") -> str:
-    """Say why a spike was given up, naming the rule that answered it: ``behind → rule answered it``."""
+    """Return why a spike was given up, with the rule that answered it, if known: ``behind → rule answered it``."""
     if lost.reason != LossReason.CONSUMED or not lost.by:
         return LossReason.say(lost.reason)
     return f"{f'{behind} → ' if behind else ''}{lost.by} answered it"
 
 
 def without(rule: str, ended: Settled) -> str:
-    """Say that a run ended without raising the signal in question."""
+    """Return a phrase: the run of `rule` that `ended` describes has not raised the signal in question."""
     return f"{rule} {Outcome.say(ended.outcome)} without raising it, at {seconds(ended.time)}"
 
 
 def seconds(time: float) -> str:
-    """Return a time as text."""
+    """Return a time in seconds as text, with its unit."""
     return f"{time:.3f} s"
 
 
 def latest(until: float | None) -> str:
-    """Return a bound as the end of a sentence; empty for none."""
+    """Return the latest time (seconds) of something as the end of a sentence; empty for None."""
     return "" if until is None else f", until {seconds(until)} at the latest"
 
 
 def join(names: Iterable[str]) -> str:
-    """Join names to a list in a sentence: ``a, b and c``."""
+    """Return names as a list within a sentence: ``a, b and c``."""
     *first, last = [*names] or [""]
     return f"{', '.join(first)} and {last}" if first else last
 
 
 def _missing(engine: Engine, rule: RulePlan, records: Sequence[Record]) -> Iterator[str]:
-    """Yield, for each signal of a rule that has not occurred, why it has not."""
+    """Yield a sentence for each signal of a rule that has not occurred: which rules may raise it, how each ended."""
     if not records:
         return
     occurred = {record.signal for record in records if isinstance(record, Born)}

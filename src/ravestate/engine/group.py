@@ -16,22 +16,22 @@ class Group:
     """The slots that are taken in a group, and the activations that have a stake in it.
 
     Attributes:
-        taken: For each slot taken here: the runs that hold it, or None once a run has finished with it.
-        members: The activations that hold non-detached spikes of the group, oldest first, each with the number of them.
+        taken: Number of a slot taken in the group → the runs that hold it, or None once a run has finished with it.
+        members: Activation with non-detached spikes of the group → the number of these spikes; oldest activation first.
         interested: The waiting activations that ask again when something ends in the group.
-        pressed: The stand-by rivals under pressure (numbers of clauses), and the end of their patience (seconds).
-        eliminated: The stand-by rivals whose patience has run out.
-        answers: The rule that first finished with each slot, and the number of its run. The engine notes them for the
-            trace, while there is a tracer.
+        pressed: Number of the clause of a pressured stand-by rival → the time at which its patience ends (seconds).
+        eliminated: The numbers of the clauses of stand-by rivals whose patience has run out.
+        answers: Number of a slot → the rule that first finished with it, and the number of its run. The engine notes
+            them for the trace, while there is a tracer.
     """
 
     __slots__ = ("answers", "eliminated", "id", "interested", "into", "members", "pressed", "taken")
 
     def __init__(self, id: int) -> None:
         self.id = id
-        self.into: Group | None = None  # the group that this one has merged into
+        self.into: Group | None = None  # the group into which this group has merged, if it has
         self.members: dict[Activation, int] = {}
-        # Most groups never need the following tables, so each one is created on first use.
+        # Most groups never need the following tables, so each table is created on first use.
         self.taken: Mapping[int, tuple[Activation, ...] | None] = NOTHING
         self.interested: Mapping[Activation, None] = NOTHING
         self.pressed: dict[int, float] | None = None
@@ -39,18 +39,18 @@ class Group:
         self.answers: Mapping[int, tuple[str, int]] = NOTHING
 
     def root(self) -> Group:
-        """Return the group that this one belongs to now."""
+        """Return the group to which this group belongs now: itself, unless it has merged into another."""
         group = self
         while group.into is not None:
             group = group.into
         return group
 
     def take(self, slot: int, holders: tuple[Activation, ...] | None) -> None:
-        """Take a slot for a run, or (None) for good. Several runs may hold a slot if their groups have merged."""
+        """Take a slot for the runs `holders`, or (None) for good. Runs share a slot if their groups have merged."""
         if self.taken is NOTHING:
             self.taken = {slot: holders}
         else:
-            self.taken[slot] = holders  # type: ignore[index]  # it is a dictionary by now
+            self.taken[slot] = holders  # type: ignore[index]  # `taken` is a dictionary by now
 
     def free(self, slot: int, holder: Activation) -> None:
         """Free a slot that a run holds."""
@@ -62,12 +62,12 @@ class Group:
                 self.take(slot, left)
 
     def finished(self, slots: tuple[int, ...]) -> bool:
-        """Return whether one of the slots is taken for good."""
+        """Return whether one of the slots is taken for good in this group."""
         taken = self.taken
         return bool(taken) and any(slot in taken and taken[slot] is None for slot in slots)
 
     def note(self, slots: tuple[int, ...], rule: str, run: int) -> None:
-        """Note the rule and the run that have finished with some slots; an earlier note stays."""
+        """Note that a run of `rule` has finished with `slots`; an earlier note about a slot stays."""
         self.answers = {**dict.fromkeys(slots, (rule, run)), **self.answers}
 
     def answer(self, slots: tuple[int, ...]) -> tuple[str, int]:
@@ -75,19 +75,19 @@ class Group:
         return next((self.answers[slot] for slot in slots if slot in self.answers), ("", 0))
 
     def concern(self, activation: Activation) -> None:
-        """Have a waiting activation ask again when something ends here."""
+        """Make a waiting activation ask again when something ends in this group."""
         if self.interested is NOTHING:
             self.interested = {activation: None}
         else:
             self.interested[activation] = None  # type: ignore[index]  # as above
 
     def forget(self, activation: Activation) -> None:
-        """Forget an activation that no longer waits."""
+        """Remove an activation that no longer waits from `interested`."""
         if activation in self.interested:
             self.interested.pop(activation)  # type: ignore[attr-defined]  # as above
 
     def eliminate(self, clause: int) -> None:
-        """Strike out a stand-by rival whose patience has run out."""
+        """Note that the patience of a clause in stand-by has run out, so that it is no longer a rival."""
         if self.eliminated is None:
             self.eliminated = set()
         self.eliminated.add(clause)

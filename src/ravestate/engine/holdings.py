@@ -28,7 +28,7 @@ class Holdings(State):
     """The layer of the engine that gives spikes to activations and takes them away."""
 
     def _look(self, activation: Activation) -> None:
-        """Give each detached need that lacks a spike the newest live one that is old enough."""
+        """Give each detached need without a spike the newest live spike that fits, if possible an old enough one."""
         for need in activation.clause.needs:
             if not need.bit & activation.missing:
                 continue
@@ -39,14 +39,14 @@ class Holdings(State):
                 best: Spike | None = None
                 for spike in reversed(live):
                     if self._fits(need, spike):
-                        best = spike  # if all are too young, the oldest ripens first
+                        best = spike  # if all spikes are too young, the oldest ripens first
                         if spike.born + need.min_age <= self.now:
                             break
                 if best is not None:
                     self._acquire(activation, need, best)
 
     def _rematch(self, activation: Activation, need: Need) -> None:
-        """Give a need whose spike was lost the oldest live one that fits (L12)."""
+        """Give a need whose spike was lost the oldest live spike that fits, if there is one (L12)."""
         if need.detached:
             self._look(activation)
         else:
@@ -56,14 +56,14 @@ class Holdings(State):
                     return
 
     def _coherent(self, activation: Activation, need: Need, spike: Spike) -> bool:
-        """Return whether a spike belongs to the causal group whose spikes meet the related needs (L12)."""
+        """Return whether a spike belongs to the causal group from which the activation meets the kin needs (L12)."""
         if need.kin == need.bit:
             return True
         held = activation.held(need.kin & ~need.bit)
         return held is None or held.group.root() is spike.group.root()
 
     def _acquire(self, activation: Activation, need: Need, spike: Spike) -> None:
-        """Give an activation a spike for a need."""
+        """Give an activation a spike that meets one of its needs."""
         activation.spikes[need.index] = spike
         activation.missing &= ~need.bit
         spike.holders[activation] = None
@@ -92,7 +92,7 @@ class Holdings(State):
             )
 
     def _pass_by(self, clause: Clause, spike: Spike, reason: str) -> None:
-        """Trace that a rule hears a spike's signal but does not take the spike."""
+        """Record in the trace that a rule hears a spike's signal but does not take the spike, for a `reason`."""
         if self.tracer is not None:
             rule = clause.rule
             by, run = spike.group.root().answer(rule.slots) if reason == "consumed" else ("", 0)
@@ -138,7 +138,7 @@ class Holdings(State):
     def _complete(self, activation: Activation, *, late: bool = False) -> None:
         """Make an activation ready and queue it: a writer asks for consent, and any other activation starts without it.
 
-        If its loop has had too many turns (L23), the activation is queued only by a second call, with `late`.
+        If the activation's loop has had too many turns (L23), only a second call, with `late`, queues the activation.
         """
         if not late:
             activation.step(COMPLETE)
@@ -151,7 +151,7 @@ class Holdings(State):
             self._free.append(activation)
 
     def _release(self, activation: Activation, need: Need, reason: str, by: Activation | None = None) -> None:
-        """Take a spike from an activation; `by` is the run that is the reason, if one is."""
+        """Take the spike of a need from an activation; `by` is the run that is the reason, or None."""
         spike = activation.spikes[need.index]
         if spike is None:
             return
@@ -185,7 +185,7 @@ class Holdings(State):
             )
 
     def _lose(self, activation: Activation, needs: Iterable[Need], reason: str, by: Activation | None = None) -> None:
-        """Make an activation give spikes up, and end it if no spike is left."""
+        """Make an activation give up the spikes of `needs`; end it if no spike that keeps it alive is left."""
         needs = [need for need in needs if not need.bit & activation.missing]
         if not needs:
             return
@@ -205,20 +205,20 @@ class Holdings(State):
         kin = 0
         for need in needs:
             kin |= need.kin
-        # The lost spike may have excluded spikes of other groups, which may now meet the related needs.
+        # The lost spike may have excluded spikes of other groups, which may now meet the kin needs.
         for need in (*needs, *(n for n in clause.needs if n.bit & kin)):
             if need.bit & activation.missing:
                 self._rematch(activation, need)
         self._update(activation)
 
     def _stir(self, activation: Activation) -> None:
-        """Reconsider the activations that wait for this one, because its spikes have changed."""
+        """Make the activations that wait for this one ask again, because its spikes have changed."""
         for group in activation.firm_groups():
             if group.interested:
                 self._dirty[group] = None
 
     def _unready(self, activation: Activation) -> None:
-        """Take a ready or waiting activation back to gathering."""
+        """Put a ready or waiting activation back into the state `GATHERING`."""
         activation.step(LOSE)
         activation.ripens = NEVER
         if activation.interests:
@@ -267,7 +267,7 @@ class Holdings(State):
             self._busy -= 1
 
     def _lose_interest(self, activation: Activation) -> None:
-        """Stop an activation from waiting: changes in its groups no longer concern it."""
+        """Make an activation stop waiting: changes in its groups no longer make it ask again."""
         self.waiting.pop(activation, None)
         self._refused.pop(activation, None)
         self.hoping.pop(activation, None)
@@ -291,7 +291,7 @@ class Holdings(State):
             self._dirty[spike.group.root()] = None
 
     def _kill(self, spike: Spike, reason: str) -> None:
-        """Withdraw a spike (L20): activations give it up, but a run that started with it keeps it."""
+        """Withdraw a spike (L20): activations give it up, but a run that started with the spike keeps it."""
         if self.tracer is not None:
             self.tracer(trace.Dropped(self.now, spike.id, spike.signal.name, reason))
         live = self.live.get(spike.signal.index)
@@ -308,7 +308,7 @@ class Holdings(State):
                 self.alternatives.pop(holder, None)  # each alternative would have given the spike up
 
     def _withdraw(self, signal: SignalPlan, reason: str) -> None:
-        """Withdraw all live spikes of a signal."""
+        """Withdraw all live spikes of a signal, for a `reason`."""
         live = self.live.get(signal.index)
         if live or self._watched_by:
             watched = [s for s in self._watched_by if s.signal is signal and (not live or s not in live)]

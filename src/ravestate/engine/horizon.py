@@ -34,7 +34,7 @@ NO, SPECULATIVE, FIRM = 0, 1, 2
 
 Slots = frozenset[int]
 Step = Generator[Any, int, int]
-"""A step of a derivation: it yields further steps, is sent the strength of each, and returns its own."""
+"""A step of a derivation: it yields further steps, receives the strength of each, and returns its own strength."""
 
 
 class Horizon:
@@ -42,7 +42,7 @@ class Horizon:
 
     Attributes:
         roots: The live activations on which the latest firm derivation rests.
-        visited: The groups that were looked at.
+        visited: The groups on whose state the latest results depend.
         hopes: Whether a needed signal may come only from a live rule of another group.
     """
 
@@ -52,7 +52,7 @@ class Horizon:
         self.engine = engine
         engine.unfold_all()
         self._cuts = 0  # how often a cycle was cut
-        self._path: set[int] = set()  # the signals that are being derived
+        self._path: set[int] = set()  # the numbers of the signals whose derivation is in progress
         self._known: dict[tuple[int, Group, Slots], tuple[int, tuple[Activation, ...]]] = {}
         self.hopes = False
         self.roots: list[Activation] = []
@@ -61,14 +61,14 @@ class Horizon:
         self._judged: dict[tuple[Clause, Activation | None, Group], tuple[int, dict[Activation, None]]] = {}
 
     def viable(self, clause: Clause, activation: Activation | None, group: Group, slots: Slots) -> int:
-        """Return how firmly a clause may still become ready in a group. `activation` is None for a clause in stand-by.
+        """Return the strength with which a clause may become ready in a group. `activation` is None for a stand-by.
 
         A clause in stand-by has a stake in the group only if a signal of the group's horizon is among its needs.
         """
         return _solve(self._viable(clause, activation, group, slots))
 
     def judge(self, clause: Clause, activation: Activation | None, group: Group) -> tuple[int, dict[Activation, None]]:
-        """Return how viable a rival is, and the activations on which this depends, whichever activation asks."""
+        """Return how viable a rival is, and the activations on which this depends. All askers get the same result."""
         known = self._judged.get((clause, activation, group))
         if known is None:
             self.roots.clear()
@@ -88,8 +88,8 @@ class Horizon:
         else:
             missing = activation.missing
             if not missing:
-                self.roots.append(activation)  # it is ready, or will ripen
-        # For each need, or set of needs that one group must meet: how firmly this group and any group may meet it.
+                self.roots.append(activation)  # the activation is ready, or will ripen
+        # For each need, or set of kin needs: how firmly this group may meet it, and how firmly any group may.
         here: list[int] = []
         best: list[int] = []
         answered = 0
@@ -112,7 +112,7 @@ class Horizon:
             here.append(mine)
             best.append(max(mine, other))
         strength = min(best, default=FIRM)
-        if activation is None:  # the group must meet one need itself: help from elsewhere creates no stake
+        if activation is None:  # this group must meet one need itself: help from other groups creates no stake
             strength = max(
                 (min(mine, *best[:k], *best[k + 1 :]) if len(best) > 1 else mine for k, mine in enumerate(here)),
                 default=NO,
@@ -123,13 +123,13 @@ class Horizon:
         return strength
 
     def _anywhere(self, need: Need, group: Group) -> int:
-        """Return how firmly a live spike, an input, or a rule of another group may meet a need."""
+        """Return the strength with which a live spike, an input, or a rule of another group may meet a need."""
         if self._live(need):
             return FIRM
         return SPECULATIVE if self._elsewhere(need, group) else NO
 
     def _detached(self, need: Need, group: Group, slots: Slots) -> Step:
-        """Return how firmly a detached need may be met."""
+        """Return the strength with which anything may meet a detached need."""
         if self._live(need):
             return FIRM
         return (yield from self._comes(need.signal.index, group, slots)) or self._anywhere(need, group)
@@ -137,7 +137,7 @@ class Horizon:
     def _kin(
         self, need: Need, activation: Activation | None, missing: int, group: Group, slots: Slots
     ) -> Generator[Any, int, tuple[int, int]]:
-        """Return how firmly this group, and any group, may meet needs that one group must meet together (L12)."""
+        """Return how firmly this group, and how firmly any group, may meet the kin needs, all of them at once (L12)."""
         kin = [n for n in need.clause.needs if n.bit & need.kin & missing]
         held = activation.held(need.kin) if activation is not None else None
         home = group if held is None else held.group.root()
@@ -150,7 +150,7 @@ class Horizon:
         return mine, (SPECULATIVE if all(self._elsewhere(n, group) for n in kin) else NO)
 
     def _guards(self, clause: Clause, group: Group, slots: Slots) -> Generator[Any, int, bool]:
-        """Return whether each predicate on a slot holds, or the slot may yet change in this group."""
+        """Return whether each of a clause's predicates on slots is true, or its slot may yet change in this group."""
         engine = self.engine
         for slot, guard in clause.guards:
             if engine.holds(slot, guard, clause.rule):
@@ -160,19 +160,19 @@ class Horizon:
         return True
 
     def _live(self, need: Need) -> bool:
-        """Whether a live spike could meet a need (L16 i)."""
+        """Return whether a live spike could meet a need (L16 i)."""
         spike = self.engine.live_spike(need)
         if spike is not None:
             self.visited[spike.group.root()] = None
         return spike is not None
 
     def _comes(self, signal: int, group: Group, slots: Slots) -> Step:
-        """Return how firmly a signal lies in the horizon of a group."""
+        """Return the strength with which a signal lies in the horizon of a group."""
         strength = self._at_once(signal, group, slots)
         return (yield self._caused(signal, group, slots)) if strength is None else strength
 
     def _at_once(self, signal: int, group: Group, slots: Slots) -> int | None:
-        """Return how firmly a signal lies in the horizon of a group, or None if that is still to be derived."""
+        """Return the strength with which a signal lies in a group's horizon, or None if a derivation must find it."""
         if signal in self._path:
             self._cuts += 1
             return NO
@@ -185,7 +185,7 @@ class Horizon:
         return known[0]
 
     def _caused(self, signal: int, group: Group, slots: Slots) -> Step:
-        """Return how firmly one of the rules that raise a signal may do so."""
+        """Return the strength with which one of the rules that may raise a signal will do so."""
         cuts, mark = self._cuts, len(self.roots)
         by_rule, retired = self._by_rule[group], self.engine.retired
         self._path.add(signal)
@@ -221,7 +221,7 @@ class Horizon:
         return found
 
     def _elsewhere(self, need: Need, group: Group) -> bool:
-        """Whether an input, or a live rule of another group, might bring the signal (L16 iii)."""
+        """Return whether an input, or a live rule of another group, might raise the need's signal (L16 iii)."""
         signal = need.signal
         if signal.input:
             return True
@@ -237,7 +237,7 @@ class Horizon:
 
 
 def _solve(step: Step) -> int:
-    """Return the strength of a derivation."""
+    """Run a derivation with all its steps, and return its strength."""
     waiting: list[Step] = []
     strength: Any = None
     while True:

@@ -36,8 +36,8 @@ class Loop:
 
     Attributes:
         instant: The number of the instant.
-        turns: How many of the runs were further turns.
-        rules: The rules of these runs.
+        turns: How many of the runs were further turns of the loop.
+        rules: The rules of these further turns.
     """
 
     instant: int
@@ -46,18 +46,18 @@ class Loop:
 
 
 class Lineage(NamedTuple):
-    """The rules (by number) that led to a spike within an instant, and the loop that it may belong to."""
+    """The numbers of the rules that led to a spike within an instant, and the loop to which the spike may belong."""
 
     rules: frozenset[int]
     loop: Loop
 
 
 class Loops:
-    """The runs of the present instant, and the turns that wait.
+    """The runs of the present instant, and the deferred turns of loops.
 
     Attributes:
         runs: How many runs there have been in this instant.
-        late: How many of them had been deferred as turns of a loop that has been named.
+        late: How many deferred turns of loops that an error has named had their run in this instant.
         deferred: The activations that wait until nothing else is ready, oldest first.
     """
 
@@ -77,7 +77,7 @@ class Loops:
         self._instant += 1
 
     def defer(self, activation: Activation) -> bool:
-        """Defer a ready activation if it is one turn too many; return whether it is."""
+        """Return whether a ready activation is one turn of a loop too many; if so, defer it."""
         if self._turns < TURNS or activation is self._next:
             return False
         rule = activation.clause.rule.index
@@ -87,7 +87,7 @@ class Loops:
         return over
 
     def next(self) -> Activation | None:
-        """Take the oldest deferred activation that is still ready."""
+        """Remove the oldest deferred activation that is still ready, and return it; None if there is none."""
         while self.deferred:
             activation = self.deferred.popleft()
             if activation.state is READY:
@@ -97,13 +97,13 @@ class Loops:
         return None
 
     def lineage(self, run: Activation) -> Lineage | None:
-        """Return the rules that led to the next spike of a run; None unless the instant has many runs."""
+        """Return the rules that led to the next spike of a run; None if the instant has few runs so far."""
         if run.lineage is None and self.runs > MANY:
             run.lineage = Lineage(frozenset((run.clause.rule.index,)), Loop(self._instant))
         return run.lineage
 
     def trace(self, run: Activation) -> Sequence[RulePlan]:
-        """Note what led to a run; return the rules of its loop, in declaration order, when they are to be named."""
+        """Note the rules that led to a run. Return the rules of its loop if an error must name them now, else none."""
         lines = self._lines(run)
         if not lines:
             return ()  # `lineage` begins a loop if the run raises a spike

@@ -20,7 +20,7 @@ class Matching(ConflictSets):
     """The layer of the engine that creates spikes, groups them, and offers them to activations."""
 
     def _parents(self, run: Activation | None) -> tuple[Spike, ...]:
-        """Return the parents of the spikes that a run raises; none for a detached rule or from outside (L19)."""
+        """Return the parents of the spikes that a run raises; none for a detached rule, or for code outside (L19)."""
         return () if run is None or run.clause.rule.detached else run.stands_on
 
     def _origin(self, run: Activation | None) -> tuple[tuple[Spike, ...], Group]:
@@ -33,7 +33,7 @@ class Matching(ConflictSets):
         return Group(self._groups)
 
     def _group_of(self, parents: tuple[Spike, ...]) -> Group:
-        """Return the causal group of a spike with these parents, after merging theirs (L11)."""
+        """Merge the causal groups of the parents, and return the merged group (L11); without parents, a new group."""
         if not parents:
             return self._new_group()
         root = parents[0].group.root()
@@ -61,7 +61,7 @@ class Matching(ConflictSets):
     def _offer_again(self, group: Group) -> None:
         """Offer the spikes of a merged group again, oldest first: coherence kept some of them apart until now (L12).
 
-        As at its birth, a spike goes to the activations that are older than the spike, oldest first.
+        As at its birth, a spike is offered only to activations that are older than the spike, oldest first.
         """
         offers: list[tuple[int, int, int, Activation, Spike]] = []
         for activation in group.members:
@@ -77,7 +77,7 @@ class Matching(ConflictSets):
         for _, _, index, activation, spike in sorted(offers, key=_birth_order):
             need = activation.clause.needs[index]
             if activation.state is not GATHERING or not need.bit & activation.missing:
-                continue  # an earlier offer has met it
+                continue  # an earlier offer has met the need
             if self._coherent(activation, need, spike) and self._fits(need, spike):
                 self._acquire(activation, need, spike)
                 self._stir(activation)
@@ -125,7 +125,7 @@ class Matching(ConflictSets):
             self._forget(spike)
 
     def _offer(self, need: Need, spike: Spike) -> None:
-        """Offer a new spike to every activation that lacks it, oldest first, then to the one in stand-by."""
+        """Offer a new spike to every activation that lacks it, oldest first, then to the clause's stand-by."""
         clause = need.clause
         rule = clause.rule
         if self.retired and rule.index in self.retired:
@@ -173,14 +173,14 @@ class Matching(ConflictSets):
                 if run.state == RUNNING and all(self._test(p, spike.payload, run.clause.rule) for p in need.predicates):
                     held = watch.spikes[need.index]
                     if held is None or not need.min_age or held.born + need.max_age < self.now:
-                        watch.spikes[need.index] = spike  # otherwise the older one ripens first
+                        watch.spikes[need.index] = spike  # else the older spike ripens first
                         self._watched_by.setdefault(spike, {})[watch] = None
                         if held is not None and held not in watch.spikes:
                             self._unwatch(watch, held)
                     self._judge(watch)
 
     def _unwatch(self, watch: Watch, spike: Spike) -> None:
-        """Make a watch give up a spike."""
+        """Note that a watch no longer keeps a spike."""
         watches = self._watched_by.get(spike, {})
         watches.pop(watch, None)
         if not watches:
@@ -198,7 +198,7 @@ class Matching(ConflictSets):
             self._cancel(watch.run, "interrupted")
 
     def _cancel(self, run: Activation, reason: CancelReason) -> None:
-        """Cancel a run, and have the runtime stop its function."""
+        """Cancel a run, and order the runtime to stop its function."""
         run.step(CANCEL)
         run.told = reason
         run.deadline = NEVER

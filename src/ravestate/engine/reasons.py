@@ -7,7 +7,7 @@ from typing import Any, Self
 
 
 def reason(*parts: str) -> Any:
-    """Return the value of a `Reason` member. A bare tuple would hide from the type checker that members are strings."""
+    """Return the value of a `Reason` member. A bare tuple would hide from type checkers that members are strings."""
     return parts
 
 
@@ -15,8 +15,8 @@ class Reason(StrEnum):
     """A reason: one word for programs, and a phrase for people.
 
     Attributes:
-        words: The phrase.
-        tone: How the board colours it: ``good``, ``busy``, ``bad`` or ``plain``.
+        words: The phrase for people.
+        tone: The colour of the phrase on the board: ``good``, ``busy``, ``bad`` or ``plain``.
     """
 
     words: str
@@ -38,7 +38,7 @@ class Reason(StrEnum):
 
 
 class Outcome(Reason):
-    """How a run ended (L18): the predicate of a sentence about its rule."""
+    """How a run ended (L18); the phrase completes a sentence that begins with the rule's name."""
 
     DONE = reason("done", "finished")
     RESIGNED = reason("resigned", "resigned")

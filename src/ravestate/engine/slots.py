@@ -19,7 +19,7 @@ class Slots(Matching):
     """The layer of the engine that writes slots and raises their signals."""
 
     def _mark_write(self, slot: SlotPlan, run: Activation | None) -> None:
-        """Note that a run writes a slot, which it must have declared (L3)."""
+        """Note that a run writes a slot; refuse the write if the rule does not declare it (L3)."""
         if run is not None:
             if slot.index not in run.clause.rule.slotset:
                 raise UndeclaredError(f"rule {run.clause.rule.name} writes {slot.name} without writes={slot.name}")
@@ -31,7 +31,7 @@ class Slots(Matching):
         if self.tracer is not None:
             self.tracer(trace.Set(self.now, slot.name, value, 0 if run is None else run.id))
         if len(parents) > 1:
-            self._group_of(parents)  # their groups merge (L11), even if no rule hears the slot
+            self._group_of(parents)  # the parents' groups merge (L11), even if no rule hears the slot
         if slot.heard or self.tracer is not None or (self.watched and self._watched(slot)):
             if slot.keep_latest:
                 for signal in slot.signals:
@@ -52,7 +52,7 @@ class Slots(Matching):
         item: Any,
         run: Activation | None,
     ) -> None:
-        """Store or remove an item, and raise its signals. An item equal to the present one changes nothing (L2)."""
+        """Store or remove an item of a collection, and raise the slot's signals. An equal item changes nothing (L2)."""
         items = self._unseen.get(slot.index)
         old: Mapping[str, Any] = self.read(slot.index) if items is None else items
         known = old.get(key, ABSENT)
@@ -85,7 +85,7 @@ class Slots(Matching):
             self._regate(slot)
 
     def _replace(self, slot: SlotPlan, value: Any, run: Activation | None) -> None:
-        """Give a collection all its items at once; each difference counts as a write of its own."""
+        """Replace all items of a collection; each item that differs counts as a write of its own."""
         if not isinstance(value, Mapping):
             raise RuleError(f"{slot.name} is a collection: write a mapping of keys to items, not {value!r}")
         self._mark_write(slot, run)
@@ -95,11 +95,11 @@ class Slots(Matching):
             self._change_item(slot, key, items.get(key, ABSENT), run)
 
     def _watched(self, slot: SlotPlan) -> bool:
-        """Return whether the runtime wants reports of one of the slot's signals."""
+        """Return whether the runtime wants a report of the spikes of one of the slot's signals."""
         return any(signal.name in self.watched for signal in slot.signals)
 
     def _regate(self, slot: SlotPlan) -> None:
-        """Reconsider the predicates on a slot that has changed."""
+        """Judge the predicates on a slot again, because its value has changed."""
         for activation in list(self.gated):
             if activation in self.gated and any(guarded is slot for guarded, _ in activation.clause.guards):
                 del self.gated[activation]
@@ -120,10 +120,10 @@ ABSENT: Any = _Absent()
 
 
 def equal(old: Any, new: Any) -> bool:
-    """Return whether a write changes nothing. Values that cannot be compared, such as arrays, count as different."""
+    """Return whether two values are equal. Values that cannot be compared, such as arrays, count as different."""
     if old is new:
         return True
     try:
         return bool(old == new)
-    except Exception:  # a value's comparison is not our code: it may raise anything
+    except Exception:  # a value's own comparison may raise anything
         return False

@@ -13,9 +13,9 @@ if TYPE_CHECKING:
 
 
 def snapshot(engine: Engine) -> dict[str, Any]:
-    """Return everything that is alive as dictionaries, lists, texts and numbers.
+    """Return all live objects of an engine as dictionaries, lists, texts and numbers.
 
-    Any other payload or value appears as its ``repr``.
+    A payload or value of any other type appears as its ``repr``.
 
     Returns:
         ``now`` (seconds), ``slots``, ``spikes``, ``activations``, ``groups``, ``dropped``, ``retired``,
@@ -73,7 +73,7 @@ def snapshot(engine: Engine) -> dict[str, Any]:
 
 
 def plain(value: Any) -> Any:
-    """Return a value as data that JSON can carry."""
+    """Return a value as data that JSON can carry; a value of any other type becomes its ``repr``."""
     if value is None or isinstance(value, (bool, int, float, str)):
         return value
     if isinstance(value, Mapping):

@@ -16,16 +16,16 @@ if TYPE_CHECKING:
 
 @dataclass(slots=True, eq=False, repr=False)
 class Spike:
-    """An occurrence: payload, time of birth (seconds), parents, causal group, and holders.
+    """An occurrence of a signal: payload, time of birth (seconds), parents, causal group, and holders.
 
     Attributes:
-        rule: The number of the rule that raised it; -1 from outside, and for a detached rule.
+        rule: The number of the rule that raised the spike; -1 if code outside or a detached rule raised it.
         before: The number of the last activation that is older than the spike.
-        source: The number of the run that raised it; 0 from outside.
-        holders: The activations that hold it, in the order of taking.
-        claims: For each rule without slots: the activation that runs on the spike, or None after the run (L10).
-        expiring: The times at which incomplete holders give it up for age (seconds).
-        refused: The rules that gave it up for good.
+        source: The number of the run that raised the spike; 0 if code outside raised it.
+        holders: The activations that hold the spike, in the order in which they took it.
+        claims: Number of a rule without slots → its activation that runs on the spike, or None after the run (L10).
+        expiring: The times at which incomplete holders give the spike up because of its age (seconds).
+        refused: The numbers of the rules that gave the spike up for good.
         lineage: In an instant with many runs: the rules that led to the spike (L23).
     """
 
@@ -51,11 +51,11 @@ class Spike:
         self.refused.add(rule)
 
     def descends_from(self, rule: int) -> bool:
-        """Return whether a run of the rule is among its causes: cycles are cut there, so that loops end (L19)."""
+        """Return whether a run of the rule is among the spike's causes; the rule then may not take it (L19)."""
         return any(spike.rule == rule for spike in self._lineage())
 
     def comes_from(self, signal: str) -> bool:
-        """Return whether it is a spike of the signal, or descends from one."""
+        """Return whether this is a spike of the signal with this name, or descends from such a spike."""
         return any(spike.signal.name == signal for spike in self._lineage())
 
     def _lineage(self) -> Iterator[Spike]:

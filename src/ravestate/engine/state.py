@@ -34,64 +34,64 @@ from ravestate.policy.model import Clause, Need, RulePlan, SlotPlan
 from ravestate.policy.policy import Policy
 
 PASSIVE = (int, float, str, bytes, bool, type(None), MappingProxyType)
-"""Types whose values contexts may share: a default of another type is copied for each context."""
+"""Types whose values contexts may share. A slot's default of any other type is copied for each context."""
 
 
 class State:
-    """Slots, live spikes, activations, and the work that is still to be done."""
+    """The slots, live spikes and activations of an engine, and the work that is still to be done."""
 
     def __init__(self, policy: Policy) -> None:
         self.policy = policy
         self.now = 0.0
         self.tracer: Tracer | None = None
         self.values: dict[int, Any] = {}
-        """The slots that were written or read: index to value."""
+        """Number of a slot that was written or read → its value."""
         self._unseen: dict[int, dict[str, Any]] = {}
-        """The items of each collection that no code has read since the last change. Changing them needs no copy."""
+        """Number of a collection that was not read since its last change → its items. Changing them needs no copy."""
         self.live: dict[int, dict[Spike, None]] = {}
-        """Live spikes by signal, oldest first."""
+        """Number of a signal → its live spikes, oldest first."""
         self.active: dict[int, dict[Activation, None]] = {}
-        """Activations that hold a spike or run, by rule."""
+        """Number of a rule → its activations that hold a spike or run."""
         self.lacking: dict[Need, dict[Activation, None]] = {}
-        """Activations that hold a spike, but none for this need."""
+        """Need → the activations that hold a spike, but none for this need."""
         self.gated: dict[Activation, None] = {}
         """Activations that hold all their spikes while a predicate on a slot is false."""
         self.waiting: dict[Activation, None] = {}
         """Ready activations that were refused consent."""
         self.alternatives: dict[Activation, tuple[tuple[Clause, ...], int, int]] = {}
-        """Activations with a queue of alternatives (``conflict_sets.py``): the clauses of the conflict set, how many of
-        them have an activation, and the activation number just before theirs."""
+        """Activation with a queue of alternatives (``conflict_sets.py``) → the clauses of its conflict set; how many of
+        them have had an activation; the activation number just before theirs."""
         self.hoping: dict[Activation, None] = {}
         """Waiting activations with a rival that a live rule of another causal group may yet help."""
         self.running: dict[int, Activation] = {}
-        """Activations whose function runs, by the number of the run."""
+        """Number of a run → the activation whose function runs."""
         self.retired: set[int] = set()
-        """The rules that have retired, by number."""
+        """The numbers of the rules that have retired."""
         self.dropped: dict[str, int] = {}
-        """How many spikes overflowed, by signal (L23)."""
+        """Signal's name → how many of its spikes were dropped by its limit (L23)."""
         self.watched: dict[str, int] = {}
-        """Signals whose spikes are reported as effects."""
+        """The names of the signals whose spikes are reported as effects, as the keys of a table."""
         self._out: list[Effect] = []
         self._acts = False  # whether one of these effects starts or cancels a run
         self._free: list[Activation] = []  # ready activations that need no consent
-        self._asking: dict[Activation, None] = {}  # ready activations that are about to ask for consent
+        self._asking: dict[Activation, None] = {}  # ready or waiting activations that are about to ask for consent
         self._refused: dict[Activation, None] = {}  # activations refused since the last search for a stalemate
         self._dirty: dict[Group, None] = {}  # groups in which something ended
         self._stirred = False  # whether something ended that the `hoping` activations may have hoped for
         self._watches: dict[Clause, dict[Activation, Watch]] = {}
-        self._watched_by: dict[Spike, dict[Watch, None]] = {}  # spikes that a watch keeps until they are old enough
+        self._watched_by: dict[Spike, dict[Watch, None]] = {}  # spike → the watches that hold it
         # Failures that ``core:error`` has not reported yet, each with the rules that led to it.
         self._errors: list[tuple[RuleFailure, Lineage | None]] = []
         self._loops = Loops()
         self._blamed: set[int] = set()  # the ids of predicates whose failure was reported
         self._deadlines = Deadlines(self._stands)
-        self._busy: int = 0  # activations of rules that are not in the background
-        self._activations: int = 0  # how many numbers have been assigned
+        self._busy: int = 0  # how many activations count for `core:activity`
+        self._activations: int = 0  # the number of the newest activation
         self._spikes = 0
         self._groups = 0
 
     def _new_activation(self, clause: Clause, number: int) -> Activation:
-        """Make the activation of a clause that is about to take its first spike."""
+        """Create an activation of a clause; it is about to take its first spike."""
         activation = Activation(number, clause)
         rule = clause.rule
         active = self.active.get(rule.index)
@@ -103,7 +103,7 @@ class State:
         return activation
 
     def _stands(self, entry: Entry) -> bool:
-        """Return whether a deadline still counts."""
+        """Return whether a deadline still counts: its owner lives, and has no other deadline of this kind."""
         time, kind, _, owner = entry
         if kind is EXPIRE:
             return bool(owner.holders) or owner in self.live.get(owner.signal.index, ())
@@ -124,7 +124,7 @@ class State:
         return owner in self.live.get(owner.signal.index, ())
 
     def read(self, slot: int) -> Any:
-        """Return the value of a slot, by its number."""
+        """Return the value of the slot with this number."""
         if self._unseen:
             self._unseen.pop(slot, None)
         try:
@@ -137,11 +137,11 @@ class State:
             return self.values[slot]
 
     def live_spike(self, need: Need) -> Spike | None:
-        """Return a live spike that fits a need, if there is one."""
+        """Return the oldest live spike that fits a need, or None."""
         return next((spike for spike in self.live.get(need.signal.index, ()) if self._fits(need, spike)), None)
 
     def _fits(self, need: Need, spike: Spike) -> bool:
-        """Return whether a live spike may meet a need: age and payload fit, and it was not given up or consumed."""
+        """Return whether a live spike may meet a need: age and payload fit, and the rule has not lost it for good."""
         rule = need.clause.rule
         if spike.born + need.max_age <= self.now and need.max_age:
             return False
@@ -157,14 +157,14 @@ class State:
         return all(self._test(predicate, spike.payload, rule) for predicate in need.predicates)
 
     def holds(self, slot: SlotPlan, guard: Holds, rule: RulePlan) -> bool:
-        """Return whether a predicate on a slot's value is true. A predicate that raises counts as false, and is reported."""
+        """Return whether a predicate on a slot's value is true. One that raises counts as false and is reported."""
         return self._test(guard.predicate, self.read(slot.index), rule)
 
     def opens(self, slot: SlotPlan, guard: Holds) -> bool:
         """Return the result of `holds` for a debugger: a predicate that raises counts as false, but is not reported."""
         try:
             return bool(guard.predicate(self.read(slot.index)))
-        except Exception:  # a predicate of the designer may raise anything; the guard then counts as false
+        except Exception:  # the designer's predicate may raise anything
             return False
 
     def _test(self, predicate: Any, value: Any, rule: RulePlan) -> bool:
@@ -177,7 +177,7 @@ class State:
             return False
 
     def _fail(self, rule: RulePlan, exception: BaseException, *, signal: bool, lineage: Lineage | None = None) -> None:
-        """Report a failure of a rule; with `signal`, ``core:error`` occurs next."""
+        """Report a failure of a rule to the runtime; with `signal`, ``core:error`` occurs next."""
         self._out.append(Failed(rule.name, exception))
         if signal:
             self._errors.append((RuleFailure(rule.name, exception), lineage))

@@ -12,7 +12,7 @@ from typing import Any
 
 @dataclass(frozen=True, slots=True)
 class Born:
-    """A spike was born; ``source`` is the run that raised it, 0 from outside."""
+    """A spike was born; ``source`` is the number of the run that raised it, or 0 if code outside the rules did."""
 
     time: float
     spike: int
@@ -25,7 +25,7 @@ class Born:
 
 @dataclass(frozen=True, slots=True)
 class Dropped:
-    """A spike was withdrawn, by overflow, a wipe, or a later spike (L20, L23)."""
+    """A spike was withdrawn: its signal overflowed, it was wiped, or a later spike replaced it (L20, L23)."""
 
     time: float
     spike: int
@@ -35,7 +35,7 @@ class Dropped:
 
 @dataclass(frozen=True, slots=True)
 class Merged:
-    """One causal group became part of another (L11)."""
+    """The causal group ``group`` became part of the group ``into`` (L11)."""
 
     time: float
     group: int
@@ -44,7 +44,7 @@ class Merged:
 
 @dataclass(frozen=True, slots=True)
 class Set:
-    """A slot got a value."""
+    """The run ``run``, or code outside the rules if that is 0, gave a slot a value."""
 
     time: float
     slot: str
@@ -54,7 +54,7 @@ class Set:
 
 @dataclass(frozen=True, slots=True)
 class Held:
-    """An activation acquired a spike (L12)."""
+    """An activation took a spike; ``lacks`` are the signals that it still lacks (L12)."""
 
     time: float
     activation: int
@@ -67,7 +67,7 @@ class Held:
 
 @dataclass(frozen=True, slots=True)
 class GaveUp:
-    """An activation gave a spike up: ``age``, ``consumed``, ``resigned``, ``eliminated``, ``withdrawn``, ``retired``."""
+    """An activation gave a spike up; ``reason`` is a `LossReason`."""
 
     time: float
     activation: int
@@ -75,15 +75,15 @@ class GaveUp:
     spike: int
     signal: str
     reason: str
-    by: str = ""  # the rule that consumed the spike, or resigned
-    run: int = 0  # the number of its run; 0 if there is none, or it is unknown
+    by: str = ""  # the rule that consumed the spike, or resigned; empty if there is none
+    run: int = 0  # the number of that rule's run; 0 if there is none, or if it is unknown
 
 
 @dataclass(frozen=True, slots=True)
 class Passed:
     """A rule did not take a spike.
 
-    Its ``payload`` did not fit, its cause was ``consumed``, or the rule itself had ``caused`` it.
+    The spike's ``payload`` did not fit, its cause was ``consumed``, or the rule itself had ``caused`` the spike.
     """
 
     time: float
@@ -92,13 +92,13 @@ class Passed:
     spike: int
     signal: str
     reason: str
-    by: str = ""  # the rule that had consumed its cause, if known
-    run: int = 0  # the number of its run; 0 if there is none, or it is unknown
+    by: str = ""  # the rule that had consumed the spike's cause; empty if unknown
+    run: int = 0  # the number of that rule's run; 0 if unknown
 
 
 @dataclass(frozen=True, slots=True)
 class Waits:
-    """A ready activation waits for rivals, or for runs that hold a slot (L15)."""
+    """A ready activation waits for the rules ``for_``: rivals, or runs that hold a slot (L15)."""
 
     time: float
     activation: int
@@ -109,7 +109,7 @@ class Waits:
 
 @dataclass(frozen=True, slots=True)
 class Pressed:
-    """A rival is under pressure until its patience runs out (L16)."""
+    """The rival ``rule`` is under pressure because ``by`` waits for it, until its patience runs out (L16)."""
 
     time: float
     rule: str
@@ -120,7 +120,7 @@ class Pressed:
 
 @dataclass(frozen=True, slots=True)
 class Started:
-    """A rule function runs (L17)."""
+    """A rule's function starts to run (L17)."""
 
     time: float
     run: int
@@ -131,7 +131,7 @@ class Started:
 
 @dataclass(frozen=True, slots=True)
 class Told:
-    """The engine asked a run to end: ``interrupted``, ``timeout``, ``wiped``."""
+    """The engine asked a run to end; ``reason`` is a `StopReason`."""
 
     time: float
     run: int
@@ -141,7 +141,7 @@ class Told:
 
 @dataclass(frozen=True, slots=True)
 class Settled:
-    """A run has ended (L18): ``done``, ``resigned``, ``failed``, ``retired``, ``interrupted``, ``wiped``."""
+    """A run has ended; ``outcome`` is an `Outcome` (L18)."""
 
     time: float
     run: int

@@ -1,4 +1,4 @@
-"""A watch over a run: its `until` condition (L21)."""
+"""A watch over a run: the state of its `until` condition (L21)."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from ravestate.policy.model import Clause
 
 
 class Watch:
-    """One clause of an `until`, and the spikes that meet it, all born since the run began. It consumes nothing."""
+    """One clause of an `until` condition, and the spikes that meet it. All were born after the run began."""
 
     __slots__ = ("clause", "due", "run", "spikes")
 
@@ -19,7 +19,7 @@ class Watch:
         self.spikes: list[Spike | None] = [None] * len(clause.needs)
 
     def met_at(self, now: float) -> float | None:
-        """Return when the spikes meet the clause (seconds), or None while one is missing or too old."""
+        """Return when the spikes meet the clause (seconds), or None while a spike is missing or too old."""
         due = now
         for need, spike in zip(self.clause.needs, self.spikes, strict=True):
             if spike is None or spike.born + need.max_age < now:
@@ -28,6 +28,6 @@ class Watch:
         return due
 
     def lose(self, spike: Spike) -> None:
-        """Drop a withdrawn spike (L20)."""
+        """Give up a withdrawn spike (L20)."""
         self.spikes = [None if held is spike else held for held in self.spikes]
         self.due = NEVER

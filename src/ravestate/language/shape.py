@@ -1,7 +1,7 @@
 """The shape of a sentence: the persons that it mentions, and whether it asks. It knows closed classes of words only.
 
-*What are my hobbies* and *what are your hobbies* have almost the same meaning for an encoder, and the same spelling. Their
-shapes tell them apart.
+The questions *what are my hobbies* and *what are your hobbies* have almost the same meaning for an encoder, and almost
+the same spelling. Their shapes tell them apart.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Find a module by the name that a user types."""
+"""Finding a module by the name that a user types."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def load_module(name: str, folder: Path = Path()) -> Module:
             return _as_module(name, installed[name].load())
     if "/" in name or name.startswith(".") or not name:
         raise UsageError(f"{name!r} is not a module: name a file (./hello.py), or a dotted path (pkg.mod)")
-    if str(Path.cwd()) not in sys.path:  # a command does not search there by default
+    if str(Path.cwd()) not in sys.path:  # Python does not search there by default when a command runs
         sys.path.insert(0, str(Path.cwd()))
     if "." in name or ":" in name or (name.isidentifier() and importlib.util.find_spec(name) is not None):
         return _from_path(name, [*BUILT_IN, *installed])
@@ -65,7 +65,7 @@ def _from_file(name: str, path: Path) -> Module:
         raise UsageError(f"there is no file {name}")
     known = sys.modules.get(path.stem)
     if known is not None and getattr(known, "__file__", None) == str(path):
-        return _as_module(name, known)  # a test has already imported it: its slots must be the same objects
+        return _as_module(name, known)  # a test has already imported the file: its slots must be the same objects
     spec = importlib.util.spec_from_file_location(path.stem, path)
     if spec is None or spec.loader is None:
         raise UsageError(f"{name} is not a Python file")
@@ -84,9 +84,9 @@ def _from_file(name: str, path: Path) -> Module:
 
 @contextlib.contextmanager
 def _loading(failure: str) -> Generator[None]:
-    """Turn an exception of a user's module into a message that begins with `failure`.
+    """Turn an exception in the body, which loads a user's module, into an error whose message begins with `failure`.
 
-    ``sys.exit`` counts as an exception, because it would end the command without a message.
+    ``sys.exit`` counts as such an exception, because it would end the command without a message.
     """
     try:
         yield
@@ -109,7 +109,7 @@ def _as_module(name: str, value: object) -> Module:
 
 
 def _where(error: BaseException) -> str:
-    """Return an exception in one line, with its place in the user's file."""
+    """Return an exception as text in one line, with its place in the user's file."""
     if isinstance(error, SyntaxError):
         return f"{error.filename}:{error.lineno}: {error.msg}"
     trace = error.__traceback__

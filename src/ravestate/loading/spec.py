@@ -23,20 +23,20 @@ NUMBERS: tuple[tuple[str, Callable[[Any], bool], str], ...] = (
     ("seed", lambda value: type(value) is int, "a whole number"),
     ("patience", lambda value: type(value) in (int, float) and 0 <= value < math.inf, "0 seconds or more"),
 )
-"""The numbers of an agent file: key, test, and a description of a valid value."""
+"""The numbers in an agent file: each key, its test, and a description of a valid value."""
 VARIABLE = re.compile(r"\$\{([A-Za-z_][A-Za-z0-9_]*)(?::-([^}]*))?\}")
 
 
 @dataclass(slots=True)
 class AgentSpec:
-    """Modules, and the options of their contexts. Read it from files and options, then call `check`.
+    """The modules of an agent, and the options of its contexts. Fill it from files and options, then call `check`.
 
     Attributes:
         modules: The modules, in order.
-        settings: For each module's name the values of its fields.
-        seed: The seed of random choices; `None` for a new one in each run.
-        patience: Seconds that a rival under pressure has.
-        faults: Every mistake so far, one message each.
+        settings: Module's name → key → value, as far as files and options set them.
+        seed: The seed of random choices; `None` for a new seed in each run.
+        patience: The seconds that a rival under pressure has (L16).
+        faults: A message for each mistake so far.
     """
 
     modules: list[Module] = field(default_factory=list[Module])
@@ -62,10 +62,10 @@ class AgentSpec:
         return {"settings": self.settings, "seed": self.seed, "patience": self.patience}
 
     def read(self, path: Path) -> list[tuple[str, Path]]:
-        """Take the settings and numbers of an agent file, and note its faults.
+        """Take the settings and numbers of an agent file, and add its mistakes to `faults`.
 
         Returns:
-            The names of its modules, each with the folder of the file.
+            The names of the file's modules, each with the folder of the file.
 
         Raises:
             UsageError: The file cannot be read at all.
@@ -93,14 +93,14 @@ class AgentSpec:
                     setattr(self, key, said[key])
                 else:
                     wrong.append(f"{key} must be {kind}, not {short(said[key])}")
-        self.faults += dict.fromkeys(f"{path}: {fault}" for fault in wrong)  # each once
+        self.faults += dict.fromkeys(f"{path}: {fault}" for fault in wrong)  # each fault once
         return [(name, path.parent) for name in cast("list[str]", modules)]
 
     def load(self, names: Iterable[tuple[str, Path]]) -> None:
-        """Load modules, each by its name and the folder against which a relative path is resolved.
+        """Load the modules with these names; a relative path is resolved against the folder beside the name.
 
         Raises:
-            UsageError: A module cannot be loaded, and there is no earlier fault.
+            UsageError: A module cannot be loaded, and `faults` is empty.
         """
         for name, folder in names:
             try:
@@ -114,7 +114,7 @@ class AgentSpec:
                 self.modules.append(module)
 
     def set(self, text: str) -> None:
-        """Apply ``module.key=value``, and note its faults. The settings class checks the value later."""
+        """Take a setting from the text ``module.key=value``, and add mistakes to `faults`. `check` checks the value."""
         name, equals, said = text.partition("=")
         module, dot, key = name.strip().partition(".")
         if not equals or not dot or not module or not key:
@@ -136,9 +136,9 @@ class AgentSpec:
             self.settings.setdefault(module, {})[key] = value
 
     def check(self) -> None:
-        """Raise all faults at once, together with those of the settings.
+        """Raise one error with all `faults`, and with those of the settings.
 
-        If there are no other faults, this does not check the settings: compiling the modules finds their faults.
+        If `faults` is empty, this does not check the settings either: compiling the modules finds their faults.
 
         Raises:
             UsageError: There are faults.
@@ -167,11 +167,11 @@ class AgentSpec:
 
 
 def _filled(value: Any, wrong: list[str]) -> Any:
-    """Replace ``${NAME}`` and ``${NAME:-default}`` with the environment's values: secrets do not belong in files."""
+    """Return the value with ``${NAME}`` and ``${NAME:-default}`` replaced by the environment's values."""
     if isinstance(value, str):
 
         def fill(match: re.Match[str]) -> str:
-            default: str | None = match[2]  # None if the file has none
+            default: str | None = match[2]  # None if the file gives no default
             found = os.environ.get(match[1], default)
             if found is None:
                 wrong.append(f"the environment has no {match[1]}; set it, or write ${{{match[1]}:-default}}")
@@ -186,7 +186,7 @@ def _filled(value: Any, wrong: list[str]) -> Any:
 
 
 def with_required(modules: Iterable[Module]) -> list[Module]:
-    """Return the modules and all that they require."""
+    """Return the modules and all modules that they require."""
     found = list(modules)
     for module in found:  # the list grows during the loop
         found += [required for required in module.requires if required not in found]

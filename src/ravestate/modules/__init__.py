@@ -56,7 +56,7 @@ BUILT_IN = {
     "persqa": "skill",
     "wildtalk": "skill",
 }
-"""The name of every built-in module, with its folder."""
+"""Name of a built-in module → the folder that contains it."""
 
 
 def __getattr__(name: str) -> Any:

@@ -6,7 +6,7 @@ COURTESY = (
     r"(?:(?:ok|okay|well|alright|all right|right|so(?! long)|then|oh|great|fine|anyway|(?:many )?thanks|thank you)\b"
     r"(?: (?:very much|much|a lot|again|for (?:the |your )?\w++(?!\s+\w)))*+[\s,.!;:-]*+)*+"
 )
-"""A regular expression of the words that may precede a farewell.
+"""A regular expression for the polite words that may precede a farewell.
 
-It is possessive: a pattern that could match in two ways would double its time with each word.
+Its quantifiers are possessive: a pattern that could match in two ways would double its time with each word.
 """

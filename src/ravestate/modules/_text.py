@@ -1,10 +1,10 @@
-"""Text without control characters, safe to show to a person or a model."""
+"""Functions that remove control characters from text, so that it is safe to show to a person or a model."""
 
 from __future__ import annotations
 
 import re
 
-# A terminal's escape sequences: CSI (colours, cursor), OSC (titles, links), and two-character ones.
+# A terminal's escape sequences: CSI (colours, cursor), OSC (titles, links), and sequences of two characters.
 _ESCAPES = re.compile(
     r"\x1b\[[0-?]*[ -/]*[@-~]|\x1b\][^\x07\x1b]*(?:\x07|\x1b\\)|\x1b[ -/]*[0-~]|\x9b[0-?]*[ -/]*[@-~]"
 )
@@ -29,7 +29,7 @@ def without_controls(text: str) -> str:
 def printable(text: str) -> str:
     """Return `text` without terminal escape sequences and control characters. Use it for a whole text.
 
-    Like `without_controls`, but it removes a sequence as a whole, and turns ``\\r\\n`` and ``\\r`` into line feeds.
+    Like `without_controls`, but it also removes escape sequences, and turns ``\\r\\n`` and ``\\r`` into line feeds.
 
     Example:
         >>> printable("\\x1b[31mred\\x1b[0m\\x00")

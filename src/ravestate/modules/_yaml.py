@@ -1,4 +1,4 @@
-"""Read YAML as nodes, which know their lines: errors name file and line, and no values are built, so no code can run."""
+"""YAML read as nodes, which know their lines: errors name file and line. No values are built, so no code can run."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def read_nodes(file: Path | Traversable, what: str) -> yaml.Node | None:
-    """Return the root node of a file; None for an empty one. See `read_text`."""
+    """Return the root node of a YAML file; None if the file is empty. For the arguments, see `read_text`."""
     return compose_yaml(read_text(file, what), str(file))
 
 
@@ -43,15 +43,15 @@ def read_text(file: Path | Traversable, what: str) -> str:
 
 
 def kind_of(node: yaml.Node) -> str:
-    """Return ``mapping``, ``sequence`` or ``scalar``."""
+    """Return the kind of a node: ``mapping``, ``sequence`` or ``scalar``."""
     return str(getattr(node, "id", ""))
 
 
 def line_of(file: str, node: yaml.Node) -> str:
-    """Return ``file:line`` of a node."""
+    """Return the place of a node as ``file:line``."""
     return f"{file}:{node.start_mark.line + 1}"
 
 
 def fault(file: str, node: yaml.Node, problem: str) -> DeclarationError:
-    """Return the error for a problem at a node."""
+    """Return the error that reports a problem at the place of a node."""
     return DeclarationError(f"{line_of(file, node)}: {problem}")

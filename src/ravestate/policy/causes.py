@@ -1,4 +1,4 @@
-"""The static graph of causes (L7) and its closures.
+"""The static graph of causes between signals (L7), and its closures.
 
 An edge leads from a signal, through a rule that hears it, to a signal that the rule raises. Effects of a detached rule
 have no causes, so only the wide closures contain them.
@@ -20,9 +20,9 @@ class Causes:
     """The causes and closures of one policy; each closure is computed at its first use.
 
     Attributes:
-        causes: For each signal the non-detached rules that may raise it.
-        all_causes: For each signal all rules that may raise it.
-        direct: For each signal, the signals of the non-detached constraints of the rules in `causes`.
+        causes: Signal → the non-detached rules that may raise it.
+        all_causes: Signal → all rules that may raise it.
+        direct: Signal → the signals of the non-detached constraints of its rules in `causes`.
         components: The cycles of `direct`; signals of one component lead to each other.
     """
 
@@ -73,15 +73,15 @@ class Causes:
         return found
 
     def closure(self, signal: int) -> int:
-        """Return the signals on a signal's pathways, as bits: itself, and all that lead to it without detachment."""
+        """Return, as bits, the signals on a signal's pathways: itself, and all that lead to it without detachment."""
         return self._closures[self.components.of[signal]]
 
     @cached_property
     def _closures(self) -> list[int]:
-        """The closure of each component."""
+        """Component → the closure that all its signals have."""
         of = self.components.of
         found: list[int] = []
-        for number, members in enumerate(self.components.members):  # causes first
+        for number, members in enumerate(self.components.members):  # causes before their effects
             bits = 0
             for member in members:
                 bits |= 1 << member
@@ -92,16 +92,16 @@ class Causes:
         return found
 
     def ancestors(self, signal: int) -> frozenset[int]:
-        """Return the rules from which a chain of non-detached effects leads to the signal."""
-        component = self.components.of[signal]  # all its signals have the same ancestors
+        """Return the numbers of the rules from which a chain of non-detached effects leads to the signal."""
+        component = self.components.of[signal]  # all signals of a component have the same ancestors
         found = self._ancestors.get(component)
         if found is None:
             found = self._ancestors[component] = self._climb(signal, self.causes, wide=False)
         return found
 
     def wide_ancestors(self, signal: int) -> frozenset[int]:
-        """Return the rules from which any chain of effects leads to the signal. A chain does not pass through an input,
-        because an input may occur at any time anyway."""
+        """Return the numbers of the rules from which any chain of effects leads to the signal. A chain does not pass
+        through an input, because an input may occur at any time anyway."""
         found = self._wide.get(signal)
         if found is None:
             found = self._wide[signal] = self._climb(signal, self.all_causes, wide=True)
@@ -125,7 +125,7 @@ class Causes:
         return frozenset(rules)
 
     def downstream(self, rule: RulePlan) -> tuple[Clause, ...]:
-        """Return the slot-writing clauses that the rule may trigger by non-detached effects, the best first."""
+        """Return the clauses of slot-writing rules that `rule` may trigger by non-detached effects, the best first."""
         found = self._downstream.get(rule.index)
         if found is None:
             clauses: dict[Clause, None] = {}
@@ -147,7 +147,7 @@ class Causes:
         return found
 
     def grounded(self, given: Iterable[int]) -> frozenset[int]:
-        """Return the signals that may ever occur if those in `given` do: a least fixed point over all rules."""
+        """Return the signals that may ever occur if those in `given` occur: a least fixed point over all rules."""
         reached = set(given)
         lacking = {clause: {n.signal.index for n in clause.needs} - reached for r in self.rules for clause in r.clauses}
         waiting: dict[int, list[Clause]] = {}

@@ -12,14 +12,14 @@ from ravestate.declare.signal import Signal
 from ravestate.errors import DeclarationError
 
 MAX_CLAUSES = 256
-"""The maximum number of conjunctions in a condition; more must be a mistake."""
+"""The maximum number of conjunctions in a condition; a condition with more must be a mistake."""
 
 Atoms = tuple[Constraint | Holds, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class Conjunction:
-    """A conjunction: constraints on signals, and predicates on slots that gate it."""
+    """A conjunction: constraints on signals, and the predicates on slots that must hold besides (guards)."""
 
     constraints: tuple[Constraint, ...]
     guards: tuple[Holds, ...]
@@ -55,7 +55,7 @@ def normal_form(condition: Condition) -> tuple[Conjunction, ...]:
 
 
 def _inner_first(condition: Condition) -> Iterator[Condition]:
-    """Yield each part of a condition once, after its own parts."""
+    """Yield the condition and each of its parts once, each after its own parts."""
     seen: set[int] = set()
     stack = [(condition, False)]
     while stack:
@@ -70,7 +70,7 @@ def _inner_first(condition: Condition) -> Iterator[Condition]:
 
 
 def _check(condition: Condition, parts: list[Condition]) -> None:
-    """Refuse a part that is not a condition, or a condition with too many conjunctions, before making any of them."""
+    """Refuse a part that is not a condition, or too many conjunctions, before `_expanded` makes any conjunction."""
     counts: dict[int, int] = {}
     for part in parts:
         key = id(part)
@@ -95,13 +95,13 @@ def _shown(count: int) -> str:
 
 
 def _expanded(part: Condition, forms: dict[int, list[Atoms]]) -> list[Atoms]:
-    """Return the conjunctions of a part, from those of its own parts."""
+    """Return the conjunctions of a part; `forms` has those of the part's own parts."""
     if isinstance(part, AnyOf):
         return [atoms for inner in part.parts for atoms in forms[id(inner)]]
     if isinstance(part, Signal):
         return [(Constraint(cast("Signal[Any]", part)),)]
     if not isinstance(part, AllOf):
-        return [(cast("Constraint | Holds", part),)]  # `_check` has refused any other
+        return [(cast("Constraint | Holds", part),)]  # `_check` has refused any other type
     found: list[Atoms] = [()]
     for inner in part.parts:
         found = [left + right for left in found for right in forms[id(inner)]]

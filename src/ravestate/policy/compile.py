@@ -59,13 +59,13 @@ def build(
     """Number all signals, slots and rules, and make the policy.
 
     Args:
-        modules: The modules, in order.
-        rules: The rules, in order. A rule that a context added is in none of the modules.
-        settings: The values of each module's settings, by the module's name; other modules have their defaults.
-        faults: Faults found earlier.
+        modules: All modules of the policy, in order.
+        rules: All rules of the policy, in order. A rule that a context added is in none of the modules.
+        settings: A module's name → its settings; a module that is missing here uses its default settings.
+        faults: The faults that the caller has found already.
 
     Raises:
-        DeclarationErrors: There is a fault, found here or earlier.
+        DeclarationErrors: There is a fault, found here or by the caller.
     """
     found = list(faults)
     names = Names(modules, found)

@@ -1,4 +1,4 @@
-"""The graph in which clauses are completed (L8).
+"""The graph in which clauses are completed to pathways (L8).
 
 Each signal is completed by one of its *alternatives*: a conjunction of signals that may cause it, or nothing, if it is
 an input or has no causes. A pathway of a clause is a set of signals. It holds the clause's own signals, and with each
@@ -19,19 +19,19 @@ from ravestate.policy.components import components
 from ravestate.policy.model import RulePlan, SignalPlan
 
 UNIT = 1 << 60
-"""Units per nat. Information is stored as integers, so summation order does not matter."""
+"""Units per nat. Information is stored as a whole number of units, so summation order does not matter."""
 
 
 class Completion:
     """The alternatives and the information of every signal.
 
     Attributes:
-        place: The place of each signal in the order, by the signal's index.
-        alternatives: For each place its alternatives, each as a tuple of places.
-        bare: For each place, whether a pathway may hold the signal without its causes.
-        information: For each place the self-information of the signal (L9), in units (`UNIT`).
-        components: Groups of places that lead to each other without passing a bare signal; causes come first.
-        cycle: For each place the set of signals on a cycle with the signal; 0 if the signal is on no cycle.
+        place: Signal's index → the signal's place in the order with causes before their effects.
+        alternatives: Place → the signal's alternatives, each a tuple of places.
+        bare: Place → whether a pathway may hold the signal without its causes.
+        information: Place → the self-information of the signal (L9), in units (`UNIT`).
+        components: Groups of places that lead to each other without passing a bare signal; causes before effects.
+        cycle: Place → the set of signals on a cycle with the signal; 0 if the signal is on no cycle.
     """
 
     def __init__(self, signals: Sequence[SignalPlan], rules: Sequence[RulePlan], causes: Causes) -> None:
@@ -61,13 +61,13 @@ class Completion:
                     self.cycle[self.place[member]] = cycle
 
     def weigh(self, bits: int) -> int:
-        """Return the information of a set of signals."""
+        """Return the information of a set of signals, in units (`UNIT`)."""
         if bits.bit_count() < len(self._alike):
             return sum(self.information[place] for place in each(bits))
         return sum(information * (bits & alike).bit_count() for information, alike in self._alike.items())
 
     def signals(self, bits: int) -> frozenset[Signal[object]]:
-        """Return the signals of a set."""
+        """Return the signals that the bits of a set stand for."""
         return frozenset(self._signals[place] for place in each(bits))
 
 
@@ -88,9 +88,9 @@ def _alternatives(signal: SignalPlan, causes: Causes) -> dict[frozenset[int], No
 
 
 def _counts(signals: Sequence[SignalPlan], rules: Sequence[RulePlan], causes: Causes) -> list[int]:
-    """Return for each signal the number of rules with the signal on a pathway."""
+    """Return signal → the number of rules with the signal on one of their pathways."""
     of, members = causes.components.of, causes.components.members
-    completed = [0] * len(members)  # per component: bit set of rules with a non-detached need it leads to
+    completed = [0] * len(members)  # component → the set of rules with a non-detached need that it leads to
     looked_at = [0] * len(signals)
     for rule in rules:
         bit = 1 << rule.index
@@ -100,7 +100,7 @@ def _counts(signals: Sequence[SignalPlan], rules: Sequence[RulePlan], causes: Ca
                     looked_at[need.signal.index] |= bit
                 else:
                     completed[of[need.signal.index]] |= bit
-    for number in reversed(range(len(members))):  # effects first
+    for number in reversed(range(len(members))):  # effects before their causes
         for cause in {of[cause] for member in members[number] for cause in causes.direct[member]}:
             completed[cause] |= completed[number]
     return [(completed[of[s]] | looked_at[s]).bit_count() for s in range(len(signals))]

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class Components:
-    """The components of a graph.
+    """The strongly connected components of a graph.
 
     Attributes:
         members: The nodes of each component. If one component leads to another, the other comes first.
-        of: For each node the number of its component.
+        of: Node → the number of its component.
     """
 
     members: list[list[int]]
@@ -20,7 +20,7 @@ class Components:
 
 
 def components(edges: Sequence[Sequence[int]]) -> Components:
-    """Find the components of the graph in which node `n` leads to each of ``edges[n]``.
+    """Return the components of the graph in which an edge leads from node `n` to each of ``edges[n]``.
 
     Example:
         >>> components([[1], [2], [1], [0]]).members
@@ -28,8 +28,8 @@ def components(edges: Sequence[Sequence[int]]) -> Components:
     """
     members: list[list[int]] = []
     of = [-1] * len(edges)
-    number = [-1] * len(edges)  # the order of discovery
-    low = [0] * len(edges)  # the minimum number of an unfinished node within reach
+    number = [-1] * len(edges)  # node → its number in the order of discovery
+    low = [0] * len(edges)  # node → the least number of an unfinished node within its reach
     unfinished: list[int] = []
     count = 0
     for root in range(len(edges)):

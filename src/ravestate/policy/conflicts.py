@@ -1,4 +1,4 @@
-"""Conflicts between rules (L10): pairs that exclude each other, and the winner of each."""
+"""Conflicts between rules (L10): pairs of rules that exclude each other, and the winner of each pair."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ class Conflict:
 
     Attributes:
         first, second: The rules' names, in declaration order.
-        slots: The slots that both write.
-        causes: The signals that lie on pathways of both.
+        slots: The names of the slots that both rules write.
+        causes: The names of the signals that lie on pathways of both rules.
         winner: The name of the rule that goes first if both are ready and recovered.
         margin: The winner's lead in nats of effective utility (utility x weight). It is 0 if neither rule carries
             information, even if a weight decides.
-        tie: Whether the order of declaration decides.
+        tie: Whether the two effective utilities are equal, so that the order of declaration decides.
     """
 
     first: str
@@ -38,7 +38,7 @@ class Conflict:
 
 
 def find_conflicts(policy: Policy) -> tuple[Conflict, ...]:
-    """Return all conflicts in the order of declaration: of the first rule, then of the second."""
+    """Return all conflicts, in the declaration order of their first rules, then of their second rules."""
     conflicts = Conflicts(policy)
     writing = writers(policy)
     found: list[Conflict | None] = []
@@ -49,7 +49,7 @@ def find_conflicts(policy: Policy) -> tuple[Conflict, ...]:
 
 
 def writers(policy: Policy) -> dict[int, list[RulePlan]]:
-    """Return the rules that write each slot, by its number."""
+    """Return the number of a slot → the rules that write the slot."""
     found: dict[int, list[RulePlan]] = {}
     for rule in policy.rule_plans:
         for slot in rule.slots:
@@ -58,7 +58,7 @@ def writers(policy: Policy) -> dict[int, list[RulePlan]]:
 
 
 class Conflicts:
-    """The conflicts of one policy, pair by pair."""
+    """Finds the conflicts of one policy, pair by pair."""
 
     def __init__(self, policy: Policy) -> None:
         self.policy = policy
@@ -77,7 +77,7 @@ class Conflicts:
         return found
 
     def best(self, first: RulePlan, second: RulePlan) -> tuple[Clause, Clause] | None:
-        """Return the best clause of each rule among those that exclude the other rule, or None if there are none."""
+        """Return each rule's best clause among those that exclude the other rule; None if the rules do not conflict."""
         if first.slotset.isdisjoint(second.slotset):
             return None
         common = self._of_rule(first) & self._of_rule(second)
@@ -86,7 +86,7 @@ class Conflicts:
         return self._best(first, common), self._best(second, common)
 
     def between(self, first: RulePlan, second: RulePlan) -> Conflict | None:
-        """Return the conflict of two rules in declaration order, or None if there is none."""
+        """Return the conflict of two rules, given in declaration order; None if the rules do not conflict."""
         best = self.best(first, second)
         if best is None:
             return None

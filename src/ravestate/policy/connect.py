@@ -9,7 +9,7 @@ from ravestate.policy.model import Clause, Need, RulePlan, SignalPlan, SlotPlan
 
 
 def connect(signals: Sequence[SignalPlan], slots: Iterable[SlotPlan], rules: Iterable[RulePlan]) -> None:
-    """Fill in the listeners of each signal, and mark the inputs (L8)."""
+    """Set the listeners and watchers of each signal, and mark the signals that are inputs (L8)."""
     raised = {signal for rule in rules for signal in rule.raises}
     listeners: list[list[Need]] = [[] for _ in signals]
     watchers: list[list[Need]] = [[] for _ in signals]
@@ -31,10 +31,10 @@ def connect(signals: Sequence[SignalPlan], slots: Iterable[SlotPlan], rules: Ite
 
 
 def find_kin(rules: Iterable[RulePlan], causes: Causes) -> None:
-    """In each clause, join the needs with a common signal on their pathways (coherence, L12)."""
+    """In each clause, mark as kin the needs whose pathways have a signal in common (coherence, L12)."""
     for rule in rules:
         for clause in rule.clauses:
-            families: list[tuple[int, int]] = []  # the roots and the needs of each family, as bits
+            families: list[tuple[int, int]] = []  # the roots and the needs of each group of kin, as bits
             for need in clause.needs:
                 if need.detached:
                     continue
@@ -51,11 +51,11 @@ def find_kin(rules: Iterable[RulePlan], causes: Causes) -> None:
 
 
 def find_contests(signals: Iterable[SignalPlan]) -> None:
-    """For each signal, collect the clauses that compete for every spike in a fixed order.
+    """Set the contests of each signal: the clauses that compete for each of its spikes, in a fixed order.
 
     One spike of the signal makes such a clause ready. The clauses write the same slots, and their order never changes.
-    Only the first can get consent, unless it resigns or fails. Until then the engine makes no activations of the others
-    (``engine/conflict_sets.py``).
+    Only the first clause can get consent, unless it resigns or fails. Until then the engine makes no activation of
+    the others (``engine/conflict_sets.py``).
     """
     for signal in signals:
         contests: dict[tuple[frozenset[int], bool], list[Clause]] = {}

@@ -16,10 +16,10 @@ from ravestate.policy.source import Source, acts_of, undeclared
 from ravestate.policy.wording import few
 
 BREAKING = frozenset({"undeclared", "unknown", "await"})
-"""The kinds of findings that break a rule when it runs."""
+"""The kinds of findings that make a rule fail at run time."""
 
 MAX_PEERS = 64
-"""The search for ties compares each rule with at most this many others, those declared first.
+"""The search for ties compares each rule with at most this many other rules, those declared first.
 
 Without a limit the time would grow with the square of the number of rules; ``policy.conflicts()`` compares all rules.
 """
@@ -34,7 +34,7 @@ class Finding:
             ``"never-wins"``, ``"tie"``, ``"cooldown"`` or ``"unheard"``.
         subject: The qualified name of the rule or signal.
         message: The remark, with the text to write instead.
-        rules: For ``"unraised"``, the rules that hear the signal.
+        rules: For ``"unraised"``, the names of the rules that wait for the signal; else empty.
     """
 
     kind: str
@@ -47,7 +47,7 @@ class Finding:
 
 
 def find_all(policy: Policy, source: Source | None = None) -> tuple[Finding, ...]:
-    """Return all findings, those that break an agent first. A rule has at most one finding of each kind.
+    """Return all findings, those that make a rule fail at run time first. A rule has at most one finding of each kind.
 
     Args:
         policy: The policy.
@@ -166,7 +166,7 @@ def _never_wins(policy: Policy) -> Iterator[Finding]:
 
 
 def _winners(policy: Policy) -> dict[tuple[int, int], list[Clause]]:
-    """Return, by slot and rarest signal, the clauses that wait for nothing but their signals; the best first."""
+    """Return (slot, rarest signal of the clause) → clauses that wait only for their signals, best first."""
     found: dict[tuple[int, int], list[Clause]] = {}
     for rule in policy.rule_plans:
         for clause in rule.clauses:
@@ -183,7 +183,7 @@ def _winners(policy: Policy) -> dict[tuple[int, int], list[Clause]]:
 
 
 def _winner(winners: dict[tuple[int, int], list[Clause]], loser: Clause) -> Clause | None:
-    """Return a clause that is ready whenever `loser` is, and goes first; None if there is none."""
+    """Return a clause that is ready whenever `loser` is, and goes before it; None if there is no such clause."""
     for slot in loser.rule.slots:
         for need in loser.needs:
             for winner in winners.get((slot, need.signal.index), ()):
@@ -214,7 +214,7 @@ def _covers(winner: Clause, loser: Clause) -> bool:
 
 def _ties(policy: Policy) -> Iterator[Finding]:
     conflicts = Conflicts(policy)
-    # Rules with the same slot, root and base may tie; no others can.
+    # Only rules with the same slot, root signal and base utility can tie.
     peers: dict[tuple[int, int, float], list[RulePlan]] = {}
     for second in policy.rule_plans:
         keys = {
@@ -232,7 +232,7 @@ def _ties(policy: Policy) -> Iterator[Finding]:
                 yield Finding(
                     "tie",
                     second.name,
-                    f"rules {first.name} and {second.name} have the same utility for {few(slots)}: {first.name} goes "
+                    f"rules {first.name} and {second.name} have the same utility for {few(slots)}. {first.name} goes "
                     "first because its declaration comes first; write a weight to decide",
                 )
                 break
@@ -241,7 +241,7 @@ def _ties(policy: Policy) -> Iterator[Finding]:
 
 
 def _apart(first: RulePlan, second: RulePlan) -> bool:
-    """Return whether payloads tell the rules apart: their predicates on the same signal differ."""
+    """Return whether the two rules have different predicates on the same signal, so that the payload decides."""
     mine = {need.signal.index: need.predicates for clause in first.clauses for need in clause.needs}
     theirs = {need.signal.index: need.predicates for clause in second.clauses for need in clause.needs}
     return any(mine[s] and theirs[s] and mine[s] != theirs[s] for s in mine.keys() & theirs.keys())

@@ -19,9 +19,9 @@ from ravestate.policy.completion import Completion, each
 from ravestate.policy.components import components
 
 EFFORT = 100_000
-"""The number of sets that all searches of a policy may examine beyond the first `FREE` of each.
+"""The number of sets that all searches of a policy together may examine, beyond the first `FREE` sets of each search.
 
-One search may use a tenth of the remaining number, divided among its steps.
+One search may use a tenth of what the earlier searches left, divided among its steps.
 """
 
 FREE = 100
@@ -29,33 +29,33 @@ FREE = 100
 
 
 class Least:
-    """The least pathways of a policy; those of single signals are found first, causes before effects."""
+    """Finds the least pathways of a policy: those of single signals first, causes before effects."""
 
     def __init__(self, completion: Completion) -> None:
         self.completion = completion
         self._effort = EFFORT
         self._open = 0
-        """The signals with several alternatives, as a set."""
+        """The open signals, as a set: those with several alternatives."""
         self._whole = [1 << place for place in range(len(completion.bare))]
-        """For each signal, the set of itself and the causes that it must have, up to the next choice."""
+        """Signal → the set of the signal and the causes that it must have, up to the next choice."""
         self._price = completion.information[:]
-        """The information of these sets."""
+        """Signal → the information of its set in `_whole`."""
         self._reach: dict[int, int] = {}
-        """For each signal with an open signal on its pathways, the union of its pathways."""
+        """Signal with an open signal on its pathways → the union of its pathways."""
         self._masks: dict[int, list[int]] = {}
-        """For each open signal, its alternatives as sets."""
+        """Open signal → its alternatives as sets."""
         self._known: dict[int, tuple[int, int]] = {}
-        """For a set of signals that still matter, the information of its completion, and the completion."""
+        """Set of signals that still matter → the information of its completion, and the completion."""
         self._follow()
         for members in completion.components:
             self._settle([place for place in members if not completion.bare[place]])
 
     def pathway(self, firm: Iterable[int], looked_at: Iterable[int]) -> tuple[int, int]:
-        """Return the least pathway of a clause: its information, and the set.
+        """Return the information of the clause's least pathway, and the pathway as a set.
 
         Args:
-            firm: The places of the non-detached signals.
-            looked_at: The places of the detached signals, which need no completion.
+            firm: The places of the clause's non-detached signals.
+            looked_at: The places of the clause's detached signals, which need no completion.
         """
         free = _set(looked_at)
         cost, found = self._search(firm, free)
@@ -77,7 +77,7 @@ class Least:
                 self._whole[place], self._price[place] = whole, price
 
     def _settle(self, members: list[int]) -> None:
-        """Find the least pathways of signals that lead to each other. Those of all other causes must be known."""
+        """Find the least pathways of signals that lead to each other. Those of their other causes must be known."""
         graph = self.completion
         choices = [place for place in members if len(graph.alternatives[place]) > 1]
         causes = {cause for place in members for found in graph.alternatives[place] for cause in found}
@@ -135,7 +135,7 @@ class Least:
         return best
 
     def _joined(self, found: int, cost: int, places: Iterable[int], free: int) -> tuple[int, int]:
-        """Return a set and its cost after the addition of signals and their known causes."""
+        """Return the set `found` and its cost after the addition of `places` and the causes that these must have."""
         for place in places:
             whole = self._whole[place]
             more = whole & ~found
@@ -151,7 +151,7 @@ class Least:
         return reach
 
     def _lacking(self, lacking: int, before: int, found: int) -> int:
-        """Return the signals without an alternative, among those of `lacking` and the new ones since `before`."""
+        """Return the signals of `found` without an alternative: of `lacking`, and of those new since `before`."""
         new = found & ~before
         left = lacking | new & self._open
         for place in each(left):

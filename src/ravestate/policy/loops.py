@@ -2,8 +2,8 @@
 
 In a loop, each rule has a clause whose signals come from rules of the loop, and at least one rule or constraint is
 detached. Without detachment the causal group ends the loop (L19). A clause with a ``min_age``, a predicate or a gate
-is not part of a loop here, because it may end one. Neither is a rule that takes time: a rule that awaits something, and a
-plain function that calls code outside its context.
+is not part of a loop here, because it may end one. A rule that takes time is not part of one either: a rule that
+awaits something, or a plain function that calls code outside its context.
 """
 
 from __future__ import annotations
@@ -25,11 +25,11 @@ QUICK = (Signal, Slot, Module, Condition, str, int, float, tuple, NoneType)
 """Types of values that take no time to use."""
 
 HOME = "ravestate"
-"""The start of the names of Python modules that hold such values."""
+"""The start of the names of the Python modules whose content takes no time to use."""
 
 
 def endless_loops(policy: Policy) -> Iterator[tuple[list[RulePlan], list[str]]]:
-    """Yield each loop: its rules, and the names of the signals between them."""
+    """Yield, for each loop, its rules and the names of the signals between them."""
     clauses = [
         clause
         for rule in policy.rule_plans
@@ -61,7 +61,7 @@ def endless_loops(policy: Policy) -> Iterator[tuple[list[RulePlan], list[str]]]:
 
 
 def _fed(policy: Policy, clauses: list[Clause]) -> list[Clause]:
-    """Return the clauses that get all their signals from each other's rules."""
+    """Return the clauses of `clauses` whose signals all come from rules of such clauses."""
     hearers: dict[int, list[Clause]] = {}
     raisers = Counter[int]()
     for clause in clauses:
@@ -81,12 +81,12 @@ def _fed(policy: Policy, clauses: list[Clause]) -> list[Clause]:
 
 
 def _wanted(clause: Clause) -> list[Need]:
-    """Return the needs that take a new spike for each run; a detached need beside them may look at an old one."""
+    """Return the clause's needs that take a new spike for each run; a detached need beside them may see an old one."""
     return [need for need in clause.needs if not need.detached] or list(clause.needs)
 
 
 def _raised(policy: Policy, rule: RulePlan) -> list[int]:
-    """Return the signals of a rule that may start the next run at once."""
+    """Return the numbers of the signals by which a rule may start the loop's next run at once."""
     changes = [policy.slot_plans[s].signals[0].index for s in rule.slots if not policy.slot_plans[s].is_flag]
     return [*rule.emits, *changes]
 
@@ -99,7 +99,7 @@ def _takes_time(rule: RulePlan) -> bool:
     if rule.rule.is_async:
         return any(step.opname == "GET_AWAITABLE" for step in steps)
     cells = dict(zip(function.__code__.co_freevars, function.__closure__ or (), strict=True))
-    for step in steps:  # a plain function may block on anything else: a camera, a queue, a server
+    for step in steps:  # a plain function may block on any value that is not `QUICK`: a camera, a queue, a server
         if step.opname == "LOAD_DEREF" and step.argval in cells:
             used = next(iter(_content(cells[step.argval])), None)
         elif step.opname in ("LOAD_GLOBAL", "LOAD_NAME"):
@@ -114,5 +114,5 @@ def _takes_time(rule: RulePlan) -> bool:
 def _content(cell: CellType) -> list[object]:
     try:
         return [cell.cell_contents]
-    except ValueError:  # it is still empty
+    except ValueError:  # the cell is still empty
         return []

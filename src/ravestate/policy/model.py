@@ -21,10 +21,10 @@ class ClauseView:
     """A clause as `Policy.clauses` shows it.
 
     Attributes:
-        signals: The signals of its constraints, as declared.
-        pathways: Its completed pathways (L8): the one with the least information first, then the cheapest.
-            There may be exponentially many; at most 256 are listed.
-        utility: The least self-information among its pathways, in nats (L9).
+        signals: The signals of the clause's constraints, as declared.
+        pathways: The clause's completed pathways (L8), by their information, the least first. There may be
+            exponentially many; at most 256 are listed.
+        utility: The least self-information among the clause's pathways, in nats (L9).
     """
 
     signals: tuple[Signal[Any], ...]
@@ -39,22 +39,22 @@ class SignalPlan:
     index: int
     signal: Signal[Any]
     slot: int | None
-    """The slot that owns the signal, if any."""
+    """The number of the slot that owns the signal; None if no slot does."""
     input: bool
-    """Whether it is an input (L8)."""
+    """Whether the signal is an input (L8)."""
     name: str = field(init=False)
     keep_latest: bool = field(init=False)
     limit: int = field(init=False)
     listeners: tuple[Need, ...] = ()
-    """The needs of rule conditions, in declaration order."""
+    """The needs for this signal in conditions of rules, in declaration order."""
     uncontested: tuple[Need, ...] = ()
     """The listeners that take part in no contest."""
     contests: tuple[tuple[Clause, ...], ...] = ()
     """Groups of clauses in which only one can have a given spike, the best clause first."""
     watchers: tuple[Need, ...] = ()
-    """The needs of `until` conditions (L21)."""
+    """The needs for this signal in `until` conditions (L21)."""
     retain: float = -1.0
-    """Seconds for which detached needs can see a spike."""
+    """Seconds for which detached needs can see a spike that no activation holds; below 0 if there are no such needs."""
 
     def __post_init__(self) -> None:
         self.name = self.signal.name
@@ -67,7 +67,7 @@ class SignalPlan:
 
 @dataclass(slots=True, eq=False, repr=False)
 class SlotPlan:
-    """A slot and its signals."""
+    """A slot, its number and its signals."""
 
     index: int
     slot: Slot[Any]
@@ -79,7 +79,7 @@ class SlotPlan:
     is_collection: bool = field(init=False)
     keep_latest: bool = field(init=False)
     heard: bool = False
-    """Whether any rule hears one of its signals."""
+    """Whether any rule hears one of the slot's signals."""
 
     def __post_init__(self) -> None:
         self.name = self.slot.name
@@ -94,7 +94,7 @@ class SlotPlan:
 
 @dataclass(slots=True, eq=False, repr=False)
 class Need:
-    """One constraint of a clause; ages in seconds."""
+    """One constraint of a clause, as its need for a spike. Ages are in seconds."""
 
     clause: Clause
     index: int
@@ -105,7 +105,7 @@ class Need:
     predicates: tuple[Predicate, ...]
     bit: int = field(init=False)
     kin: int = field(init=False)
-    """The bits of the needs that must hold spikes of the same causal group (L12)."""
+    """The bits of this need and of those that must hold spikes of the same causal group (L12)."""
 
     def __post_init__(self) -> None:
         self.bit = self.kin = 1 << self.index
@@ -116,7 +116,7 @@ class Need:
 
 @dataclass(slots=True, eq=False, repr=False)
 class Clause:
-    """A conjunction by which a rule may fire."""
+    """A conjunction of a rule's condition, by which the rule may fire."""
 
     index: int
     number: int
@@ -127,24 +127,24 @@ class Clause:
     needs: tuple[Need, ...] = ()
     guards: tuple[tuple[SlotPlan, Holds], ...] = ()
     signals: tuple[Signal[Any], ...] = ()
-    """The signals of its constraints, as declared."""
+    """The signals of the clause's constraints, as declared."""
     least: int = 0
     """The pathway with the least information, as a set of places (`Completion`)."""
     utility: float = 0.0
-    """The information of that pathway, in nats (L9)."""
+    """The information of that pathway, plus that of the clause's predicates, in nats (L9)."""
     base: float = 0.0
     """The utility, or `NO_INFORMATION` if that is 0, times the rule's weight."""
     all_bits: int = 0
     firm_bits: int = 0
-    """The bits of its non-detached needs."""
+    """The bits of the clause's non-detached needs."""
     asks_detached: bool = False
-    """Whether some, but not all, of its needs are detached."""
+    """Whether some, but not all, of the clause's needs are detached."""
     simple: bool = False
-    """Whether it has one need without `min_age` and no guard: with a spike, an activation is ready at once."""
+    """Whether the clause has one need without `min_age` and no guard: an activation with a spike is ready at once."""
     reflexive: bool = False
-    """Whether it hears the built-in flags; its activations change neither of them (L22)."""
+    """Whether the clause hears a built-in flag; its activations then change neither flag (L22)."""
     cyclic: bool = False
-    """Whether its rule may cause one of its own needs without detachment."""
+    """Whether the clause's rule may raise, without detachment, a signal that leads to one of the clause's needs."""
 
     def __repr__(self) -> str:
         return self.rule.name if len(self.rule.clauses) <= 1 else f"{self.rule.name}[{self.number}]"
@@ -160,19 +160,19 @@ class RulePlan:
     detached: bool = field(init=False)
     background: bool = field(init=False)
     interruptible: bool = field(init=False)
-    """Whether a run can be cancelled; a thread cannot be stopped."""
+    """Whether the engine can cancel a run: true for an `async def`; a plain function's thread cannot be stopped."""
     weight: float = 1.0
     cooldown: float = 0.0
     patience: float | None = None
     timeout: float | None = None
     slots: tuple[int, ...] = ()
-    """The slots that it writes."""
+    """The numbers of the slots that the rule writes."""
     slotset: frozenset[int] = frozenset()
     readable: frozenset[int] = frozenset()
-    """The slots that it reads or writes."""
+    """The numbers of the slots that the rule reads or writes."""
     emits: frozenset[int] = frozenset()
     raises: tuple[int, ...] = ()
-    """The signals that it emits, and the signals of the slots that it writes (L7)."""
+    """The numbers of the signals that the rule emits, and of the signals of the slots that it writes (L7)."""
     clauses: tuple[Clause, ...] = ()
     until: tuple[Clause, ...] = ()
 

@@ -1,4 +1,4 @@
-"""The names of a policy: numbered signals and slots, by name."""
+"""The names of a policy: name → the numbered signal or slot."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class Names:
     Attributes:
         signals: The numbered signals, including those of slots.
         slots: The numbered slots.
-        faults: The list that receives the faults: names that occur twice, and unknown names.
+        faults: The list to which this class adds faults: names that occur twice, and unknown names.
     """
 
     def __init__(self, modules: Sequence[Module], faults: list[str]) -> None:
@@ -45,7 +45,7 @@ class Names:
                 try:
                     if slot.kind != "collection":
                         copy.deepcopy(slot.default)
-                except Exception as error:  # a value's own code may raise anything
+                except Exception as error:  # copying runs the value's own code, which may raise anything
                     self.faults.append(
                         f"slot {slot.name} ({slot.origin}) has a default that a context cannot copy ({error}): "
                         "write default=None, and set the slot in a rule on rs.startup"
@@ -64,12 +64,12 @@ class Names:
         return plan
 
     def twice(self, what: str, name: str, first: str, second: str) -> None:
-        """Add the fault that two signals, slots or rules (`what`) have the same name, with the places of both."""
+        """Add the fault that two signals, slots or rules (`what`), declared at `first` and `second`, have one name."""
         if self._modules[name.split(":")[0]] < 2:  # otherwise the fault is that two modules have one name
             self.faults.append(f"two {what}s are named {name!r}: {first} and {second}; rename one")
 
     def signal(self, signal: Signal[Any], where: str) -> SignalPlan | None:
-        """Return the record of a signal that a declaration (`where`) names. For an unknown signal, add a fault and return None."""
+        """Return the record of a signal that a declaration (`where`) names. If unknown, add a fault; return None."""
         plan = self._signal_of.get(signal.name)
         if plan is not None and plan.signal is signal:
             return plan

@@ -14,11 +14,11 @@ from ravestate.errors import nearest
 
 
 class Numbers:
-    """The numbers of rules, with the values of some settings.
+    """Checks the numbers in rules, and replaces a setting by its value.
 
     Attributes:
-        refers: Whether any number so far was a setting.
-        faults: The list that receives the faults: numbers out of range, and missing settings.
+        refers: Whether any number that was checked so far is a setting.
+        faults: The list to which this class adds faults: numbers out of range, and missing settings.
     """
 
     def __init__(self, modules: Sequence[Module], settings: Mapping[str, Any], faults: list[str]) -> None:
@@ -31,13 +31,13 @@ class Numbers:
     def number(
         self, rule: Rule[Any, Any], number: Number, what: str, valid: Callable[[float], bool], wanted: str
     ) -> float:
-        """Return the value of a number, or 1 if it has a fault.
+        """Return the value of a number; if the number has a fault, add the fault and return 1.
 
         Args:
             rule: The rule that has the number.
-            number: The number, or a setting.
-            what: The argument's name, for the message.
-            valid: Returns whether a number is in range.
+            number: The number, or a reference to a setting.
+            what: The name of the rule's argument, for the message.
+            valid: A function that returns whether a number is in range.
             wanted: The range in words, for the message.
         """
         where = f"rule {rule.name} ({rule.origin}): {what}"
@@ -55,7 +55,7 @@ class Numbers:
         return float(number)
 
     def _setting(self, rule: Rule[Any, Any], ref: SettingRef, where: str) -> float | None:
-        """Return the value of a setting. A reference without a settings class means the rule's own module."""
+        """Return the value of a setting; after a fault, None. By default, the rule's own module has the setting."""
         own = self._named.get(rule.name.split(":")[0])
         module = own
         if ref.owner is not None and (own is None or own.settings is not ref.owner):

@@ -1,4 +1,4 @@
-"""The order of modules: core first, then each module after those that it requires; otherwise the given order."""
+"""The order of modules: core first, and each module after those that it requires; otherwise the user's order."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ def in_order(given: Iterable[Module], faults: list[str]) -> list[Module]:
 
     Args:
         given: The modules in the user's order.
-        faults: The list that receives the faults: cycles of `requires`, and names that two modules share.
+        faults: The list to which this function adds faults: cycles of `requires`, and names that two modules share.
     """
     ordered: dict[Module, None] = {core: None}
     names = {core.name: core}

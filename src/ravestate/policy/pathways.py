@@ -17,16 +17,16 @@ from ravestate.policy.completion import Completion
 from ravestate.policy.model import Clause, Need
 
 MAX_PATHWAYS = 256
-"""The maximum number of pathways listed for a clause or a signal: the cheapest of perhaps exponentially many."""
+"""The maximum number of pathways listed for a clause or a signal: those with the least information."""
 
 MAX_UNIONS = 200_000
 """The maximum number of unions for one clause. A clause that needs more shows its least pathway alone."""
 
 Costs = dict[int, int]
-"""Sets of signals, with the information of each."""
+"""Set of signals → the information of the set, in units."""
 
 Search = Generator["Search", Costs, Costs]
-"""A computation that yields other computations and receives their results. So deep causes need no deep recursion."""
+"""A computation that yields other computations and receives their results; so long chains need no deep recursion."""
 
 
 class _Entangled(Exception):
@@ -34,17 +34,17 @@ class _Entangled(Exception):
 
 
 class Pathways:
-    """The pathways of a policy, with a cache."""
+    """Lists the pathways of a policy's clauses, with a cache."""
 
     def __init__(self, completion: Completion) -> None:
         self.completion = completion
         self._of_clauses: dict[Clause, tuple[frozenset[Signal[Any]], ...]] = {}
         self._known: dict[int, Costs] = {}
-        self._within: dict[tuple[int, int], Costs] = {}  # by place, and the part of its cycle already on the path
+        self._within: dict[tuple[int, int], Costs] = {}  # (place, part of its cycle on the path) → pathways
         self._unions = 0
 
     def of_clause(self, clause: Clause) -> tuple[frozenset[Signal[Any]], ...]:
-        """Return the pathways of a clause: the least first, then the cheapest; at most `MAX_PATHWAYS`."""
+        """Return the pathways of a clause, those with the least information first; at most `MAX_PATHWAYS`."""
         if clause in self._of_clauses:
             return self._of_clauses[clause]
         self._unions = 0
@@ -71,7 +71,7 @@ class Pathways:
         return found
 
     def _of_signal(self, place: int, way: int) -> Search:
-        """Find the pathways of a signal; a cycle ends at a signal of `way`."""
+        """Find the pathways of the signal at `place`; a cycle ends at a signal of the path, the set `way`."""
         graph = self.completion
         alone = 1 << place
         if way & alone:
@@ -95,7 +95,7 @@ class Pathways:
         return found
 
     def _product(self, left: Costs, right: Costs) -> Costs:
-        """Return every union of a set of `left` with one of `right`."""
+        """Return each union of a set of `left` with a set of `right`, with its information."""
         self._unions += len(left) * len(right)
         if self._unions > MAX_UNIONS:
             raise _Entangled
@@ -116,7 +116,7 @@ def _cheapest(found: Costs) -> Costs:
 
 
 def _run(search: Search) -> Costs:
-    """Run a computation and all that it yields."""
+    """Run a computation and all computations that it yields; return its result."""
     pending = [search]
     answer: Any = None
     while True:

@@ -29,9 +29,9 @@ class Policy:
 
     Attributes:
         modules: The modules, each after those that it requires.
-        rules: The rules by qualified name, in declaration order.
-        signals: The signals by qualified name, including those of slots.
-        slots: The slots by qualified name.
+        rules: Qualified name → rule, in declaration order.
+        signals: Qualified name → signal, including the signals of slots.
+        slots: Qualified name → slot.
     """
 
     modules: tuple[Module, ...]
@@ -57,7 +57,7 @@ class Policy:
         self.slots: Mapping[str, Slot[Any]] = MappingProxyType({p.name: p.slot for p in self.slot_plans})
 
     def rule_plan(self, rule: str | Rule[Any, Any]) -> RulePlan:
-        """Return the record of a rule.
+        """Return the record of a rule; `rule` may be its qualified name.
 
         Raises:
             DeclarationError: The policy has no such rule.
@@ -69,7 +69,7 @@ class Policy:
         return found
 
     def utility(self, rule: str | Rule[Any, Any]) -> float:
-        """Return the utility of a rule in nats, without weight and cooldown: the greatest over its clauses (L9).
+        """Return the utility of a rule in nats, without weight and cooldown: the greatest among its clauses' (L9).
 
         The result is exact, unless dozens of signals on a pathway each have several causes with common causes; then it
         may be slightly too high (``policy/least.py``).
@@ -132,7 +132,7 @@ class Policy:
     def findings(self, source: Source | None = None) -> tuple[Finding, ...]:
         """Return remarks on probable mistakes: rules that cannot run or win, endless loops, ties, signals without listeners.
 
-        A rule has at most one finding of each kind; of several ties, that with the first declared rule.
+        A rule has at most one finding of each kind; among several ties, the finding names the first declared rule.
 
         Args:
             source: A function that returns the source of a rule's function, such as ``inspect.getsource``. With it, the
@@ -153,13 +153,13 @@ class Policy:
         return draw(self, format)
 
     def with_settings(self, settings: Mapping[str, Any]) -> Policy:
-        """Return this policy with the given settings; if no rule names a setting, return it unchanged.
+        """Return a policy with these modules and the given settings; if no rule names a setting, return this one.
 
         Args:
-            settings: For each module's name, an instance of the module's ``rs.Settings`` subclass.
+            settings: A module's name → an instance of the module's ``rs.Settings`` subclass.
 
         Raises:
-            DeclarationErrors: The settings make a declaration impossible.
+            DeclarationErrors: The settings make a declaration impossible, e.g. a number is out of range.
         """
         if not self.refers or settings == self.settings:
             return self
@@ -168,18 +168,18 @@ class Policy:
         return build(self.modules, self.declared, settings)
 
     def with_rule(self, rule: Rule[Any, Any], settings: Mapping[str, Any] | None = None) -> Policy:
-        """Return this policy with one more rule on its signals and slots.
+        """Return a policy with these rules and one more, which uses this policy's signals and slots.
 
         Args:
-            rule: The rule.
-            settings: The values of settings, as for `with_settings`; by default those of this policy.
+            rule: The additional rule.
+            settings: The settings, as for `with_settings`; by default those of this policy.
 
         Raises:
             DeclarationErrors: The rule does not fit this policy.
         """
         from ravestate.policy.compile import build
 
-        if not isinstance(rule, Rule):  # pyright: ignore[reportUnnecessaryIsInstance]  # users may not type-check
+        if not isinstance(rule, Rule):  # pyright: ignore[reportUnnecessaryIsInstance]  # users may not check types
             fault = f"{rule!r} is not a rule: write @module.rule(when=...) above the function"
             raise DeclarationErrors([DeclarationError(fault)])
         if rule.name in self.rules:

@@ -9,8 +9,8 @@ from ravestate.policy.wording import few
 def check_reachable(causes: Causes, faults: list[str]) -> None:
     """Add a fault for each rule that waits for its own effects, directly or not, and that no input can start.
 
-    A rule that lacks only the signal of a slot, or a detached effect, gets a finding instead: code outside may write
-    slots, and detached effects make loops on purpose.
+    A rule that lacks only the signal of a slot, or a detached effect, gets a finding instead. Code outside the rules
+    may write slots, and detached effects make loops on purpose.
     """
     given = {s.index for s in causes.signals if s.input or s.slot is not None}
     given |= {signal for rule in causes.rules if rule.detached for signal in rule.raises}

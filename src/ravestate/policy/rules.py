@@ -15,7 +15,7 @@ from ravestate.policy.names import Names
 from ravestate.policy.numbers import Numbers
 
 FLAGS = (f"{activity.name}:", f"{pressure.name}:")
-"""The prefixes of the names of the built-in flags' signals.
+"""The prefixes of the names of the built-in flags' signals (`core:activity` and `core:pressure`).
 
 An activation that waits for such a signal changes neither flag. Otherwise an activation on `activity.false` would set
 the flag, thereby lose its spike, clear the flag again, and so on, all in one instant.
@@ -27,7 +27,7 @@ class Rules:
 
     Attributes:
         plans: The records of the rules.
-        faults: The list for faults.
+        faults: The list to which this class adds the faults of rules.
     """
 
     def __init__(self, names: Names, numbers: Numbers, faults: list[str]) -> None:
@@ -39,7 +39,7 @@ class Rules:
         self._count = 0  # the number of clauses so far
 
     def add(self, rule: Rule[Any, Any]) -> None:
-        """Number a rule, and add its faults to the list."""
+        """Make the record of a rule, and add the rule's faults to the list."""
         other = self._named.setdefault(rule.name, rule)
         if other is not rule:
             self.names.twice("rule", rule.name, other.origin, rule.origin)

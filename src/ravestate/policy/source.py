@@ -1,4 +1,4 @@
-"""The source of a rule's function: acts that its declaration lacks, names that do not exist, a forgotten ``await``.
+"""Mistakes in the source of a rule's function: undeclared acts, names that do not exist, a forgotten ``await``.
 
 An act counts only if the function's globals or its closure lead to a slot or a signal. Everything else, such as names that
 the function binds itself, is checked when the rule runs (L3). So is guarded code: a branch on a variable of an enclosing
@@ -33,20 +33,20 @@ Source = Callable[[Any], str]
 
 @dataclass(slots=True)
 class Acts:
-    """The acts in a rule's function that could be resolved. Each slot or signal has the line of its first act."""
+    """The acts in a rule's function whose slot or signal is known: slot or signal → the line of its first act."""
 
     reads: dict[Slot[Any], int] = field(default_factory=dict[Slot[Any], int])
     writes: dict[Slot[Any], int] = field(default_factory=dict[Slot[Any], int])
     emits: dict[Signal[Any], int] = field(default_factory=dict[Signal[Any], int])
     payloads: dict[Signal[Any], int] = field(default_factory=dict[Signal[Any], int])
     forgotten: dict[str, int] = field(default_factory=dict[str, int])
-    """Methods of the context that the function calls without ``await``."""
+    """Method of the context that the function calls without ``await`` → the line of the call."""
     unknown: dict[str, int] = field(default_factory=dict[str, int])
-    """Names for a slot or signal that do not exist, each with the nearest name that does."""
+    """Phrase about a name that does not exist, with the nearest name that does → the line of the name."""
 
 
 def acts_of(rule: RulePlan, source: Source) -> Acts:
-    """Find the acts of a rule's function; none if there is no source, or if another decorator wraps the function."""
+    """Return the acts of a rule's function; none if there is no source, or if another decorator wraps the function."""
     acts = Acts()
     function = rule.rule.function
     if not isinstance(function, FunctionType) or hasattr(function, "__wrapped__"):
@@ -66,7 +66,7 @@ def acts_of(rule: RulePlan, source: Source) -> Acts:
 
 
 def undeclared(rule: RulePlan, acts: Acts) -> Iterator[str]:
-    """Yield, in words, each act that the rule does not declare, and the argument to write instead."""
+    """Yield a phrase for each kind of act that the rule does not declare, with the argument to write instead."""
     declared = rule.rule
     kinds: tuple[tuple[str, dict[Any, int], Iterable[Any], Iterable[Any]], ...] = (
         ("reads", acts.reads, declared.reads, (*declared.reads, *declared.writes, *acts.writes)),
@@ -89,7 +89,7 @@ def undeclared(rule: RulePlan, acts: Acts) -> Iterator[str]:
 
 
 class _Reader:
-    """Resolves the names of one function."""
+    """Finds the slots and signals that the names in one function stand for."""
 
     def __init__(
         self, function: FunctionType, tree: ast.FunctionDef | ast.AsyncFunctionDef, unknown: dict[str, int]
@@ -98,7 +98,7 @@ class _Reader:
         self._first = function.__code__.co_firstlineno - 1
         self._names = dict(function.__globals__)
         for name, cell in zip(function.__code__.co_freevars, function.__closure__ or (), strict=True):
-            with contextlib.suppress(ValueError):  # a cell that is still empty
+            with contextlib.suppress(ValueError):  # the cell is still empty
                 self._names[name] = cell.cell_contents
         self._unknown = unknown
         self._known = {*self._names, *function.__builtins__, *function.__code__.co_freevars}
@@ -120,7 +120,7 @@ class _Reader:
                 self._known.add(name)
 
     def note(self, node: ast.AST, acts: Acts) -> None:
-        """Record the act at a node of the function, if there is one."""
+        """Add the act at a node of the function to `acts`, if there is one."""
         match node:
             case ast.Subscript(value=ast.Name(id=self._context), slice=slot, ctx=ast.Load()):
                 self._enter(slot, Slot, acts.reads)
@@ -166,7 +166,7 @@ class _Reader:
                     try:
                         return getattr(owner, name)
                     except AttributeError as error:
-                        if error.name in (None, name):  # otherwise a lazy import has failed
+                        if error.name in (None, name):  # any other name means that a lazy import has failed
                             self._miss(expression, nearest(name, (n for n in dir(owner) if n[0] != "_")))
                 return None
             case _:
@@ -178,7 +178,7 @@ class _Reader:
 
 
 def _own(root: ast.AST, variables: Collection[str]) -> Iterator[ast.AST]:
-    """Yield a node and all nodes below it, except guarded code, such as branches on one of `variables`."""
+    """Yield a node and all nodes below it, except guarded code, such as a branch on one of `variables`."""
     stack = [root]
     while stack:
         node = stack.pop()
@@ -212,7 +212,7 @@ def _expects_missing_names(node: ast.AST) -> bool:
 
 
 def _bound(node: ast.AST) -> Iterator[str]:
-    """Yield the names that a node binds within a function."""
+    """Yield the names that a node of a function's syntax tree binds."""
     match node:
         case ast.Name(id=name, ctx=ast.Store() | ast.Del()) | ast.arg(arg=name) | ast.MatchMapping(rest=str(name)):
             yield name

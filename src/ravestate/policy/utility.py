@@ -11,17 +11,17 @@ from ravestate.policy.least import Least
 from ravestate.policy.model import RulePlan, SignalPlan
 
 PREDICATE = math.log(2)
-"""Nats that a ``where`` or ``holds`` predicate adds: it halves the prior (L9)."""
+"""The nats that a ``where`` or ``holds`` predicate adds: it halves the prior (L9)."""
 
 NO_INFORMATION = 1e-9
-"""Nats at which a clause without information (U = 0) competes, so that its weight and cooldown still count."""
+"""The nats with which a clause without information (U = 0) competes, so that its weight and cooldown still count."""
 
 
 def assign_utilities(signals: Sequence[SignalPlan], rules: Sequence[RulePlan], causes: Causes) -> Completion:
-    """Set the utility, the base and the least pathway of every clause, and mark cyclic clauses.
+    """Set the utility, the base utility and the least pathway of every clause, and mark the cyclic clauses.
 
     Returns:
-        The graph in which clauses are completed, for listing their other pathways.
+        The graph in which clauses are completed; `Pathways` lists their other pathways with it.
     """
     completion = Completion(signals, rules, causes)
     least = Least(completion)

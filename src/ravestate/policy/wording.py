@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 SHOWN = 8
-"""The maximum number of names in a list."""
+"""The maximum number of names that a list shows."""
 
 
 def few(names: Iterable[str]) -> str:
-    """Join names into a list, each once; after the first eight, add a count.
+    """Join names with commas, each name once; after the first eight, add how many more there are.
 
     Example:
         >>> few(["m:a", "m:b", "m:a"]), few(f"m:r{number}" for number in range(100))

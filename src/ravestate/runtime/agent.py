@@ -1,4 +1,4 @@
-"""An agent, independent of any conversation; each conversation gets its own context."""
+"""An agent without a conversation: each conversation gets a context of its own."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ class Agent:
     """A policy and its settings, read and checked once, and shared by all contexts of the agent.
 
     Args:
-        modules: See `Context`.
-        options: See `Context`.
+        modules: As for `Context`.
+        options: The other arguments, as for `Context`.
 
     Raises:
         DeclarationErrors: The modules or the settings have faults.
@@ -30,10 +30,10 @@ class Agent:
         self._options: dict[str, Any] = {**options, "settings": self.settings}
 
     def context(self, **options: Any) -> Context:
-        """Return a new context, which can be started once.
+        """Return a new context of this agent, which can be started once.
 
         Args:
-            options: See `Context`, except ``settings``; they override the agent's own.
+            options: Arguments of `Context`, except ``settings``; they override those of the agent.
         """
         merged: Any = self._options | options
         return Context(self.policy, **merged)

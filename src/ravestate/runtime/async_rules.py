@@ -1,4 +1,4 @@
-"""The runs of async rules, on the loop."""
+"""The runs of async rules, on the event loop."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from ravestate.runtime.eager_task import EagerTask
 from ravestate.runtime.rule_context import RuleContext
 
 GRACE = 5.0
-"""Seconds that a cancelled rule has to clean up before its run counts as ended."""
+"""The seconds that a cancelled rule has to clean up before its run counts as ended."""
 
 CLEANING = 10
-"""Turns of the loop that a cancelled rule has for its last writes before any other rule continues."""
+"""The turns of the event loop that a cancelled rule has for its last writes before any other rule continues."""
 
 log = logging.getLogger("ravestate")
 
@@ -26,10 +26,10 @@ class AsyncRules:
     """Starts, cancels and ends the async rules of one context.
 
     Args:
-        loop: The context's loop.
-        finish: Called with a run, its result and its exception when its function has ended.
-        give_up: Called with a run and the reason, if the run does not end in time after its cancellation.
-        proceed: Called when the tasks in `cleaning` have ended, or their time is over.
+        loop: The context's event loop.
+        finish: Called with a run, its result and its exception when the run's function has ended.
+        give_up: Called with a run and the reason, if the run does not end within `GRACE` seconds of its cancellation.
+        proceed: Called when the tasks in `cleaning` have ended, or when their turns are over.
     """
 
     def __init__(
@@ -40,7 +40,7 @@ class AsyncRules:
         proceed: Callable[[], None],
     ) -> None:
         self.cleaning: list[asyncio.Task[Any]] = []
-        """Tasks that have just been cancelled. Their last writes come before any other effect."""
+        """The tasks that have just been cancelled. Their last writes come before any other effect."""
         self._loop = loop
         self._finish = finish
         self._give_up = give_up
@@ -51,7 +51,7 @@ class AsyncRules:
         self._spare: EagerTask | None = None
 
     def start(self, ctx: RuleContext) -> None:
-        """Take the first step of a rule's function, and leave the other steps to a task."""
+        """Take the first step of a run's function, and leave the other steps to a task."""
         task = self._spare
         if task is None:
             task = self._spare = EagerTask(self._loop, self._timer)
@@ -72,7 +72,7 @@ class AsyncRules:
             self._spare = None
 
     def cancel(self, ctx: RuleContext, reason: str) -> None:
-        """Cancel a run; it has `GRACE` seconds to clean up."""
+        """Cancel a run, for a `reason`; the run has `GRACE` seconds to clean up."""
         task = self._tasks[ctx].task
         ctx.cancelled = reason
         task.cancel()
@@ -82,10 +82,10 @@ class AsyncRules:
         self._grace[ctx] = self._loop.call_later(GRACE, self._grace_is_over, ctx)
 
     async def close(self, reason: str, *, at_once: bool) -> None:
-        """Cancel all runs and wait for them for at most `GRACE` seconds; end those that refuse.
+        """Cancel all runs and wait for them for at most `GRACE` seconds; then end the runs that have not ended.
 
         Args:
-            reason: Why the runs end.
+            reason: The reason for which the runs end, for messages.
             at_once: Whether to return without waiting.
         """
         for ctx, task in self._tasks.items():

@@ -14,20 +14,20 @@ except ImportError:  # Windows
     resource = None
 
 BLOCKING = 0.1
-"""Seconds that one step of an async rule may take before a warning names it: nothing else runs meanwhile."""
+"""The seconds that one step of an async rule may take before a warning names the rule: nothing else runs meanwhile."""
 
 FRESH = 0.01
-"""Seconds for which one reading of the thread's CPU time serves as the start time of further steps."""
+"""The seconds for which one reading of the thread's CPU time serves as the start time of further steps."""
 
 ASLEEP = 0.05
-"""Mean seconds per sleep above which a step counts as sleeping. A thread that waits for the interpreter's lock sleeps
-again and again, for about 5 ms each time."""
+"""A step counts as sleeping if its sleeps are longer than this on average (seconds). A thread that waits for the
+interpreter's lock sleeps again and again, for about 5 ms each time."""
 
 log = logging.getLogger("ravestate")
 
 
 class StepTimer:
-    """Measures the steps of async rules, and warns of those that block the loop; used on the loop's thread alone.
+    """Measures the steps of async rules, and warns of steps that block the loop. Use it on the loop's thread only.
 
     A step blocks the loop if it computes, or sleeps, for longer than `BLOCKING`. Time in which the thread waits for a
     processor or for the interpreter's lock does not count: a busy machine raises no alarm. The system counts how often
@@ -46,7 +46,7 @@ class StepTimer:
         self._sleeps = 0, 0
 
     def begin(self) -> float:
-        """Return the time at which a step begins, for `end`."""
+        """Note that a step begins; return the time (seconds of `perf_counter`), for `end`."""
         now = perf_counter()
         if now > self._fresh_until:
             self._fresh_until = now + FRESH
@@ -55,7 +55,7 @@ class StepTimer:
         return now
 
     def end(self, rule: Rule[Any, Any], began: float) -> None:
-        """Warn if the step that began at `began` has blocked the loop."""
+        """Warn if the step of `rule` that began at `began` has blocked the loop."""
         took = perf_counter() - began
         if took > BLOCKING:
             seconds, manner = self._judge(took)

@@ -6,7 +6,7 @@ import asyncio
 
 
 class Clock:
-    """The seconds since a context started, not counting the time in which the clock was halted.
+    """A clock that counts the seconds since a context started, without the time in which the clock was halted.
 
     Args:
         loop: The loop whose time the clock follows.
@@ -19,7 +19,7 @@ class Clock:
         self._sleepers: dict[asyncio.Future[None], tuple[float, asyncio.TimerHandle | None]] = {}
 
     def now(self) -> float:
-        """Return the time (seconds)."""
+        """Return the time on this clock (seconds)."""
         return self._loop.time() - self._origin if self._halted is None else self._halted
 
     def on_loop(self, time: float) -> float:
@@ -35,7 +35,7 @@ class Clock:
         """Wait until `seconds` have passed on this clock; with 0 or less, only give other tasks a turn.
 
         Raises:
-            ValueError: The number is NaN.
+            ValueError: The number of seconds is NaN.
         """
         if seconds != seconds:
             raise ValueError("cannot sleep for nan seconds")
@@ -56,11 +56,11 @@ class Clock:
                 timer.cancel()
 
     def next_waking(self) -> float | None:
-        """Return the time (seconds) at which the first sleeper wakes, if there is one."""
+        """Return the time (seconds) at which the next call of `sleep` ends; None if no code sleeps."""
         return min((until for until, _ in self._sleepers.values()), default=None)
 
     def halt(self) -> None:
-        """Halt the clock."""
+        """Halt the clock, and the calls of `sleep` with it."""
         if self._halted is None:
             self._halted = self.now()
             for sleeper, (until, timer) in self._sleepers.items():
@@ -69,7 +69,7 @@ class Clock:
                 self._sleepers[sleeper] = until, None
 
     def set(self, time: float) -> None:
-        """Set a halted clock forward to `time` (seconds), and wake the sleepers whose time has come."""
+        """Set a halted clock forward to `time` (seconds), and end the calls of `sleep` whose time has come."""
         if self._halted is not None:
             self._halted = max(self._halted, time)
             for sleeper, (until, _) in self._sleepers.items():

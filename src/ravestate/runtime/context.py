@@ -39,11 +39,11 @@ class Context:
 
     Args:
         modules: Modules to compile, or one compiled `Policy` to share.
-        settings: The settings of each module, by its name; they override the environment's.
-        seed: The seed of all random choices that rules make through ``ctx.random``; different every time by default.
+        settings: Module's name → the module's settings; they override those of the environment.
+        seed: The seed of all random choices that rules make through ``ctx.random``; a new seed in each run by default.
         patience: Seconds that a rival under pressure has, unless its rule says otherwise (L16).
         trace: Whether to keep records of what happens, for ``trace`` and ``explain``; or a function that receives them.
-        journal: A function, e.g. a `Journal`. It receives each event, and each `Taken`, with its time.
+        journal: A function, e.g. a `Journal`. It receives each event, and each `Taken`, with its time (seconds).
 
     Raises:
         DeclarationErrors: The modules or the settings have faults.
@@ -79,7 +79,7 @@ class Context:
         _check_seconds(patience)
         self.settings = load_settings(policy.modules, settings)
         self.trace: deque[Record] = deque(maxlen=TRACE_LIMIT)
-        """The records of what has happened lately, if the context keeps them."""
+        """The latest records of the trace; empty unless the argument `trace` is True."""
         self._policy = policy.with_settings(self.settings)
         self._seed = seed
         self._patience = patience
@@ -103,7 +103,7 @@ class Context:
             hooks: Functions that observe the context, e.g. for a simulation.
 
         Raises:
-            EngineError: The context was started before.
+            EngineError: The context has been started before.
         """
         if self._runner is not None:
             raise EngineError("a context runs once: make another one of the same policy")
@@ -119,7 +119,7 @@ class Context:
         await self.stop()
 
     async def stop(self, grace: float = 5.0) -> None:
-        """End the context cleanly.
+        """End the context in order.
 
         The context raises ``rs.shutdown``. Rules that start from then on have `grace` seconds to finish. Then all rules
         are cancelled, and may clean up. A rule that runs for ever does not delay the end if it has ``background=True``.
@@ -138,7 +138,7 @@ class Context:
             raise
 
     def ask_to_stop(self) -> None:
-        """Make `until_stopped` return; the context goes on until its ``async with`` ends. Any thread may call this."""
+        """Make `until_stopped` return; the context runs on until its ``async with`` ends. Any thread may call this."""
         if self._runner is not None and self._stopping is not None:
             with contextlib.suppress(RuntimeError):  # the context has ended, and its loop is closed
                 self._runner.loop.call_soon_threadsafe(self._stopping.set)
@@ -147,7 +147,7 @@ class Context:
         """Wait until a rule (``ctx.stop()``) or other code (`ask_to_stop`) has asked the context to end.
 
         Raises:
-            RavestateError: A rule has given this error as the reason (``ctx.stop(failure)``).
+            RavestateError: A rule has asked for the end because of this error (``ctx.stop(failure)``).
             EngineError: The engine has failed, which is a bug in this library.
         """
         runner = self._running()
@@ -160,7 +160,7 @@ class Context:
         """Wait until no foreground rule runs or waits for consent.
 
         Args:
-            slot: Wait only for rules that may write this slot, or cause another rule to write it.
+            slot: Wait only for rules that may write this slot, or cause another rule to write it; None for all rules.
         """
         await self._running().quiet(None if slot is None else slot.name)
 
@@ -175,12 +175,12 @@ class Context:
         self._running().pause()
 
     def step(self) -> bool:
-        """Do the next thing in a paused context; several rules may start at once (one wave).
+        """Do the next thing that is due in a paused context; several rules may start at once (one wave).
 
-        If nothing is due now, set the clock forward to the next time at which something is.
+        If nothing is due now, set the clock forward to the next time at which something is due.
 
         Returns:
-            Whether there was anything to do.
+            False if nothing is due, not even at a later time; else True.
         """
         return self._running().step()
 
@@ -221,7 +221,7 @@ class Context:
         self._running().receive(Wipe(signal.name))
 
     def add_rule(self, rule: Rule[Any, Any]) -> None:
-        """Add a rule over this context's signals and slots, to this context alone. Any thread may call this.
+        """Add a rule that uses this context's signals and slots, to this context alone. Any thread may call this.
 
         Raises:
             DeclarationErrors: The rule does not fit the policy.
@@ -244,7 +244,7 @@ class Context:
         runner = self._running()
         if runner.closed:
             raise runner.fault or EngineError(f"the context has ended: there will be no {signal.name}")
-        if timeout is None:  # an asyncio.timeout costs as much as a short rule
+        if timeout is None:  # an asyncio.timeout would cost as much as a short rule
             return await runner.listeners.next(signal.name)
         try:
             async with asyncio.timeout(timeout):
@@ -255,7 +255,7 @@ class Context:
     # ------------------------------------------------------------------------------------ looking in
 
     def observe(self, observer: Callable[[Record], None]) -> Callable[[], None]:
-        """Call a function with every record from now on, and return a function that stops the calls.
+        """Call `observer` with every record of the trace from now on; return a function that stops the calls.
 
         The observer runs on the context's loop, in the middle of an event. It must be quick, must not raise, and must not
         act on the context. Without observers the engine makes no records, so there is no cost until then.
@@ -282,7 +282,7 @@ class Context:
 
     @property
     def policy(self) -> Policy:
-        """The policy, with the rules that were added to this context."""
+        """The context's policy, with the rules that were added to this context."""
         return self._policy if self._runner is None else self._runner.policy
 
     @property
@@ -300,7 +300,7 @@ class Context:
         return self._running().read(slot.name)
 
     def explain(self, rule: str | Rule[Any, Any]) -> Explanation:
-        """Explain why a rule runs, waits, or did not fire (L25); with the rule's history if the context keeps a trace.
+        """Explain why a rule runs, waits, or did not fire (L25); if the context keeps a trace, with the rule's history.
 
         Raises:
             DeclarationError: The policy has no such rule.
@@ -308,7 +308,7 @@ class Context:
         return explain(self._running().engine_now(), self.policy.rule_plan(rule), self.trace)
 
     def snapshot(self) -> dict[str, Any]:
-        """Return everything that is alive, as plain data for JSON."""
+        """Return all slots and live objects of the context, as plain data for JSON."""
         return snapshot(self._running().engine_now())
 
     def plain_functions(self) -> list[str]:

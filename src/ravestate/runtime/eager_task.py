@@ -1,4 +1,4 @@
-"""A task for a coroutine that may end without the need for a task.
+"""A task for a coroutine that may end before it needs a task.
 
 Making a task and having the loop switch to it costs more than most rules take. So the first step of a coroutine runs
 outside of any task, while a spare task counts as the current task. `asyncio.current_task`, `asyncio.timeout` and
@@ -19,11 +19,11 @@ from ravestate.runtime.blocking import StepTimer
 
 
 class EagerTask:
-    """A spare task, and the coroutine of a rule once the task has adopted one.
+    """A spare task; once it has adopted the coroutine of a rule, it is the rule's task.
 
     Args:
         loop: The loop of the task.
-        timer: Measures each step.
+        timer: The timer that measures each step of the coroutine.
     """
 
     __slots__ = (
@@ -49,7 +49,7 @@ class EagerTask:
 
         Raises:
             StopIteration: The coroutine has ended. The spare task is free for another coroutine, unless it is `spoilt`.
-            BaseException: The coroutine has failed. The spare task is free, as above.
+            BaseException: The coroutine has failed with this exception. The spare task is free, as above.
         """
         around = asyncio.current_task(self._loop)  # a task may have called `step` on a paused context
         if around is not None:
@@ -74,12 +74,12 @@ class EagerTask:
         return self.task.cancelling() > 0 or self._context != self._clean
 
     def close(self) -> None:
-        """End the spare task, if it has adopted nothing."""
+        """End the spare task, unless it has adopted a coroutine."""
         if self._coroutine is None:
             self.task.cancel()
 
     def abandon(self) -> None:
-        """End the task although its coroutine refuses to end: close the coroutine where it is."""
+        """End the task although its coroutine does not end: close the coroutine where it is."""
         self._abandoned = True
         self.task.cancel()
 
@@ -90,7 +90,7 @@ class EagerTask:
     def _host(self) -> Generator[Any, Any, Any]:
         error: BaseException | None = None
         try:
-            yield  # until the task's first step
+            yield  # the task's first step continues here
             if self._coroutine is None:
                 yield from self._wake
         except asyncio.CancelledError as cancelled:
@@ -111,7 +111,7 @@ class EagerTask:
                 except GeneratorExit:
                     coroutine.close()
                     raise
-                except BaseException as thrown:  # handed on to the coroutine
+                except BaseException as thrown:  # the coroutine gets it below
                     error = thrown
             if self._abandoned:
                 coroutine.close()
@@ -125,7 +125,7 @@ class EagerTask:
                     pending = coroutine.throw(thrown)
             except StopIteration as stop:
                 return stop.value
-            except SystemExit as exit:  # it would end the loop, and all other rules with it
+            except SystemExit as exit:  # raised here, it would end the loop and all other rules
                 return exit
             finally:
                 self._timer.end(rule, began)

@@ -14,11 +14,11 @@ from ravestate.errors import RuleError
 
 
 def ending(run: int, rule: Rule[Any, Any], outcome: Any, raised: bool) -> Finish:
-    """Return the event that ends a run.
+    """Return the event that reports the end of a run to the engine.
 
     Args:
         run: The number of the run.
-        rule: Its rule.
+        rule: The rule of the run.
         outcome: The value that the function returned, or the exception that it raised.
         raised: Whether `outcome` is an exception that the function raised.
     """
@@ -52,7 +52,7 @@ def _nonsense(rule: Rule[Any, Any], result: Any) -> RuleError:
 
 
 def _place(rule: Rule[Any, Any], failure: BaseException) -> str:
-    """Return the line of its own file in which a rule failed, e.g. `` (guide.py:42)``; empty if there is none."""
+    """Return the place in the rule's own file at which it failed, e.g. `` (guide.py:42)``; empty if there is none."""
     file = rule.origin.rpartition(":")[0]
     line, step = 0, failure.__traceback__
     while step is not None:

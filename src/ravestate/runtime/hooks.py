@@ -1,4 +1,4 @@
-"""Functions through which another part of the library observes a context."""
+"""Functions by which another part of the library observes a context."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ class Hooks:
     """Functions that a context calls on its loop; `Context.start` takes them.
 
     Attributes:
-        on_ended: Called with each run that has ended.
+        on_ended: Called with the outcome of each run that has ended.
         on_failed: Called with the name of each rule that fails, and with its exception.
         on_endless: Called with the rule that ran last, if an instant of virtual time does not end. If this function is
             given, the context's time is virtual. Plain functions then run one by one, so that threads do not race.
-        listeners: Functions by signal name. Each is called with the payload of every spike of its signal.
+        listeners: Signal's name → a function that is called with the payload of every spike of the signal.
     """
 
     on_ended: Callable[[Ended], None] | None = None

@@ -12,7 +12,7 @@ from ravestate.engine.events import Event
 
 @dataclass(slots=True)
 class Taken:
-    """The runner took the engine's effects. The journal records this, because the engine decides only then."""
+    """The runner took the engine's effects. The journal needs this record, because the engine decides only then."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,7 +34,7 @@ class Journal:
 
 
 def replay(engine: Engine, entries: Iterable[Entry]) -> list[list[Effect]]:
-    """Feed a journal to an engine, and return the effects of each time; no rule function is called."""
+    """Feed a journal to an engine; return the effects for each `Taken`. No rule's function is called."""
     done: list[list[Effect]] = []
     for entry in entries:
         if isinstance(entry.event, Taken):

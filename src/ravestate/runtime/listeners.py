@@ -10,11 +10,11 @@ from ravestate.engine.effects import Spiked
 
 
 class Listeners:
-    """The listeners of one context, by the names of their signals.
+    """The listeners of one context: functions and waiting tasks, each for one signal.
 
     Args:
-        watched: The engine's table of signals whose spikes it reports.
-        functions: Permanent functions. Each is called with the payload of every spike of its signal.
+        watched: The engine's table of the signals whose spikes it reports; this class fills it.
+        functions: Signal's name → a function that is called with the payload of every spike of the signal.
     """
 
     def __init__(self, watched: dict[str, int], functions: Mapping[str, Callable[[Any], None]]) -> None:
@@ -40,7 +40,7 @@ class Listeners:
                         self._watched.pop(signal, None)
 
     def tell(self, spiked: Spiked) -> None:
-        """Call the signal's function, and wake the tasks that wait for the signal."""
+        """Call the function of a spike's signal, and wake the tasks that wait for the signal."""
         function = self._functions.get(spiked.signal)
         if function is None:
             self._watched.pop(spiked.signal, None)
@@ -51,7 +51,7 @@ class Listeners:
                 future.set_result(spiked.payload)
 
     def fail(self, error: Callable[[str], BaseException]) -> None:
-        """Wake all waiting tasks, each with an error that is made from its signal's name."""
+        """Wake all waiting tasks with an error, which `error` makes from the name of the task's signal."""
         for signal, futures in self._futures.items():
             for future in futures:
                 if not future.done():

@@ -14,17 +14,17 @@ from ravestate.runtime.rule_context import RuleContext
 from ravestate.runtime.workers import Job, JobQueue
 
 STARVED = 5.0
-"""Seconds that a plain function waits for a worker thread before a warning names the rules that hold the threads."""
+"""After this many seconds of a plain function's wait for a thread, a warning names the rules that hold the threads."""
 
 log = logging.getLogger("ravestate")
 
 
 class PlainRules:
-    """Starts and abandons the plain functions of one context.
+    """Starts and abandons the runs of one context's rules that are plain functions.
 
     Args:
-        loop: The context's loop.
-        finish: Called on the loop with a run, its result and its exception when its function has ended.
+        loop: The context's event loop.
+        finish: Called on the loop with a run, its result and its exception when the run's function has ended.
     """
 
     def __init__(
@@ -33,7 +33,7 @@ class PlainRules:
         finish: Callable[[RuleContext, Any, BaseException | None], None],
     ) -> None:
         self.runs: dict[RuleContext, Job] = {}
-        """The runs whose functions have not ended."""
+        """Run whose function has not ended → its job in the pool of threads."""
         self._loop = loop
         self._finish = finish
         self._queue = JobQueue()
@@ -41,7 +41,7 @@ class PlainRules:
         self._warned = False
 
     def start(self, ctx: RuleContext) -> None:
-        """Call a rule's function in a worker thread."""
+        """Call a run's function in a worker thread."""
         try:
             self.runs[ctx] = self._queue.submit(functools.partial(self._call, ctx), ctx.rule.name)
         except RuntimeError as error:
@@ -51,20 +51,20 @@ class PlainRules:
             self._alarm = self._loop.call_later(STARVED, self._watch)
 
     def abandon(self, ctx: RuleContext) -> None:
-        """Abandon a function, which keeps running: a thread cannot be stopped."""
+        """Stop waiting for a run's function, which keeps running: a thread cannot be stopped."""
         self._queue.abandon(self.runs.pop(ctx))
 
     def close(self) -> None:
-        """Abandon all functions; those that have not begun are never called."""
+        """Stop waiting for all functions. Functions that have not begun are never called."""
         self.runs.clear()
         self._queue.close()
         if self._alarm is not None:
             self._alarm.cancel()
 
     def _call(self, ctx: RuleContext) -> None:
-        """Call the function; this runs in a worker thread."""
+        """Call a run's function; this method runs in a worker thread."""
         if ctx.ended:
-            return  # it was cancelled before there was a thread for it
+            return  # the run was cancelled before there was a thread for it
         result, exception = None, None
         try:
             result = ctx.rule.function(ctx)
@@ -78,7 +78,7 @@ class PlainRules:
         self._finish(ctx, result, exception)
 
     def _watch(self) -> None:
-        """Warn if functions have waited for a thread for `STARVED` seconds; look again as long as any of them wait."""
+        """Warn if functions have waited for a thread for `STARVED` seconds; check again while any function waits."""
         waiting = [job for job in self.runs.values() if job.began is None]
         if not waiting:
             self._alarm, self._warned = None, False
@@ -97,7 +97,7 @@ class PlainRules:
 
 
 def _listed(jobs: Iterable[Job]) -> str:
-    """List the rules of jobs, e.g. ``a:b (3 runs, up to 12 s), c:d (1 run, up to 5 s)``."""
+    """Return a list of the rules of jobs, e.g. ``a:b (3 runs, up to 12 s), c:d (1 run, up to 5 s)``."""
     by_name: dict[str, list[float]] = {}
     for job in jobs:
         by_name.setdefault(job.name, []).append(monotonic() - (job.began or job.made))

@@ -1,4 +1,4 @@
-"""The argument of every rule function: its view of the context, and its only way to act (L3, L13)."""
+"""The argument of every rule's function: the function's view of the context, and its only way to act (L3, L13)."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Host(Protocol):
     """The part of a running context that its rule contexts use.
 
     Attributes:
-        settings: The settings of each module, by its name.
+        settings: Module's name → the module's settings.
         random: The source of random numbers for rules.
         clock: The context's clock.
     """
@@ -37,7 +37,7 @@ class Host(Protocol):
 
     @property
     def policy(self) -> Policy:
-        """The policy, with the rules that were added."""
+        """The context's policy, with the rules that were added to it."""
         ...
 
     def receive(self, event: Event) -> None:
@@ -49,16 +49,16 @@ class Host(Protocol):
         ...
 
     def stop(self, failure: RavestateError | None) -> None:
-        """Ask the context to end, perhaps because of a failure."""
+        """Ask the context to end, because of `failure` unless that is None."""
         ...
 
     async def quiet(self) -> None:
-        """Wait until no foreground rule runs or waits."""
+        """Wait until no foreground rule runs or waits for consent."""
         ...
 
 
 class RuleContext:
-    """The argument of a rule function: the function reads, writes and emits through it.
+    """The argument of a rule's function: with it, the function reads slots, writes slots and emits signals.
 
     ``ctx[slot]`` reads a slot: its value when the rule started, or the rule's own last write. ``ctx[slot] = value``
     writes it; the write takes effect, and raises its signals, at once.
@@ -71,13 +71,13 @@ class RuleContext:
         self.run = effect.run
         """The number of the run."""
         self.rule = effect.rule
-        """The rule."""
+        """The rule of the run."""
         self._payloads = effect.payloads
         self._values: dict[str, Any] = effect.values  # type: ignore[assignment]  # made for this run alone
         self.cancelled = ""
-        """Why the function was cancelled, if it was; it may still write while it cleans up."""
+        """Why the function was cancelled; empty if it was not. The function may still write while it cleans up."""
         self.ended = ""
-        """Why the run is over, if it is. The function may go on, because a thread cannot be stopped."""
+        """Why the run is over; empty if it is not. The function may go on, because a thread cannot be stopped."""
 
     @overload
     def __getitem__(self, slot: Collection[V]) -> Items[V]: ...
@@ -127,7 +127,7 @@ class RuleContext:
     @overload
     def payload(self, signal: Signal[Any]) -> Any: ...
     def payload(self, signal: Signal[Any]) -> Any:
-        """Return the payload of a signal that started the rule; None if another clause of its condition did.
+        """Return the payload of a signal that started the rule; None if the clause that started it lacks the signal.
 
         Raises:
             UndeclaredError: The signal is not part of the rule's condition.
@@ -167,7 +167,7 @@ class RuleContext:
         self._host.receive(Wipe(signal.name, self.run))
 
     def add_rule(self, rule: Rule[Any, Any]) -> None:
-        """Add a rule over this context's signals and slots, to this context alone.
+        """Add a rule that uses this context's signals and slots, to this context alone.
 
         Raises:
             DeclarationErrors: The rule does not fit the policy.
@@ -176,15 +176,15 @@ class RuleContext:
         self._host.add_rule(rule)
 
     async def sleep(self, seconds: float) -> None:
-        """Wait on the context's clock."""
+        """Wait until `seconds` have passed on the context's clock."""
         await self._host.clock.sleep(seconds)
 
     async def quiet(self) -> None:
-        """Wait until no foreground rule runs or waits."""
+        """Wait until no foreground rule runs or waits for consent."""
         await self._host.quiet()
 
     def stop(self, failure: RavestateError | None = None) -> None:
-        """Ask the context to end: it raises ``rs.shutdown``, and then cancels the rules that run.
+        """Ask the context to end: it raises ``rs.shutdown``, waits a few seconds, and cancels the rules that still run.
 
         Args:
             failure: The error because of which the agent cannot go on; ``rs.run`` raises it after the end.
@@ -208,7 +208,7 @@ class RuleContext:
 
     @property
     def random(self) -> random.Random:
-        """Random numbers from the context's seed; a rule should use no others, so that runs can be repeated."""
+        """Random numbers, made with the context's seed. A rule should use no other source, so that tests repeat."""
         return self._host.random
 
     def _alive(self) -> None:
@@ -241,7 +241,7 @@ class RuleContext:
 class Items(Mapping[str, V], Generic[V]):
     """A collection in a rule: a mapping of keys to items, with `add` and `remove`.
 
-    It shows the rule's own changes. An iteration visits the items that were there when it began.
+    The mapping shows the rule's own changes. An iteration visits the items that were there when it began.
     """
 
     __slots__ = ("_ctx", "_slot")
@@ -255,7 +255,7 @@ class Items(Mapping[str, V], Generic[V]):
         return self._ctx._values[self._slot.name]  # pyright: ignore[reportPrivateUsage]
 
     def add(self, key: str, item: V) -> None:
-        """Set an item. This raises ``added`` if the key is new, and ``changed`` if the item differs.
+        """Set the item of a key. This raises ``added`` if the key is new, and ``changed`` unless the item is equal.
 
         Raises:
             UndeclaredError: The rule does not declare the collection in ``writes``.
@@ -264,7 +264,7 @@ class Items(Mapping[str, V], Generic[V]):
         self._ctx._host.receive(Store(self._slot.name, key, item, self._ctx.run))  # pyright: ignore[reportPrivateUsage]
 
     def remove(self, key: str) -> None:
-        """Remove an item if it is there. This raises ``removed`` and ``changed``.
+        """Remove the item of a key. If there is one, this raises ``removed`` and ``changed``.
 
         Raises:
             UndeclaredError: The rule does not declare the collection in ``writes``.
@@ -303,15 +303,15 @@ class Items(Mapping[str, V], Generic[V]):
         return iter(tuple(self._items))
 
     def keys(self) -> KeysView[str]:
-        """Return the keys as they are now."""
+        """Return the present keys; later changes do not change the result."""
         return dict(self._items).keys()
 
     def values(self) -> ValuesView[V]:
-        """Return the items as they are now."""
+        """Return the present items; later changes do not change the result."""
         return dict(self._items).values()
 
     def items(self) -> ItemsView[str, V]:
-        """Return the keys and items as they are now."""
+        """Return the present keys and items; later changes do not change the result."""
         return dict(self._items).items()
 
     def __len__(self) -> int:

@@ -19,22 +19,22 @@ from ravestate.runtime.context import Context
 log = logging.getLogger("ravestate")
 
 INPUT = "rawio:input"
-"""The slot of the user's words. An agent with this slot is usually meant for conversation."""
+"""The name of the slot of the user's words. An agent with this slot is usually meant for conversation."""
 
 UNABLE = (NotImplementedError, RuntimeError, ValueError)
-"""Errors of `add_signal_handler` on platforms that lack it, and outside the main thread."""
+"""The errors that `add_signal_handler` raises on platforms that lack it, and outside the main thread."""
 
 
 def run(*modules: Module | ModuleType | Policy, **options: Any) -> None:
-    """Run an agent until a rule calls ``ctx.stop()``, or until Ctrl-C; then shut it down cleanly.
+    """Run an agent until a rule calls ``ctx.stop()`` or the user presses Ctrl-C; then shut it down in order.
 
     The agent runs as one context. If a platform among the modules serves many users, each user gets their own context.
 
     A warning is logged if the modules use `rawio`, but no platform among them lets a user talk.
 
     Args:
-        modules: See `Context`.
-        options: See `Context`.
+        modules: As for `Context`.
+        options: The other arguments, as for `Context`.
 
     Raises:
         DeclarationErrors: The modules or the settings have faults.
@@ -67,14 +67,14 @@ def warn_if_mute(policy: Policy) -> None:
 
 
 async def run_context(context: Context) -> None:
-    """Run a context until a rule, other code, SIGINT or SIGTERM stops it. A second signal aborts the shutdown."""
+    """Run a context until a rule, other code, SIGINT or SIGTERM stops it. Another such signal aborts the shutdown."""
     with asked_by_signals(context.ask_to_stop):
         async with context:
             await context.until_stopped()
 
 
 async def run_servers(agent: Agent, servers: Sequence[Callable[[Agent], Coroutine[Any, Any, None]]]) -> None:
-    """Run the servers of an agent until one of them ends or fails. SIGINT and SIGTERM cancel them all."""
+    """Run the servers of an agent until one of them ends or fails; then cancel the others. So do SIGINT and SIGTERM."""
     tasks = [asyncio.create_task(serve(agent)) for serve in servers]
     ends: list[BaseException | None] = []
 
@@ -95,9 +95,9 @@ async def run_servers(agent: Agent, servers: Sequence[Callable[[Agent], Coroutin
 
 @contextlib.contextmanager
 def asked_by_signals(stop: Callable[[], None]) -> Generator[None]:
-    """Call a function at the first SIGINT or SIGTERM; at the second, abort the body without an error.
+    """Call `stop` at the first SIGINT or SIGTERM; at the second, abort the body of the ``with`` without an error.
 
-    A cancellation from elsewhere works as usual.
+    A cancellation by other code works as usual.
     """
     loop = asyncio.get_running_loop()
     main = asyncio.current_task()

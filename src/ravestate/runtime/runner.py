@@ -1,4 +1,4 @@
-"""The runner of one engine on an asyncio loop. It feeds events in, performs the effects, and keeps one timer."""
+"""The runner of one engine on an asyncio loop. It passes events on, performs the effects, and keeps one timer."""
 
 from __future__ import annotations
 
@@ -31,13 +31,13 @@ from ravestate.runtime.rule_context import RuleContext
 from ravestate.runtime.waits import Waits
 
 ENDLESS = 200_000
-"""Rounds of effects after which an instant of virtual time counts as endless."""
+"""The number of rounds of effects after which an instant of virtual time counts as endless."""
 
 BATCH = 512
-"""Rounds of effects after which the loop gets a turn, so that a busy agent still takes input."""
+"""The number of rounds of effects after which the loop gets a turn, so that a busy agent still takes input."""
 
 TURN = 0.02
-"""Real seconds after which the loop gets a turn, even if the rounds were few."""
+"""The real seconds after which the loop gets a turn, even after fewer rounds than `BATCH`."""
 
 ENDED = "the context has ended"
 
@@ -45,14 +45,14 @@ log = logging.getLogger("ravestate")
 
 
 class Runner:
-    """Feeds an engine with events, and performs the effects that it asks for.
+    """Gives events to an engine, and performs the effects that the engine returns.
 
     `Context` acts through its public methods, and so does `RuleContext` (see `rule_context.Host`).
 
     Args:
-        engine: The engine.
-        loop: The loop on which everything happens.
-        settings: The settings of each module.
+        engine: The engine to run.
+        loop: The event loop on which everything happens.
+        settings: Module's name → the module's settings.
         seed: The seed of the random numbers that rules use.
         stop: Called when a rule asks the context to end, or when the engine fails.
         hooks: Functions that observe the context.
@@ -77,7 +77,7 @@ class Runner:
         self.waits = Waits(engine, self._is_busy, self._schedule)
         self.closed = False
         self.fault: RavestateError | None = None
-        """Why the context cannot go on: a rule has given this reason, or the engine itself has failed."""
+        """The error that ends the context: a rule gave it (``ctx.stop``), or the engine has failed; else None."""
         self._engine = engine
         self._ask_to_stop = stop
         self._hooks = hooks
@@ -92,7 +92,7 @@ class Runner:
         self._pumping = False
         self._closing = False
         self._instant = -1.0
-        self._rounds = 0  # rounds of effects in the current instant
+        self._rounds = 0  # how many rounds of effects there were in the current instant
         self._last_run = ""
         self._timer: asyncio.TimerHandle | None = None
         self._timer_due = 0.0
@@ -101,12 +101,12 @@ class Runner:
 
     @property
     def now(self) -> float:
-        """Seconds since the runner was made."""
+        """The time on the context's clock: seconds since the runner was made."""
         return self.clock.now()
 
     @property
     def policy(self) -> Policy:
-        """The engine's policy, with the rules that were added."""
+        """The engine's policy, with the rules that were added to it."""
         return self._engine.policy
 
     def receive(self, event: Event) -> None:
@@ -117,7 +117,7 @@ class Runner:
             return
         if self.closed:
             return
-        # Everything that happens while effects are performed happens in one instant.
+        # All events that arrive while effects are performed belong to one instant.
         now = self._instant if self._pumping else self.clock.now()
         if self._journal is not None:
             self._journal(event, now)
@@ -126,12 +126,12 @@ class Runner:
             self._schedule()
 
     def _receive_late(self, event: Event) -> None:
-        """Take an event from another thread; its run may have ended in the meantime."""
+        """Take an event that another thread has sent, unless the event's run has ended in the meantime."""
         run = getattr(event, "run", None)
         if run is None or run in self._contexts:
             try:
                 self.receive(event)
-            except Exception:  # no caller could catch it, and the designer must see it
+            except Exception:  # no caller could catch it, but the designer must see it
                 log.exception("refused a request from another thread: %s", short(event))
 
     def add_rule(self, rule: Rule[Any, Any]) -> None:
@@ -175,11 +175,11 @@ class Runner:
         return bool(self._scheduled or self._pumping or self._todo or self._async.cleaning)
 
     def _held(self) -> bool:
-        """Whether effects wait for a plain function in virtual time, or for rules that have just been cancelled."""
+        """Whether effects must wait: for a plain function in virtual time, or for rules that were just cancelled."""
         return bool((self._is_virtual and self._plain.runs) or (self._async.cleaning and not self.clock.halted))
 
     def _work_off(self, rounds: int) -> bool:
-        """Take and perform effects, for at most `rounds` rounds; return whether there were any."""
+        """Take and perform the engine's effects, for at most `rounds` rounds; return whether there were any effects."""
         engine, cleaning = self._engine, self._async.cleaning
         began = self.clock.now()
         if began != self._instant:
@@ -195,7 +195,7 @@ class Runner:
         try:
             for _ in range(rounds):
                 if (self._is_virtual or cleaning) and self._held():
-                    break  # continue when they have ended
+                    break  # go on when these functions or rules have ended
                 self._rounds += 1
                 if not self._todo:
                     if self._journal is not None:
@@ -215,7 +215,7 @@ class Runner:
                     break
             else:
                 self._schedule()
-        except BaseException:  # a rule has interrupted the process: the others continue as long as the loop does
+        except BaseException:  # a rule has interrupted the process: the other rules continue as long as the loop does
             self._schedule()
             raise
         finally:
@@ -244,7 +244,7 @@ class Runner:
         log.error("rule %s failed: %s", effect.rule, said(effect.exception), exc_info=trace)
 
     def _break(self, error: Exception) -> None:
-        """End the context and say why: the engine itself has failed, and nothing can work any more."""
+        """End the context with an error: the engine itself has failed, and nothing can work any more."""
         self.fault = EngineError(f"the engine has failed, which is a bug in ravestate: {error!r}")
         self.fault.__cause__ = error
         self.closed = True
@@ -256,14 +256,14 @@ class Runner:
     # ------------------------------------------------------------------------------------ time
 
     def pause(self) -> None:
-        """Halt the clock: events are still taken, but no effect is performed, and nothing falls due."""
+        """Halt the clock: the engine still takes events, but no effect is performed, and no deadline passes."""
         self.clock.halt()
 
     def step(self) -> bool:
         """While the clock is halted: perform the next wave of effects. If none is due, first set the clock forward.
 
         Returns:
-            Whether there was anything to do.
+            False if nothing is due, not even at a later time; else True.
         """
         if not self.clock.halted or self.closed:
             return False
@@ -278,7 +278,7 @@ class Runner:
         return bool(dues)
 
     def resume(self) -> None:
-        """Let the clock go on."""
+        """Start a halted clock again from its present time."""
         if self.clock.halted:
             self.clock.go()
             if self._timer is not None:
@@ -287,20 +287,20 @@ class Runner:
             self._schedule()  # not at once: the caller may be a task, and rules start outside any task
 
     def engine_now(self) -> Engine:
-        """Return the engine for inspection, after everything that is due."""
+        """Return the engine for inspection, after it has handled all deadlines that are due."""
         self._engine.advance(max(self._engine.now, self.clock.now()))
         return self._engine
 
     def read(self, slot: str) -> Any:
-        """Return the current value of a slot."""
+        """Return the current value of the slot with this qualified name."""
         return self._engine.read(self.policy.slot_of[slot].index)
 
     def trace(self, tracer: Callable[[Record], None] | None) -> None:
-        """Call a function with every record from now on; None stops the calls."""
+        """Call `tracer` with every record of the trace from now on; None stops the calls."""
         self._engine.tracer = tracer
 
     def _arm(self) -> None:
-        """Set the timer, unless it is early enough already: an early timer is harmless."""
+        """Set the timer to the engine's next deadline, unless it is early enough: an early timer is harmless."""
         due = self._engine.next_deadline()
         if due is None or (self._timer is not None and self._timer_due <= due):
             return
@@ -335,7 +335,7 @@ class Runner:
             self._plain.start(ctx)
 
     def _finish(self, ctx: RuleContext, result: Any, exception: BaseException | None) -> None:
-        """Report how a run has ended (L18)."""
+        """Report to the engine how a run has ended (L18)."""
         known = self._contexts.pop(ctx.run, None)
         if known is not None and not self.closed:
             ctx.ended = "the function has returned"
@@ -347,7 +347,7 @@ class Runner:
             self._schedule()
 
     def _drop(self, ctx: RuleContext, reason: str) -> None:
-        """End a run although its function goes on; the function may not act any more."""
+        """End a run, for a `reason`, although its function goes on; the function may not act any more."""
         if self._contexts.pop(ctx.run, None) is not None and not self.closed:
             ctx.ended = reason
             self.receive(Finish(ctx.run, "done", reason))
@@ -369,16 +369,16 @@ class Runner:
     # ------------------------------------------------------------------------------------ the end
 
     async def quiet(self, slot: str | None = None) -> None:
-        """Wait until no foreground rule runs or waits. With a slot, consider only rules that may cause its write."""
+        """Wait until no foreground rule runs or waits for consent; with a slot, no rule that may cause its write."""
         await self.waits.until(lambda: self.waits.is_quiet(slot))
 
     def stop(self, failure: RavestateError | None) -> None:
-        """Ask the context to end; the first failure given is the reason."""
+        """Ask the context to end; if there are several calls, the first failure is the reason."""
         self.fault = self.fault or failure
         self._ask_to_stop()
 
     async def close(self, *, at_once: bool = False) -> None:
-        """Cancel all runs and let them clean up; with `at_once`, do not wait for that. No rule starts any more."""
+        """Cancel all runs and wait until they have cleaned up; with `at_once`, do not wait. No rule starts any more."""
         self._closing = True
         await self._async.close(ENDED, at_once=at_once)
         self.closed = True
@@ -390,4 +390,4 @@ class Runner:
             self._timer.cancel()
         self.listeners.fail(lambda signal: EngineError(f"the context ended before there was a {signal}"))
         self.waits.end()
-        await asyncio.sleep(0)  # the cancelled tasks end
+        await asyncio.sleep(0)  # so that the cancelled tasks end

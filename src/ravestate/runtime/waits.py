@@ -1,4 +1,4 @@
-"""Tasks that wait until an engine reaches some state."""
+"""Tasks that wait until an engine reaches a certain state."""
 
 from __future__ import annotations
 
@@ -11,24 +11,24 @@ from ravestate.engine.engine import Engine
 
 
 class Waits:
-    """The tasks that wait for a state of one engine.
+    """The tasks that wait until one engine reaches a certain state.
 
     Args:
         engine: The engine.
-        is_busy: Returns whether some effects have not been performed yet.
-        schedule: Makes the loop perform effects, and call `check` afterwards.
+        is_busy: A function that returns whether some effects have not been performed yet.
+        schedule: A function that makes the loop perform effects, and call `check` afterwards.
     """
 
     def __init__(self, engine: Engine, is_busy: Callable[[], bool], schedule: Callable[[], None]) -> None:
         self.futures: dict[asyncio.Future[None], Callable[[], bool]] = {}
-        """For each task that waits, the condition that it waits for."""
+        """Future of a waiting task → a function that returns whether the task's state is reached."""
         self._engine = engine
         self._is_busy = is_busy
         self._schedule = schedule
         self._ended = False
 
     async def until(self, reached: Callable[[], bool]) -> None:
-        """Wait until all effects are performed and `reached` is true. Only effects and ends of runs may make it true."""
+        """Wait until all effects are performed and `reached` is true. Effects or ends of runs must make it true."""
         if not self._ended and (self._is_busy() or not reached()):
             future: asyncio.Future[None] = asyncio.get_running_loop().create_future()
             self.futures[future] = reached
@@ -36,14 +36,14 @@ class Waits:
             await future
 
     def check(self) -> None:
-        """Wake the tasks whose condition is true now."""
+        """Wake the tasks whose state is reached now."""
         for future in [future for future, reached in self.futures.items() if reached()]:
             del self.futures[future]
             if not future.done():
                 future.set_result(None)
 
     def end(self, error: BaseException | None = None) -> None:
-        """Wake all tasks, with an error if there is one. Further tasks do not wait."""
+        """Wake all tasks, with `error` unless that is None. Further tasks do not wait."""
         self._ended = True
         for future in self.futures:
             if future.done():
@@ -55,7 +55,7 @@ class Waits:
         self.futures.clear()
 
     def is_quiet(self, slot: str | None = None) -> bool:
-        """Return whether no foreground rule runs or waits. With a slot, consider only rules that may cause its
+        """Return whether no foreground rule runs or waits for consent. With a slot, ignore rules that cannot cause its
         write."""
         alive = [activation.clause.rule for activation in (*self._engine.running.values(), *self._engine.waiting)]
         if slot is not None and alive:
@@ -65,17 +65,17 @@ class Waits:
         return all(rule.background for rule in alive)
 
     def alive(self) -> dict[int, Activation]:
-        """Return the activations that run, or are ready and wait, by their numbers."""
+        """Return number → activation, for the activations that run or wait for consent."""
         return {a.id: a for a in (*self._engine.running.values(), *self._engine.waiting)}
 
     async def until_others_end(self, known: Mapping[int, Activation], seconds: float) -> None:
-        """Wait until only `known` activations run or wait, and no rule waits for the ``min_age`` of an ``rs.shutdown``.
+        """Wait until only `known` activations run or wait, and no rule waits until an ``rs.shutdown`` is old enough.
 
-        A background rule that was already running may restart endlessly. It counts only if it handles ``rs.shutdown``.
+        A background rule among `known` may restart endlessly. Its new run counts only if it handles ``rs.shutdown``.
 
         Args:
-            known: The numbers of the activations to ignore.
-            seconds: How long to wait at most.
+            known: The activations to ignore, by their numbers.
+            seconds: The maximum number of seconds to wait.
         """
         engine = self._engine
         shutdown = engine.policy.signal_of["core:shutdown"].index

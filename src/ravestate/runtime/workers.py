@@ -18,30 +18,30 @@ from dataclasses import dataclass, field
 from time import monotonic
 
 LAST_GRACE = 5.0
-"""Seconds that the process waits at its end for running functions."""
+"""The seconds for which the process waits, at its end, for running functions."""
 
 SHARE = 32
-"""The maximum number of functions of one context that run at once; others wait until one of them ends."""
+"""The maximum number of functions of one context that run at once; further functions wait until one of them ends."""
 
 THREADS = 256
-"""The maximum number of threads in the process; if all are busy, further jobs wait for one."""
+"""The maximum number of worker threads in the process; if all are busy, further jobs wait."""
 
 IDLE = 30.0
-"""Seconds after which a thread with nothing to do ends."""
+"""The seconds after which a worker thread without a job ends."""
 
 
 @dataclass(slots=True, eq=False)
 class Job:
-    """A function to call in a worker thread; it must not raise.
+    """A function to call in a worker thread; the function must not raise.
 
     Args:
-        queue: The queue that submits it.
+        queue: The queue that submits the job.
         call: The function.
-        name: The name of its rule, for warnings.
+        name: The name of the function's rule, for warnings.
 
     Attributes:
-        made: When it was submitted (seconds on the monotonic clock).
-        began: When a thread took it (seconds on the same clock); None before.
+        made: The time at which the job was submitted (seconds on the monotonic clock).
+        began: The time at which a thread took the job (seconds on the same clock); None before.
     """
 
     queue: JobQueue
@@ -52,13 +52,13 @@ class Job:
 
 
 class ThreadPool:
-    """The worker threads of the process. A thread is made when all others are busy, and kept for a while."""
+    """The worker threads of the process. The pool makes a thread when all others are busy, and keeps it for a while."""
 
     def __init__(self) -> None:
         self.reset()
 
     def reset(self) -> None:
-        """Forget all threads and jobs."""
+        """Begin without threads and jobs."""
         lock = threading.Lock()
         self.change = threading.Condition(lock)
         self.rest = threading.Condition(lock)
@@ -70,10 +70,10 @@ class ThreadPool:
         self._number = 0
 
     def take(self, job: Job) -> None:
-        """Queue a job; the caller holds `change`.
+        """Queue a job for the threads; the caller holds the lock of `change`.
 
         Raises:
-            RuntimeError: The system refuses a thread, and the pool has none that could do the job later.
+            RuntimeError: The system refuses a new thread, and the pool has no thread that could do the job later.
         """
         self._jobs.append(job)
         if self._free >= len(self._jobs):
@@ -92,7 +92,7 @@ class ThreadPool:
                 self._free += 1
 
     def is_full(self) -> bool:
-        """Return whether there are more jobs than free threads; the caller holds `change`."""
+        """Return whether there are more jobs than free threads; the caller holds the lock of `change`."""
         return len(self._jobs) > self._free
 
     def _live(self) -> None:
@@ -109,7 +109,7 @@ class ThreadPool:
                 del job  # do not keep it alive: it may refer to a context
 
     def _next(self) -> Job | None:
-        """Wait for a job; return None if the thread is to end."""
+        """Wait for a job, and return it; return None if the thread is to end."""
         with self.change:
             while not self._jobs:
                 in_time = self.contexts > 0 and self.change.wait(IDLE)
@@ -126,7 +126,7 @@ class ThreadPool:
 
 POOL = ThreadPool()
 if hasattr(os, "register_at_fork"):
-    os.register_at_fork(after_in_child=POOL.reset)  # a forked process has none of the threads
+    os.register_at_fork(after_in_child=POOL.reset)  # a forked process has none of its parent's threads
 
 
 @atexit.register
@@ -136,10 +136,10 @@ def _wait_for_work() -> None:
 
 
 class JobQueue:
-    """The jobs of one context. At most `SHARE` of them are in the pool at once; the others wait here.
+    """The jobs of one context. At most `SHARE` of them are in the pool at once; the others wait in this queue.
 
     Args:
-        pool: The threads.
+        pool: The pool of threads that does the jobs.
     """
 
     def __init__(self, pool: ThreadPool = POOL) -> None:
@@ -151,7 +151,7 @@ class JobQueue:
             self._pool.contexts += 1
 
     def submit(self, call: Callable[[], None], name: str = "") -> Job:
-        """Queue a job.
+        """Queue a job that calls `call` for the rule `name`, and return the job.
 
         Raises:
             RuntimeError: The system has no more threads.
@@ -166,7 +166,7 @@ class JobQueue:
         return job
 
     def abandon(self, job: Job) -> None:
-        """Give a job's place to the next one: nothing waits for the job any more, and it may hang."""
+        """Give a job's place in the pool to the next job: nothing waits for the old job any more, and it may hang."""
         with self._pool.change:
             if job in self._waiting:
                 self._waiting.remove(job)
@@ -175,8 +175,8 @@ class JobQueue:
                     self._pool.take(following)
 
     def done(self, job: Job) -> list[Job]:
-        """Return the job that gets the place of this one, if any; the caller holds the pool's `change`."""
-        if job not in self._begun:  # it was abandoned, and its place has gone to another
+        """Return the job, if any, that gets the place of this job; the caller holds the lock of the pool's `change`."""
+        if job not in self._begun:  # the job was abandoned, and its place has gone to another
             return []
         self._begun.remove(job)
         following = [self._waiting.popleft()] if self._waiting else []
@@ -184,18 +184,18 @@ class JobQueue:
         return following
 
     def is_full(self) -> bool:
-        """Whether a job waits for another one to end."""
+        """Return whether a job has to wait until another job ends."""
         with self._pool.change:
             return bool(self._waiting) or self._pool.is_full()
 
     def holders(self) -> list[Job]:
-        """Return the jobs that keep others from a thread: this context's if its share is full, else the process's."""
+        """Return the jobs that keep others from a thread: those of this context if its share is full, else all jobs."""
         with self._pool.change:
             full = len(self._begun) >= SHARE
             return [job for job in self._pool.at_work if not full or job in self._begun]
 
     def close(self) -> None:
-        """Drop the jobs that have not begun. If no other context is left, idle threads end."""
+        """Drop the jobs that have not begun. If no other context has an open queue, idle threads end."""
         with self._pool.change:
             self._waiting.clear()
             if self._open:

@@ -36,18 +36,18 @@ class Simulation:
     """Modules in virtual time: no real waiting, and the same result every time. Use it as a context manager.
 
     Args:
-        modules: See `Context`.
-        settings: See `Context`.
+        modules: As for `Context`.
+        settings: As for `Context`.
         seed: The seed of random choices; fixed by default, so that tests repeat.
-        patience: See `Context` (seconds).
-        trace: Whether to keep every decision.
-        journal: See `Context`.
+        patience: As for `Context` (seconds).
+        trace: Whether to keep a record of every decision.
+        journal: As for `Context`.
 
     Attributes:
-        context: The context, for everything that has no shortcut here.
+        context: The simulated context, for everything that has no shortcut in this class.
         said: The values that were written to ``rawio.output``, in order.
-        fired: The rules that ran and did not resign, in the order in which they finished.
-        failures: The rules that failed: (name of the rule, exception).
+        fired: The names of the rules that ran and did not resign, in the order in which they finished.
+        failures: The name of each rule that failed, with its exception.
 
     Example:
         >>> import ravestate as rs
@@ -90,16 +90,16 @@ class Simulation:
         patience: float | None = None,
         trace: bool = True,
     ) -> Simulation:
-        """Simulate the agent of an agent file, as ``ravestate run -f`` reads it.
+        """Return a simulation of the agent in an agent file, as ``ravestate run -f`` reads it.
 
         The built-in platforms (`conio`, `webio`) and their settings are left out: a test speaks through `say`.
 
         Args:
-            path: The agent file. Its modules are relative to its folder.
-            settings: Settings by module. They override the environment's and the file's.
-            seed: The seed of random choices; by default the file's, otherwise 0.
-            patience: See `Context` (seconds); by default the file's.
-            trace: Whether to keep every decision.
+            path: The agent file. Paths of modules in it are relative to its folder.
+            settings: Module's name → key → value. They override those of the environment and of the file.
+            seed: The seed of random choices; by default that of the file, or else 0.
+            patience: As for `Context` (seconds); by default that of the file.
+            trace: Whether to keep a record of every decision.
 
         Raises:
             UsageError: The file or something in it is wrong. The message lists all mistakes.
@@ -158,27 +158,27 @@ class Simulation:
         self.put(rawio.input, text)
 
     def put(self, slot: Slot[T], value: T) -> None:
-        """Write a slot from outside, and settle."""
+        """Write a slot from outside the rules, and settle."""
         self.context.put(slot, value)
         self.settle()
 
     def emit(self, signal: Signal[T], payload: T | None = None) -> None:
-        """Raise a signal from outside, and settle."""
+        """Raise a signal from outside the rules, and settle."""
         self.context.emit(signal, payload)
         self.settle()
 
     def wipe(self, signal: Signal[Any]) -> None:
-        """Withdraw a signal's spikes and all their effects, and settle."""
+        """Withdraw the live spikes of a signal and all spikes that they have caused, and settle."""
         self.context.wipe(signal)
         self.settle()
 
     def add_rule(self, rule: Rule[Any, Any]) -> None:
-        """Add a rule to this context, and settle."""
+        """Add a rule to the simulated context, and settle."""
         self.context.add_rule(rule)
         self.settle()
 
     def advance(self, seconds: float) -> None:
-        """Let virtual seconds pass; before and after, do everything that is due."""
+        """Let `seconds` of virtual time pass; before and after, do everything that is due."""
         if seconds < 0:
             raise ValueError(f"advance({seconds!r}): time does not run backwards")
         loop = self._running()
@@ -186,18 +186,18 @@ class Simulation:
         loop.run_to(loop.time() + seconds)
 
     def settle(self) -> None:
-        """Do everything that can be done at this moment."""
+        """Do everything that can be done without time passing."""
         loop = self._running()
         loop.run_to(loop.time())
 
     @property
     def now(self) -> float:
-        """Virtual seconds since the context began."""
+        """The virtual seconds since the context began."""
         return self.context.now
 
     @property
     def trace(self) -> deque[Record]:
-        """Every decision so far; empty with ``trace=False``."""
+        """The record of every decision so far; empty with ``trace=False``."""
         return self.context.trace
 
     def read(self, slot: Slot[T]) -> T:
@@ -205,11 +205,11 @@ class Simulation:
         return self.context.read(slot)
 
     def explain(self, rule: str | Rule[Any, Any]) -> Explanation:
-        """Return why a rule runs, waits, or did not fire."""
+        """Return an explanation of why a rule runs, waits, or did not fire."""
         return self.context.explain(rule)
 
     def snapshot(self) -> dict[str, Any]:
-        """Return everything that is alive, as plain data."""
+        """Return all slots and live objects of the context, as plain data."""
         return self.context.snapshot()
 
     def _ended(self, ended: Ended) -> None:

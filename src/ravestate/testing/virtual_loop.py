@@ -12,11 +12,11 @@ from typing import Any
 from ravestate.errors import EngineError
 
 REAL_LIMIT = 30.0
-"""Real seconds for which a plain function may delay virtual time."""
+"""The maximum number of real seconds for which plain functions may hold up virtual time."""
 
 
 class _Timer(asyncio.TimerHandle):
-    """A timer with a number: timers for the same moment run in the order of their numbers."""
+    """A timer with a number: timers for the same time run in the order of their numbers."""
 
     __slots__ = ("number",)
     number: int
@@ -30,14 +30,14 @@ class _Timer(asyncio.TimerHandle):
 class VirtualLoop(asyncio.SelectorEventLoop):
     """A loop that runs as fast as it can, until nothing is left to do before `goal`.
 
-    Plain functions in threads take no virtual time. The loop waits for those that `busy()` names, and for those of
-    `asyncio.to_thread`.
+    Plain functions in threads take no virtual time. The loop waits for the functions that `busy()` names, and for the
+    functions that `asyncio.to_thread` runs.
     """
 
     def __init__(self) -> None:
         self._virtual = 0.0
         self.goal: float | None = None
-        """The virtual time at which `run_to` stops."""
+        """The virtual time (seconds) at which `run_to` stops; None while it does not run."""
         self.busy: Callable[[], list[str]] = list
         self._timers = 0
         self._endless = ""
@@ -49,7 +49,7 @@ class VirtualLoop(asyncio.SelectorEventLoop):
         return self._virtual
 
     def run_in_executor(self, executor: Any, func: Callable[..., Any], *args: Any) -> asyncio.Future[Any]:
-        """Run a function in a thread, as any loop does. Virtual time waits for it."""
+        """Run a function in a thread, as any loop does. Virtual time waits for the function."""
         future: asyncio.Future[Any] = super().run_in_executor(executor, func, *args)
         called = getattr(func, "args", (func,))[0]  # asyncio.to_thread passes a partial
         self._functions[future] = getattr(called, "__qualname__", repr(called))
@@ -57,18 +57,18 @@ class VirtualLoop(asyncio.SelectorEventLoop):
         return future
 
     def running_functions(self) -> list[str]:
-        """Return the names of the plain functions that virtual time waits for."""
+        """Return the names of the plain functions for which virtual time waits."""
         return [*self.busy(), *self._functions.values()]
 
     def stop_waiting(self) -> None:
-        """Stop waiting for plain functions."""
+        """Stop waiting for the plain functions that run now."""
         self.busy = list
         self._functions.clear()
 
     def call_at(
         self, when: float, callback: Callable[..., object], *args: Any, context: Context | None = None
     ) -> asyncio.TimerHandle:
-        """Set a timer. Timers for the same moment run in the order in which they were set."""
+        """Set a timer. Timers for the same time run in the order in which they were set."""
         self._check_closed()  # type: ignore[attr-defined]  # of BaseEventLoop
         self._timers += 1
         timer = _Timer(when, callback, args, self, context)
@@ -78,7 +78,7 @@ class VirtualLoop(asyncio.SelectorEventLoop):
         return timer
 
     def give_up(self, rule: str) -> None:
-        """Stop because an instant is endless; `run_to` then raises an error that names the rule."""
+        """Stop the loop because an instant is endless; `run_to` then raises an error that names the rule."""
         self._endless = rule
         self.stop()
 
@@ -97,7 +97,7 @@ class VirtualLoop(asyncio.SelectorEventLoop):
         self._virtual = max(self._virtual, goal)
 
     def on_idle(self) -> None:
-        """Jump to the next timer, or stop; called when only timers are left."""
+        """Jump to the next timer, or stop if `goal` comes first. The loop calls this when only timers are left."""
         timers: list[asyncio.TimerHandle] = vars(self)["_scheduled"]  # of BaseEventLoop
         due: float | None = timers[0].when() if timers else None
         if self.goal is not None and (due is None or due > self.goal):

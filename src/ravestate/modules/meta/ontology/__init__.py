@@ -1,4 +1,4 @@
-"""Long-term memory: a property graph of the agent's knowledge that outlives the process."""
+"""Long-term memory: a property graph of the agent's knowledge, which outlives the process."""
 
 from __future__ import annotations
 

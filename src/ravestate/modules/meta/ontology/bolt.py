@@ -1,4 +1,4 @@
-"""A graph database on a server that speaks Bolt and Cypher: Neo4j, and others."""
+"""A graph database on a server that speaks Bolt and Cypher, such as Neo4j."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ META = "_ravestate"
 """The label of the node that stores the format version."""
 
 SCHEMES = ("bolt", "bolt+s", "bolt+ssc", "neo4j", "neo4j+s", "neo4j+ssc")
-"""The schemes of addresses: ``+s`` means encryption, ``+ssc`` encryption with a self-signed certificate."""
+"""The schemes of server addresses: ``+s`` means encryption, ``+ssc`` encryption with a self-signed certificate."""
 
 LIVELY = 5.0
-"""Idle seconds after which the driver tests a connection before use: the server may have restarted."""
+"""The idle seconds after which the driver tests a connection before use, since the server may have restarted."""
 
 
 class BoltStore:
@@ -38,14 +38,14 @@ class BoltStore:
     """
 
     def __init__(self, url: str, user: str, password: str, database: str | None, timeout: float) -> None:
-        """Connect.
+        """Connect to the server.
 
         Args:
-            url: The address: ``bolt://localhost:7687``, or ``neo4j+s://...`` with encryption.
-            user: The user name.
-            password: The password; empty for a server without passwords.
-            database: The database's name on the server; None for the default one.
-            timeout: Seconds to wait for each answer.
+            url: The server's address: ``bolt://localhost:7687``, or ``neo4j+s://...`` with encryption.
+            user: The user name on the server.
+            password: The password on the server; empty for a server without passwords.
+            database: The database's name on the server; None for the server's default database.
+            timeout: The seconds to wait for each answer.
 
         Raises:
             PlatformError: The package is missing, or the server is absent, stalls or refuses.
@@ -94,7 +94,7 @@ class BoltStore:
     # ------------------------------------------------------------------------------------ statements
 
     def read(self, statement: str, parameters: Mapping[str, Any]) -> list[Sequence[Any]]:
-        """Run a statement."""
+        """Run a statement that may also write, and return its rows."""
         return self._wait(self._run(statement, parameters))
 
     write = read
@@ -112,7 +112,7 @@ class BoltStore:
                 yield
             except BaseException:
                 self._transaction = None
-                self._wait(transaction.close())  # this rolls it back
+                self._wait(transaction.close())  # this rolls the transaction back
                 raise
             self._transaction = None
             self._wait(transaction.commit())
@@ -160,7 +160,7 @@ class BoltStore:
     # ------------------------------------------------------------------------------------ types
 
     def prepare(self, types: Types) -> None:
-        """Create an index of ids for each type; a server needs no tables."""
+        """Create an index of ids for each type. A server needs no tables."""
         rows = self.read(f"MATCH (m:`{META}` {{`key`: 'format'}}) RETURN m.`value`", {})
         if rows:
             check_format(self._place, rows[0][0])
@@ -176,15 +176,15 @@ class BoltStore:
         """Do nothing: the server manages its log."""
 
     def undeclared(self, types: Types) -> list[str]:
-        """Return the labels on the server that are not in `types`."""
+        """Return the labels of nodes on the server that are not in `types`."""
         rows = self.read("MATCH (n) UNWIND labels(n) AS name RETURN DISTINCT name", {})
         return sorted({str(name) for [name] in rows} - {META, *types})
 
     def close(self) -> None:
-        """Close the connections."""
+        """Close the connections to the server."""
         try:
             if self._driver is not None:
-                with contextlib.suppress(PlatformError):  # a server that does not answer needs no farewell
+                with contextlib.suppress(PlatformError):  # the server may not answer any more
                     self._wait(self._driver.close())
         finally:
             self._loop.run_until_complete(self._loop.shutdown_asyncgens())

@@ -11,15 +11,15 @@ from .node import Node
 
 
 def bound(module: rs.Module, name: str, type: str) -> rs.Slot[Node | None]:
-    """Declare a slot for a node: each node that is written to the slot is also saved in memory.
+    """Declare a slot for a node, and return it: each node that a rule writes to the slot is also saved in memory.
 
-    The module gets the slot and a background rule ``remember_<name>``. The rule saves each node, in the order of the
+    The module gets the slot and a background rule ``remember_<name>``. The rule saves all nodes, in the order of the
     writes. A write that fails is an error of that rule (``rs.error``). Writing None leaves memory unchanged.
 
     Args:
-        module: The slot's module; it requires `ontology`.
+        module: The slot's module, which must require `ontology`.
         name: The slot's name.
-        type: The type of its nodes; subtypes are allowed.
+        type: The type of the slot's nodes; subtypes are allowed.
 
     Raises:
         DeclarationError: The module does not require `ontology`, or the name is invalid.

@@ -1,4 +1,4 @@
-"""Copy a ladybug database without its deleted nodes, whose bytes stay in the file."""
+"""Copying a ladybug database: deleted nodes, whose bytes stay in the old file, are not in the copy."""
 
 from __future__ import annotations
 

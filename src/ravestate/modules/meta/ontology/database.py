@@ -9,24 +9,24 @@ from pathlib import Path
 from typing import Any
 
 BUFFER = 256 * 2**20
-"""The maximum number of bytes of memory for pages of the file."""
+"""The maximum number of bytes of main memory for pages of the database file."""
 
 EMPTY = 4 * 4096
-"""The maximum number of bytes of a database that never had a table."""
+"""The maximum number of bytes in the file of a database that never had a table."""
 
 LARGEST = 2**36
-"""Bytes of address space that are reserved for the file, and so its maximum size."""
+"""The bytes of address space that are reserved for the database file, and so the file's maximum size."""
 
 PATIENCE = 60.0
-"""Seconds that a trial may take."""
+"""The seconds that a trial in a separate process may take."""
 
 
 def connect(path: Path, *, whole_log: bool = True) -> tuple[Any, Any]:
-    """Open a database and return it with a connection.
+    """Open a database, and return it with a connection to it.
 
     Args:
-        path: The file; created if it is missing.
-        whole_log: False to read a damaged log up to the damage, and to cut off the rest.
+        path: The database file; created if it is missing.
+        whole_log: Whether a damaged log is an error. If false, the log is read up to the damage, and the rest cut off.
 
     Raises:
         Exception: RuntimeError if the file has lost all of its tables. For a damaged file, ladybug may raise any
@@ -40,7 +40,7 @@ def connect(path: Path, *, whole_log: bool = True) -> tuple[Any, Any]:
         buffer_pool_size=BUFFER,
         max_db_size=LARGEST,
         max_num_threads=1,
-        auto_checkpoint=False,  # the store does it later: here it could make the opening fail
+        auto_checkpoint=False,  # the store makes checkpoints later: here, one could make the opening fail
         throw_on_wal_replay_failure=whole_log,
     )
     connection = ladybug.Connection(database, num_threads=1)
@@ -54,13 +54,13 @@ def connect(path: Path, *, whole_log: bool = True) -> tuple[Any, Any]:
 
 
 def survives(path: Path, *, whole_log: bool = True) -> bool:
-    """Return whether a process survives opening the file and reading all of it. An exception counts as survival."""
+    """Return whether a separate process survives opening the file and reading all of it. An exception is no crash."""
     command = [sys.executable, "-P", __file__, str(path), "whole" if whole_log else "part"]
     try:
         return subprocess.run(command, capture_output=True, timeout=PATIENCE, check=False).returncode >= 0
     except subprocess.TimeoutExpired:
         return False
-    except OSError:  # there is no such interpreter, for example in a single-file application
+    except OSError:  # there is no interpreter to run, for example in a single-file application
         return True
 
 
@@ -76,4 +76,4 @@ if __name__ == "__main__":
     try:
         _read_all(Path(sys.argv[1]), whole_log=sys.argv[2] == "whole")
     finally:
-        os._exit(0)  # write nothing at exit
+        os._exit(0)  # end without writing anything

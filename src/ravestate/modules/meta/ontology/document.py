@@ -1,4 +1,4 @@
-"""Memory as plain data for JSON."""
+"""Documents: the content of memory as plain data for JSON."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from .types import Kind, Types
 
 
 def write_document(nodes: Iterable[Node], relations: Iterable[Relation]) -> dict[str, Any]:
-    """Return a document of nodes and their relations; dates and times are ISO 8601 texts."""
+    """Return a document of these nodes and relations; dates and times become ISO 8601 texts."""
     return {
         "format": FORMAT,
         "nodes": [{"id": node.id, "type": node.type, "properties": _plain(node.properties)} for node in nodes],

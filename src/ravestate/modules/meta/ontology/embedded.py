@@ -1,4 +1,4 @@
-"""The embedded graph database: ladybug, one file."""
+"""The embedded graph database: ladybug, with all data in one file."""
 
 from __future__ import annotations
 
@@ -34,34 +34,34 @@ from .tables import missing_tables, undeclared_types
 from .types import Types
 
 RESERVE = 16 * 2**20
-"""Free bytes on the disk that a write must leave: ladybug cannot recover from a failed write."""
+"""The bytes on the disk that must stay free after a write: ladybug cannot recover from a failed write."""
 
 LOG_LIMIT = 4 * 2**20
-"""The size of the write-ahead log, in bytes, at which the store moves it into the file."""
+"""The size of the write-ahead log, in bytes, at which the store moves its content into the database file."""
 
 log = logging.getLogger("ravestate.ontology")
 
 
 class EmbeddedStore:
-    """A database file of ladybug, open in this process alone.
+    """A database file of ladybug, which only this process has open.
 
     Committed writes are in the write-ahead log, on disk. After a write to that log fails, ladybug would hang in the
-    next write and end the process when it closes. So each write first looks at the free space. If a write fails anyway,
-    its incomplete record is cut off. Then nothing is written or closed until the files can be written again.
+    next write and end the process when it closes. So the store checks the free space before each write. If a write
+    fails anyway, its incomplete record is cut off. Then nothing is written or closed until the disk has room again.
     """
 
     def __init__(self, path: Path) -> None:
-        """Open a file, or make a new one.
+        """Open a database file, or make a new one.
 
         Args:
-            path: The file. If its folder is missing, it is created for the user alone.
+            path: The file. A missing folder is created, such that only the user can read it.
 
         Raises:
             PlatformError: The package is missing; or the file is in use, damaged, of a newer version, or not writable.
         """
         try:
             with LOADING:
-                import ladybug  # noqa: F401  # pyright: ignore[reportUnusedImport]  # only loads it, with the lock; `database` uses it
+                import ladybug  # noqa: F401  # pyright: ignore[reportUnusedImport]  # this only loads it, with the lock
         except ImportError as error:
             raise PlatformError("ontology needs ladybug: pip install 'ravestate[ontology]'") from error
         self._path = path
@@ -82,16 +82,16 @@ class EmbeddedStore:
             self._check_space(0)
             self._set_orphans_aside(self._files.logs())
             self._open()
-        self._files.remove_rewrite()  # left by a process that was killed during a purge
+        self._files.remove_rewrite()  # a process that was killed during a purge leaves one
 
     # ------------------------------------------------------------------------------------ statements
 
     def read(self, statement: str, parameters: Mapping[str, Any]) -> list[Sequence[Any]]:
-        """Run a statement that writes nothing."""
+        """Run a statement that writes nothing, and return its rows."""
         return [[_decoded(value) for value in row] for row in self._execute(statement, parameters)]
 
     def write(self, statement: str, parameters: Mapping[str, Any]) -> list[Sequence[Any]]:
-        """Run a statement that writes."""
+        """Run a statement that writes, and return its rows."""
         self._be_writable(sum(len(value) for value in parameters.values() if isinstance(value, str)))
         rows = self.read(statement, parameters)
         if not self._within:
@@ -104,7 +104,7 @@ class EmbeddedStore:
         if self._within:
             yield
             return
-        if self._stuck:  # otherwise each write checks the space
+        if self._stuck:  # if it is not stuck, each write checks the space
             self._be_writable(0)
         self._execute("BEGIN TRANSACTION")
         self._within, self._purge_due = True, False
@@ -112,7 +112,7 @@ class EmbeddedStore:
             yield
             self._execute("COMMIT")
         except BaseException:
-            with contextlib.suppress(PlatformError):  # a failed transaction is rolled back already
+            with contextlib.suppress(PlatformError):  # a failed transaction may be rolled back already
                 self._execute("ROLLBACK")
             raise
         finally:
@@ -122,7 +122,7 @@ class EmbeddedStore:
             self.purge()
 
     def _acknowledge(self) -> None:
-        """Note that all writes so far are on disk."""
+        """Note that all writes so far are on disk; shorten the log if it is long."""
         self._shorten_log()
         self._log_good = self._files.log_size()
 
@@ -147,11 +147,11 @@ class EmbeddedStore:
     # ------------------------------------------------------------------------------------ tables
 
     def prepare(self, types: Types) -> None:
-        """Create missing tables and columns."""
-        if types is self._prepared:  # no other process writes this file
+        """Create the tables and columns that the types need and the file lacks."""
+        if types is self._prepared:  # the types are prepared: no other process writes this file
             return
         missing = list(missing_tables(self._execute, types, str(self._path)))
-        if missing:  # otherwise nothing is written: memory on a full disk can be read
+        if missing:  # write only if needed, so that memory on a full disk can be read
             self._be_writable(0)
             with self.transaction():
                 for statement in missing:
@@ -179,7 +179,7 @@ class EmbeddedStore:
         self._files.restrict()
 
     def _attempt(self, *, trial: bool, whole_log: bool = True) -> str:
-        """Open the file and return why that failed; empty if it did not. With `trial`, try in another process first."""
+        """Open the file; return why that failed, or empty. With `trial`, let another process try first."""
         if trial and not survives(self._path, whole_log=whole_log):
             return ENDS_PROCESS
         try:
@@ -189,9 +189,9 @@ class EmbeddedStore:
         return ""
 
     def _open_in_part(self) -> str:
-        """Open with a damaged log, whose end a power failure has usually cut off; return why that failed.
+        """Open the file with a damaged log, usually cut off by a power failure; return why that failed, or empty.
 
-        The log is read up to the damage, or not at all if that is not possible. A copy of it is kept.
+        The log is read up to the damage, or not at all if that is not possible. A copy of the log is kept.
         """
         log_file = self._files.log
         try:
@@ -216,7 +216,7 @@ class EmbeddedStore:
         return ""
 
     def _set_orphans_aside(self, orphans: list[Path]) -> None:
-        """Rename the logs of a database that was deleted without them."""
+        """Rename logs that belong to a database which was deleted without them."""
         if not orphans:
             return
         try:
@@ -235,12 +235,12 @@ class EmbeddedStore:
         )
 
     def purge(self) -> None:
-        """Rewrite the file without the deleted data, because ladybug leaves the bytes of that data in the file.
+        """Rewrite the file without the deleted data, because ladybug leaves the bytes of deleted data in the file.
 
         If that fails, the deleted nodes are still forgotten; a warning says that the file still has their bytes.
         """
         if self._within:
-            self._purge_due = True  # after the transaction
+            self._purge_due = True  # the purge follows the transaction
             return
         new = MemoryFiles(self._files.beside(".new"))
         try:
@@ -282,11 +282,11 @@ class EmbeddedStore:
             )
 
     def tidy(self) -> None:
-        """Move the log into the file. Until then, ladybug holds a few megabytes for each table that was written."""
+        """Move the log's content into the file. Until then, ladybug holds a few megabytes for each written table."""
         self._shorten_log(limit=0)
 
     def close(self) -> None:
-        """Move the log into the file and close it. A log that cannot be moved waits for the next opening."""
+        """Move the log's content into the file, and close it. If the move fails, the log waits for the next opening."""
         if self._stuck and not self._can_write():
             log.warning("memory %s stays open until the process ends: %s", self._path, self._stuck)
             return
@@ -304,7 +304,7 @@ class EmbeddedStore:
             self._check_space(4 * size)
             self._checkpoint()
             self._log_limit = LOG_LIMIT
-        except PlatformError as error:  # nothing is lost; the next try may succeed
+        except PlatformError as error:  # no data is lost, and the next try may succeed
             self._log_limit = 2 * size
             log.warning("memory %s keeps a log of %d bytes: %s", self._path, size, error)
 
@@ -316,7 +316,7 @@ class EmbeddedStore:
         try:
             free = shutil.disk_usage(self._path.parent).free
         except OSError:
-            return  # the write itself reports it
+            return  # the write itself will report the problem
         if free < RESERVE + needed:
             raise PlatformError(
                 f"memory {self._path} cannot be written: the disk is full ({free // 2**20} MB free, "
@@ -342,11 +342,11 @@ class EmbeddedStore:
         self._stuck = reason(said)
         with contextlib.suppress(OSError):
             os.truncate(self._files.log, self._log_good)  # the next opening stops at an incomplete record
-        for held in (self._connection, self._database):  # collecting them would end the process
+        for held in (self._connection, self._database):  # garbage collection of these would end the process
             ctypes.pythonapi.Py_IncRef(ctypes.py_object(held))
 
     def _can_write(self) -> bool:
-        """Return whether a file beside the log can grow a little longer than the log."""
+        """Return whether the disk has room for a file that is 1 MB longer than the log."""
         probe = self._files.probe
         try:
             with probe.open("wb") as file:

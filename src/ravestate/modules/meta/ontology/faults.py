@@ -1,4 +1,4 @@
-"""The messages for users when ladybug fails."""
+"""The messages that users get when ladybug fails."""
 
 from __future__ import annotations
 
@@ -16,39 +16,39 @@ _DAMAGE = re.compile(
 
 
 def said_by(error: BaseException) -> str:
-    """Return the message of an exception, or its type if it has none."""
+    """Return the message of an exception, or the name of its type if the message is empty."""
     return str(error).strip() or type(error).__name__
 
 
 def is_failed_write(said: str) -> bool:
-    """Return whether ladybug could not write its log."""
+    """Return whether a message of ladybug means that it could not write its log."""
     return "Cannot write to file" in said or "Cannot sync file" in said
 
 
 def is_foreign_log(said: str) -> bool:
-    """Return whether the log belongs to another database, for example to a deleted one."""
+    """Return whether a message of ladybug means that the log belongs to another database, e.g. a deleted one."""
     return "does not match" in said and "Database ID" in said
 
 
 def is_about_log(said: str) -> bool:
-    """Return whether a damaged log may be the reason why a file cannot be opened."""
+    """Return whether a message of ladybug allows that a damaged log prevents the opening of the file."""
     return _NO_DAMAGE.search(said) is None
 
 
 def is_damage(error: BaseException) -> bool:
-    """Return whether a statement failed on a damaged file. Damaged pages can raise almost any exception type."""
+    """Return whether a statement failed because of a damaged file. Damaged pages can raise almost any exception."""
     return not isinstance(error, RuntimeError) or _DAMAGE.search(str(error)) is not None
 
 
 def reason(said: str) -> str:
-    """Return why a write failed."""
+    """Return the reason for a failed write, from ladybug's message."""
     found = said.rpartition("Error: ")[2].strip().rstrip(".")
     # After a partial write, ladybug reports a stale reason; the real one is a full disk.
     return found if found not in ("", "Success", "No such file or directory") else "the disk is full"
 
 
 def why_broken(path: Path, said: str, files: Iterable[Path]) -> str:
-    """Return the message for a damaged memory, with all of its files."""
+    """Return the message for users about a damaged memory; it names all files of the memory."""
     first = (said.splitlines() or [""])[0][:200]
     return (
         f"memory {path} is damaged, or is not a memory file ({first}): put a copy in its place, or begin again with "
@@ -57,7 +57,7 @@ def why_broken(path: Path, said: str, files: Iterable[Path]) -> str:
 
 
 def why_not_opened(path: Path, said: str, files: Iterable[Path]) -> str:
-    """Return why a file cannot be opened, and what to do."""
+    """Return the message for users about a file that cannot be opened: the reason, and what to do."""
     first = said.strip().splitlines()[0] if said.strip() else "no reason given"
     if "set lock" in said:
         held = re.search(r"PID (\d+)", said)

@@ -19,7 +19,7 @@ _SIDE_FILE = re.compile(
 
 
 class MemoryFiles:
-    """The database at a path with its side files. They contain personal data, so only the user may read them."""
+    """The database file at a path, and its side files. They contain personal data, so only the user may read them."""
 
     def __init__(self, path: Path) -> None:
         self.path = path
@@ -28,11 +28,11 @@ class MemoryFiles:
         self._sum = self.beside(".sum")
 
     def beside(self, suffix: str) -> Path:
-        """Return the path of a side file."""
+        """Return the path of the side file with this suffix."""
         return self.path.with_name(self.path.name + suffix)
 
     def present(self) -> list[Path]:
-        """Return the files that exist, the database first."""
+        """Return the files of the memory that exist, the database first."""
         try:
             files = sorted(self.path.parent.iterdir())
         except OSError:
@@ -40,39 +40,39 @@ class MemoryFiles:
         return [file for file in files if self._match(file) and file.is_file()]
 
     def kept(self) -> list[Path]:
-        """Return the damaged and the orphaned logs that were set aside."""
+        """Return the existing files that were set aside: damaged and orphaned logs."""
         return [file for file in self.present() if (match := self._match(file)) and match["kept"]]
 
     def logs(self) -> list[Path]:
-        """Return the other files that hold data: logs, and an unfinished rewrite."""
+        """Return the other files with data: logs that are not set aside, and an unfinished rewrite."""
         others = {self.path, self.probe, self._sum, *self.kept()}
         return [file for file in self.present() if file not in others and file.stat().st_size]
 
     def log_size(self) -> int:
-        """Return the bytes of the write-ahead log; 0 if there is none."""
+        """Return the size of the write-ahead log in bytes; 0 if there is no log."""
         try:
             return self.log.stat().st_size
         except OSError:
             return 0
 
     def has_database(self) -> bool:
-        """Return whether there is a database. An empty file is none: a crash during its creation leaves one."""
+        """Return whether there is a database. An empty file does not count: a crash during creation leaves one."""
         return self.path.exists() and (not self.path.is_file() or self.path.stat().st_size > 0)
 
     def make_private(self, *suffixes: str) -> None:
-        """Create missing files so that only the user can read them; ladybug would let everybody read them."""
+        """Create missing files for the user alone: files that ladybug creates can be read by everybody."""
         for suffix in suffixes:
-            with contextlib.suppress(OSError):  # ladybug reports the problem
+            with contextlib.suppress(OSError):  # ladybug will report the problem
                 os.close(os.open(self.beside(suffix), os.O_CREAT | os.O_RDWR, 0o600))
 
     def restrict(self) -> None:
-        """Make all existing files readable only by the user."""
+        """Make all existing files of the memory readable only by the user."""
         for file in self.present():
-            with contextlib.suppress(OSError):  # another user's file
+            with contextlib.suppress(OSError):  # the file may belong to another user
                 file.chmod(0o600)
 
     def set_aside(self, files: Iterable[Path], word: str) -> list[Path]:
-        """Rename files to ``<name>.<word>-<number>`` and return their new paths."""
+        """Rename files to ``<name>.<word>-<number>``, and return their new paths."""
         moved: list[Path] = []
         for file in files:
             number = 1
@@ -82,8 +82,8 @@ class MemoryFiles:
         return moved
 
     def in_use(self) -> bool:
-        """Return whether another process has the database open. On Windows, return False: there, removing its files
-        then fails."""
+        """Return whether another process has the database open. On Windows, return False: there, removing a file
+        in use fails."""
         try:
             import fcntl
 
@@ -96,17 +96,17 @@ class MemoryFiles:
         return False
 
     def remove(self) -> list[Path]:
-        """Remove all files and return them."""
+        """Remove all files of the memory, and return their paths."""
         return [file for file in self.present() if file.unlink(missing_ok=True) is None]
 
     def remove_rewrite(self) -> None:
-        """Remove an unfinished rewrite; the database itself is whole."""
+        """Remove the files of an unfinished rewrite; the database itself is whole."""
         for file in self.present():
             if (match := self._match(file)) and match["new"] and not match["kept"]:
                 file.unlink(missing_ok=True)
 
     def remove_empty(self) -> None:
-        """Remove the side files that hold nothing."""
+        """Remove empty side files of ladybug."""
         for suffix in (".wal", *AT_CHECKPOINT):
             file = self.beside(suffix)
             with contextlib.suppress(OSError):
@@ -117,12 +117,12 @@ class MemoryFiles:
 
     def seal(self) -> None:
         """Write the database's checksum beside it, after an orderly close."""
-        with contextlib.suppress(OSError):  # the next opening takes longer
+        with contextlib.suppress(OSError):  # without the checksum, the next opening takes longer
             self.make_private(".sum")
             self._sum.write_text(self._checksum(), encoding="ascii")
 
     def is_sealed(self) -> bool:
-        """Return whether the database has not changed since `seal`, and there is no log to read."""
+        """Return whether the database is as `seal` left it, and there is no log to read."""
         try:
             return not self.log_size() and self._sum.read_text(encoding="ascii") == self._checksum()
         except (OSError, ValueError):

@@ -1,4 +1,4 @@
-"""The operations on the graph, in Cypher. Each is one transaction."""
+"""The operations on the graph, in Cypher. Each operation is one transaction."""
 
 from __future__ import annotations
 
@@ -15,40 +15,40 @@ from .types import Types
 T = TypeVar("T")
 
 AGENT = "Agent"
-"""The type of people and robots. The agent may know more about them than one user has told it."""
+"""The type of people and robots. Forgetting a node keeps related people and robots that have more than a name."""
 
 
 class Graph:
-    """The operations on a store, checked against the types."""
+    """The operations on the graph in a store; each checks its arguments against the types."""
 
     def __init__(self, store: Store, types: Types) -> None:
         self._store = store
         self._types = types
 
     def prepare(self) -> None:
-        """Create the tables for the types."""
+        """Create the tables that the types need."""
         self._store.prepare(self._types)
 
     def together(self, operations: Callable[[Graph], T]) -> T:
-        """Run several operations: all take effect, or none."""
+        """Run several operations as one transaction: all take effect, or none."""
         with self._store.transaction():
             return operations(self)
 
     # ------------------------------------------------------------------------------------ nodes
 
     def save(self, node: Node, of: str | None = None) -> Node:
-        """Write a node's properties, whether or not memory has the node."""
+        """Write a node's properties to memory, which may already have the node; return the node as it is now stored."""
         if of is not None and not self._types.is_a(node.type, of):
             raise RuleError(f"{node.id} is a {node.type}, not a {of}")
         return self._write(_known(node), self._types.stored(node.type, node.properties))
 
     def ensure(self, type: str, properties: Mapping[str, Value]) -> Node:
-        """Return the oldest node that matches, or a new one."""
+        """Return the oldest node with this type and these properties, or a new one."""
         found = self.find(type, properties)
         return found[0] if found else self.save(Node(type, properties))
 
     def find(self, type: str, properties: Mapping[str, Value]) -> list[Node]:
-        """Return all matching nodes of a type and its subtypes, oldest first."""
+        """Return all nodes of a type and its subtypes with these properties, oldest first."""
         wanted = self._types.stored(type, properties)
         tests = ["n.`id` IS NOT NULL"]
         tests += [f"n.`{key}` IS NULL" if wanted[key] is None else f"n.`{key}` = $p_{key}" for key in wanted]
@@ -58,7 +58,7 @@ class Graph:
         )
 
     def get(self, id: str) -> Node | None:
-        """Return the node with this id."""
+        """Return the node with this id, or None."""
         label, _, _ = id.partition(":")
         if label not in self._types:
             return None
@@ -66,7 +66,7 @@ class Graph:
         return found[0] if found else None
 
     def update(self, node: Node, properties: Mapping[str, Value]) -> Node:
-        """Set properties of a node in memory."""
+        """Set properties of a node that memory has; return the node as memory now has it."""
         values = self._types.stored(node.type, properties)
         with self._store.transaction():
             self._must_know(node)
@@ -82,7 +82,7 @@ class Graph:
     # ------------------------------------------------------------------------------------ relations
 
     def relate(self, node: Node, relation: str, other: Node, properties: Mapping[str, Value]) -> None:
-        """Relate two nodes in memory, and set properties of the relation."""
+        """Relate two nodes that memory has, and set properties of the relation."""
         self._types.check_relation(node.type, relation, other.type)
         values = self._types.stored_of(relation, properties)
         with self._store.transaction():
@@ -91,7 +91,7 @@ class Graph:
             self._relate(node, relation, other, values)
 
     def unrelate(self, node: Node, relation: str, other: Node, *, forget: bool = False) -> None:
-        """Remove a relation. With `forget`, also remove the other node if nothing else needs it."""
+        """Remove a relation. With `forget`, also forget the other node if nothing else needs it."""
         self._types.check_relation(node.type, relation, other.type)
         with self._store.transaction():
             self._store.write(
@@ -102,7 +102,7 @@ class Graph:
                 self.forget(other)
 
     def related(self, node: Node, relation: str, *, back: bool) -> list[Node]:
-        """Return the nodes at the other end of a relation."""
+        """Return the targets of a node's relation, oldest first; with `back`, the sources."""
         self._types.check_end(node.type, relation, back=back)
         pattern = f"<-[:`{relation}`]-" if back else f"-[:`{relation}`]->"
         return self._nodes(f"MATCH (a:`{node.type}` {{`id`: $id}}){pattern}(b) RETURN b", {"id": _known(node).id})
@@ -113,7 +113,7 @@ class Graph:
         found += [
             Relation(other, name, node, values)
             for name, values, other in self._ends(node, back=True)
-            if other.id != node.id  # a relation to itself is among those from it
+            if other.id != node.id  # a relation to itself is already among those from it
         ]
         return found
 
@@ -125,7 +125,7 @@ class Graph:
         )
 
     def _ends(self, node: Node, *, back: bool) -> list[tuple[str, dict[str, Value], Node]]:
-        """Return the name, the properties and the other end of each declared relation."""
+        """Return name, properties and other end of each declared relation from a node; with `back`, to the node."""
         found: list[tuple[str, dict[str, Value], Node]] = []
         for relation, raw in self._edges(node, back=back):
             other = self._node(raw)
@@ -144,7 +144,7 @@ class Graph:
     # ------------------------------------------------------------------------------------ merging and forgetting
 
     def merge(self, keep: Node, duplicate: Node) -> Node:
-        """Merge two nodes."""
+        """Merge two nodes: move the duplicate's relations and missing properties to `keep`, and return `keep`."""
         if keep.id == duplicate.id:
             raise RuleError(f"{keep.id} cannot be merged with itself")
         if not self._types.is_a(keep.type, duplicate.type):
@@ -167,7 +167,7 @@ class Graph:
             return self._write(kept, self._types.stored(kept.type, missing))
 
     def _take_over(self, source: Node, name: str, target: Node, values: Mapping[str, Value]) -> None:
-        """Move a relation to other nodes. The properties of an existing relation have priority."""
+        """Copy a relation to other nodes. If these have the relation already, its properties have priority."""
         present: Mapping[str, Value] = {}
         for known, had, end in self._ends(source, back=False):
             if known == name and end.id == target.id:
@@ -175,13 +175,13 @@ class Graph:
         self._relate(source, name, target, self._types.stored_of(name, {**values, **present}))
 
     def only_about(self, node: Node) -> list[Node]:
-        """Return a node and the nodes that only this node needs; nothing if memory does not have the node."""
+        """Return a node and the nodes that only this node needs; an empty list if memory does not have the node."""
         start = self.get(node.id)
         if start is None:
             return []
         going = {start.id: start}
         reached = [start]
-        for one in reached:  # the list grows in the loop
+        for one in reached:  # the list grows during the loop
             for _, _, other in self._ends(one, back=False):
                 if other.id not in going and not self._has_own_life(other, start):
                     going[other.id] = other
@@ -192,7 +192,7 @@ class Graph:
         return list(going.values())
 
     def forget(self, node: Node) -> list[Node]:
-        """Remove a node and the nodes that only it needs."""
+        """Remove a node and the nodes that only this node needs; return the removed nodes."""
         with self._store.transaction():
             going = self.only_about(node)
             for one in going:
@@ -202,7 +202,7 @@ class Graph:
         return going
 
     def _has_own_life(self, other: Node, start: Node) -> bool:
-        """Return whether `other` is a person or robot about whom memory has more than a name."""
+        """Return whether `other` is a person or robot of whom memory has more than a name and a relation to `start`."""
         if AGENT not in self._types or not self._types.is_a(other.type, AGENT):
             return False
         return bool(other.properties.keys() - {"name"}) or any(
@@ -210,11 +210,11 @@ class Graph:
         )
 
     def _is_wanted(self, node: Node, going: Container[object]) -> bool:
-        """Return whether a node that stays has a relation to `node`."""
+        """Return whether a node that is not in `going` has a relation to `node`."""
         return any(raw.values.get("id") not in going for _, raw in self._edges(node, back=True))
 
     def _must_declare(self, node: Node) -> None:
-        """Refuse a node with undeclared relations, which would be lost with the node."""
+        """Refuse a node with undeclared relations: they would be lost if the node were removed."""
         edges = self._edges(node, back=False) + self._edges(node, back=True)
         unknown = {relation.name for relation, _ in edges} - self._types.relations.keys()
         unknown |= {raw.label for _, raw in edges if raw.label not in self._types}
@@ -230,11 +230,11 @@ class Graph:
     # ------------------------------------------------------------------------------------ documents
 
     def tidy(self) -> None:
-        """Move the log into the database."""
+        """Move the log's content into the database."""
         self._store.tidy()
 
     def export(self) -> dict[str, Any]:
-        """Return everything as a document."""
+        """Return all declared nodes and relations as a document."""
         nodes = sorted(
             (node for type in self._types for node in self._nodes(f"MATCH (n:`{type}`) RETURN n", {})),
             key=_age,
@@ -249,7 +249,7 @@ class Graph:
         return write_document(nodes, relations)
 
     def load(self, document: Mapping[str, Any]) -> int:
-        """Save the nodes and relations of a document."""
+        """Save the nodes and relations of a document; return the number of nodes."""
         nodes, relations = read_document(document, self._types)
         with self._store.transaction():
             for node in nodes:
@@ -263,7 +263,7 @@ class Graph:
         return len(nodes)
 
     def undeclared(self) -> list[str]:
-        """Return the names of undeclared types that have nodes."""
+        """Return the names of undeclared types that have nodes in memory."""
         return self._store.undeclared(self._types)
 
     # ------------------------------------------------------------------------------------ internals
@@ -272,13 +272,13 @@ class Graph:
         return "|".join(f"`{name}`" for name in self._types.subtypes(type))
 
     def _nodes(self, statement: str, parameters: Mapping[str, Any]) -> list[Node]:
-        """Return the nodes that a statement finds, each once, oldest first."""
+        """Return the nodes that a statement finds, each node once, oldest first."""
         rows = self._store.read(statement, parameters)
         found = {node.id: node for row in rows if (node := self._node(row[0])) is not None}
         return sorted(found.values(), key=_age)
 
     def _node(self, raw: RawNode) -> Node | None:
-        """Return a node with its declared properties; None if its type is undeclared."""
+        """Return the node that a raw node stands for, with its declared properties; None if its type is undeclared."""
         id = raw.values.get("id")
         if raw.label not in self._types or not isinstance(id, str):
             return None
@@ -295,7 +295,7 @@ class Graph:
 
 
 def _known(node: Node) -> Node:
-    """Return the node if its id begins with its type, as the lookup requires; refuse it otherwise."""
+    """Return the node if its id begins with its type, as `get` requires; refuse any other node."""
     if not node.id.startswith(f"{node.type}:"):
         raise RuleError(f"the id {node.id!r} of a {node.type} must begin with '{node.type}:'")
     return node
@@ -306,7 +306,7 @@ def _age(node: Node) -> tuple[str, str]:
 
 
 def _setting(variable: str, values: Mapping[str, Any]) -> str:
-    """Return the clause that sets properties. The prefix keeps its parameters apart from those of ids."""
+    """Return the Cypher clause that sets properties. The prefix ``p_`` keeps its parameters apart from those of ids."""
     settings = ", ".join(f"{variable}.`{key}` = $p_{key}" for key in values)
     return f" SET {settings}" if settings else ""
 

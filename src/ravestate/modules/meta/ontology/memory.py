@@ -32,14 +32,14 @@ class Memory:
     """
 
     def __init__(self, worker: StoreWorker, read_types: Callable[[], Types]) -> None:
-        """Start to open memory. You may call operations at once; they wait until it is open.
+        """Start to open memory. You may call operations at once; they wait until memory is open.
 
         Args:
-            worker: The store's thread; `close` releases it.
-            read_types: Reads the types; called in the thread.
+            worker: The thread of the store; `close` releases it.
+            read_types: A function that reads the types; called in that thread.
         """
         self._worker = worker
-        self._lock = threading.Lock()  # no job is queued after the release
+        self._lock = threading.Lock()  # so that no job is queued after the release
         self._closed: Reply[None] | None = None
         self._types: Types | None = None
         self._failure: BaseException | None = None
@@ -47,12 +47,12 @@ class Memory:
 
     @property
     def place(self) -> str:
-        """The file's path or the server's address."""
+        """The place of memory: the file's path or the server's address."""
         return self._worker.place
 
     @property
     def types(self) -> Types:
-        """The types of nodes and relations.
+        """The declared types of nodes and relations.
 
         Raises:
             RuleError: Memory is not open: ``await memory.opened()`` first.
@@ -72,7 +72,7 @@ class Memory:
         return self._opened
 
     def create(self, type: str, /, **properties: Value) -> Reply[Node]:
-        """Create a node.
+        """Create a node with these properties.
 
         Example:
             ::
@@ -82,11 +82,11 @@ class Memory:
         return self._do("create", lambda graph: graph.save(Node(type, properties)))
 
     def ensure(self, type: str, /, **properties: Value) -> Reply[Node]:
-        """Return the oldest node that matches, as in `find`, or a new one."""
+        """Return the oldest node that `find` would return, or create a new one."""
         return self._do("ensure", lambda graph: graph.ensure(type, properties))
 
     def save(self, node: Node, /, *, of: str | None = None) -> Reply[Node]:
-        """Write a node, new or known: set its properties, remove those that are None, keep all others.
+        """Write a node to memory: set its properties, remove those that are None, and keep the others in memory.
 
         Args:
             node: The node to write.
@@ -98,15 +98,15 @@ class Memory:
         return self._do("save", lambda graph: graph.save(node, of))
 
     def find(self, type: str, /, **properties: Value) -> Reply[list[Node]]:
-        """Return all nodes of a type or a subtype with these values, oldest first. None matches a missing value."""
+        """Return all nodes of a type or its subtypes with these properties, oldest first. None matches no value."""
         return self._do("find", lambda graph: graph.find(type, properties))
 
     def get(self, id: str, /) -> Reply[Node | None]:
-        """Return the node with this id; None if there is none."""
+        """Return the node with this id; None if memory does not have it."""
         return self._do("get", lambda graph: graph.get(id))
 
     def update(self, node: Node, /, **properties: Value) -> Reply[Node]:
-        """Set properties of a node in memory, and remove those that are None.
+        """Set properties of a node that memory has, and remove those that are None.
 
         Raises:
             RuleError: Memory does not have the node. For other causes, see the class.
@@ -114,7 +114,7 @@ class Memory:
         return self._do("update", lambda graph: graph.update(node, properties))
 
     def relate(self, node: Node, relation: str, other: Node, /, **properties: Value) -> Reply[None]:
-        """Relate two nodes in memory; between related nodes, set the relation's properties.
+        """Relate two nodes that memory has; if they are related already, set the relation's properties.
 
         Raises:
             RuleError: Memory does not have one of the nodes. For other causes, see the class.
@@ -130,16 +130,16 @@ class Memory:
         """Remove a relation, if there is one.
 
         Args:
-            node: The source.
+            node: The source of the relation.
             relation: The relation's name.
-            other: The target.
-            forget: Also forget `other`, unless another node is related to it. A person or robot with more than a name
-                stays as well.
+            other: The target of the relation.
+            forget: Whether to forget `other` too, unless another node is related to it. A person or robot with more
+                than a name stays as well.
         """
         return self._do("unrelate", lambda graph: graph.unrelate(node, relation, other, forget=forget))
 
     def related(self, node: Node, relation: str, /, *, back: bool = False) -> Reply[list[Node]]:
-        """Return the targets of a relation of `node`, oldest first; with `back`, the sources."""
+        """Return the targets of a relation from `node`, oldest first; with `back`, the sources of a relation to it."""
         return self._do("related", lambda graph: graph.related(node, relation, back=back))
 
     def relations(self, node: Node, /) -> Reply[list[Relation]]:
@@ -156,13 +156,13 @@ class Memory:
         return self._do("merge", lambda graph: graph.merge(keep, duplicate))
 
     def forget(self, node: Node, /) -> Reply[list[Node]]:
-        """Remove a node, its relations, and the nodes that only it needs. The file keeps no byte of them.
+        """Remove a node, its relations, and the nodes that only this node needs. The file keeps none of their bytes.
 
         A node needs its relations' targets, and their targets in turn. These targets stay if a node that stays is
         related to them. A person or robot with more than a name stays as well.
 
         Returns:
-            The removed nodes, `node` first; nothing if memory does not have `node`.
+            The removed nodes, `node` first; an empty list if memory does not have `node`.
         """
         return self._do("forget", lambda graph: graph.forget(node))
 
@@ -175,10 +175,10 @@ class Memory:
 
         Args:
             operations: A function of the graph, called in memory's thread. The graph has the operations of this class.
-                There they return plain results, and take properties as mappings. Do not keep the graph.
+                There, the operations return plain results, and take properties as mappings. Do not keep the graph.
 
         Returns:
-            The result of `operations`. An exception in it rolls all of them back.
+            The result of the function. If it raises an exception, all of its operations are rolled back.
 
         Example:
             ::
@@ -193,7 +193,7 @@ class Memory:
         return self._do("together", lambda graph: graph.together(operations))
 
     def export(self) -> Reply[dict[str, Any]]:
-        """Return everything as a document for JSON; `load` reads it."""
+        """Return all nodes and relations as a document for JSON, which `load` reads."""
         return self._do("export", lambda graph: graph.export())
 
     def load(self, document: Mapping[str, Any], /) -> Reply[int]:
@@ -205,11 +205,11 @@ class Memory:
         return self._do("load", lambda graph: graph.load(document))
 
     def undeclared(self) -> Reply[list[str]]:
-        """Return the names of types that have nodes in memory and are in no file of types."""
+        """Return the names of the types that have nodes in memory, but that no file of types declares."""
         return self._do("undeclared", lambda graph: graph.undeclared())
 
     def tidy(self) -> Reply[None]:
-        """Move the log of writes into the database, which frees memory after many writes."""
+        """Move the log of writes into the database: after many writes, this frees main memory."""
         return self._do("tidy", lambda graph: graph.tidy())
 
     def close(self) -> Reply[None]:
@@ -223,7 +223,7 @@ class Memory:
         return f"<memory {self.place}>"
 
     def _open(self, store: Store, read_types: Callable[[], Types]) -> None:
-        """Read the types, and create their tables. Runs in the thread."""
+        """Read the types, and create the tables that they need. This runs in the store's thread."""
         try:
             types = read_types()
             Graph(store, types).prepare()

@@ -15,29 +15,29 @@ from .memory import Memory
 
 
 class Settings(rs.Settings):
-    """The place of memory, and the types of its nodes."""
+    """The settings of ontology: the place of memory, and the types of its nodes."""
 
     types: tuple[Path, ...] = ()
-    """Your own files of types; they extend the built-in one."""
+    """Your own files of types; they extend the built-in file."""
     path: Path | None = None
     """The file of memory. Default: ``ravestate/<agent>/memory.lbug`` in the user's data folder."""
     agent: Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9._ -]*$")] = "default"
     """The agent's name: each agent has its own file, unless `path` is given."""
     url: str | None = None
-    """A server that speaks Bolt and Cypher, in place of a file: ``bolt://localhost:7687``."""
+    """The address of a server that speaks Bolt and Cypher, in place of a file: ``bolt://localhost:7687``."""
     user: str = "neo4j"
     """The user name on the server."""
     password: SecretStr | None = None
     """The password on the server. Set it in the environment: ``RAVESTATE_ONTOLOGY_PASSWORD``."""
     database: str | None = None
-    """The database on the server, for memory alone. Default: the server's default database."""
+    """The name of a database on the server, for memory alone. Default: the server's default database."""
     timeout: Annotated[float, Field(gt=0)] = 10.0
-    """Seconds to wait for the server's answers."""
+    """The seconds to wait for each answer of the server."""
 
     @field_validator("types")
     @classmethod
     def _can_be_read(cls, types: tuple[Path, ...]) -> tuple[Path, ...]:
-        """Report mistakes in the files before anything runs."""
+        """Check the files of types, so that mistakes in them are reported before anything runs."""
         from .type_files import types_in
 
         try:

@@ -1,4 +1,4 @@
-"""The values in memory: nodes with properties, and relations between them."""
+"""The records in memory: nodes with properties, and relations between nodes."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ Value = str | int | float | bool | date | datetime | None
 
 
 class _Ids:
-    """A generator of ids that grow with time, so they sort nodes by age."""
+    """A generator of ids that grow with time, so that sorting by id sorts nodes by age."""
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
@@ -38,9 +38,9 @@ class Node:
     A new node has its id at once, so a rule may save and relate it without waiting.
 
     Args:
-        type: The name of its type: ``Person``.
-        properties: Values by name. Saving the node removes a property that is None.
-        id: ``Type:number``. Default: a new one; the numbers grow with time.
+        type: The name of the node's type: ``Person``.
+        properties: Name of a property → its value. Saving the node removes a property that is None.
+        id: The node's id, ``Type:number``. Default: a new id; the numbers grow with time.
 
     Example:
         >>> ada = Node("Person", {"name": "Ada"})
@@ -59,16 +59,16 @@ class Node:
             object.__setattr__(self, "id", _ids.next(self.type))
 
     def with_properties(self, **properties: Value) -> Node:
-        """Return the node with other values for some properties; None removes one."""
+        """Return a copy of the node with new values for some properties; saving it removes those that are None."""
         return Node(self.type, {**self.properties, **properties}, self.id)
 
     def get(self, name: str, default: Any = None) -> Any:
-        """Return a property's value, or `default` if it has none."""
+        """Return the value of a property, or `default` if it has no value."""
         value = self.properties.get(name)
         return default if value is None else value
 
     def __getitem__(self, name: str) -> Any:
-        """Return a property's value.
+        """Return the value of a property.
 
         Raises:
             KeyError: The property has no value.
@@ -90,7 +90,7 @@ class Node:
 
 @dataclass(frozen=True, slots=True)
 class Relation:
-    """A relation of `source` to `target`, such as ``lives_in``, with properties of its own."""
+    """A relation from `source` to `target`, such as ``lives_in``, with properties of its own."""
 
     source: Node
     name: str

@@ -1,4 +1,4 @@
-"""Open memory where the settings say: in a file or on a server."""
+"""Opening memory at the place that the settings name: in a file or on a server."""
 
 from __future__ import annotations
 
@@ -16,26 +16,26 @@ from .worker import StoreWorker
 
 
 def default_path(agent: str) -> Path:
-    """Return the file of an agent's memory in the user's data folder."""
+    """Return the path of an agent's memory file in the user's data folder."""
     return user_folder("data") / agent / "memory.lbug"
 
 
 def types_of(settings: Settings) -> Types:
-    """Return the built-in types and the user's; see `types_in`."""
+    """Return the built-in types together with those in the files that the settings name; see `types_in`."""
     return types_in(settings.types)
 
 
 def path_of(settings: Settings) -> Path | None:
-    """Return the file of memory with links resolved; None for a memory on a server."""
+    """Return the path of the memory file, with links resolved; None for a memory on a server."""
     if settings.url is not None:
         return None
     return Path(os.path.realpath((settings.path or default_path(settings.agent)).expanduser()))
 
 
 def open_memory(settings: Settings) -> Memory:
-    """Start to open memory where the settings say, in its own thread.
+    """Start to open memory at the place that the settings name, in a thread of its own; return it at once.
 
-    ``memory.opened()`` raises the errors.
+    ``memory.opened()`` raises the errors of the opening.
     """
 
     def read() -> Types:

@@ -15,9 +15,9 @@ T = TypeVar("T")
 
 
 class Reply(Generic[T]):
-    """A future result. The operation runs whether or not anyone waits for it.
+    """The future result of an operation. The operation runs even if no code waits for the result.
 
-    If no code looks at the result, an error goes to the log.
+    If no code asks for the result, an error of the operation goes to the log.
 
     Example:
         ::
@@ -37,19 +37,19 @@ class Reply(Generic[T]):
         """Wait for the result. Do not call this on the event loop, which it would block.
 
         Args:
-            timeout: Seconds to wait; None waits without end.
+            timeout: The maximum number of seconds to wait; None for no maximum.
 
         Raises:
-            TimeoutError: The result is late. The operation goes on.
-            RuleError: See the operation.
+            TimeoutError: The result did not come in time. The operation continues.
+            RuleError: The operation is refused; see its description.
             PlatformError: Memory failed; the message says what to do.
         """
         self._looked = True
         return self._future.result(timeout)
 
     def __await__(self) -> Generator[Any, None, T]:
-        # This uses an executor, because a loop in virtual time waits for its executors. The operation goes on when the
-        # waiting rule is cancelled.
+        # This uses an executor, because a loop in virtual time waits for its executors. If the waiting rule is
+        # cancelled, the operation continues.
         self._looked = True
         loop = asyncio.get_running_loop()
         waiting: asyncio.Future[Any] = loop.run_in_executor(_FutureExecutor(self._future), _named(self._what))
@@ -70,7 +70,7 @@ def _tell(what: str, future: Future[Any]) -> None:
 
 
 class _FutureExecutor(Executor):
-    """An executor that returns a future which is already under way."""
+    """An executor that runs nothing: it returns the future of an operation that is already in progress."""
 
     def __init__(self, future: Future[Any]) -> None:
         self._future = future
@@ -80,7 +80,7 @@ class _FutureExecutor(Executor):
 
 
 def _named(what: str) -> Callable[[], None]:
-    """Return a function with this name; messages show which operation a rule waits for."""
+    """Return a function with this name, so that messages show which operation a rule waits for."""
 
     def function() -> None: ...
 

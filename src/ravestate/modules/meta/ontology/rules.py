@@ -13,7 +13,7 @@ from .opening import open_memory
 
 @module.rule(when=rs.startup.detached(), writes=memory, detached=True, background=True)
 async def open_up(ctx: rs.RuleContext) -> None:
-    """Open memory where the settings say. The slot gets the memory at once: operations wait until it is open."""
+    """Open memory at the place that the settings name. The slot gets it at once: operations wait until it is open."""
     opening = open_memory(ctx.settings)
     ctx[memory] = opening
 
@@ -23,7 +23,7 @@ async def open_up(ctx: rs.RuleContext) -> None:
 
     try:
         await opening.opened()
-    except PlatformError as error:  # no rule is at fault
+    except PlatformError as error:  # no rule is to blame, so this is no ``rs.error``
         let_go()
         ctx.log.warning("there is no long-term memory in this conversation: %s", error)
     except BaseException:
@@ -33,7 +33,7 @@ async def open_up(ctx: rs.RuleContext) -> None:
 
 @module.rule(when=rs.shutdown.detached(), reads=memory, background=True)
 async def close(ctx: rs.RuleContext) -> None:
-    """Close memory after all writes."""
+    """Close memory after all writes of the conversation."""
     opened = ctx[memory]
     if opened is None:
         return

@@ -12,12 +12,12 @@ from ravestate.errors import PlatformError
 from .types import Types
 
 FORMAT = 1
-"""The version of the format of nodes and relations; a new format has a greater number."""
+"""The version of the format in which nodes and relations are stored; a new format has a greater number."""
 
 
 @dataclass(frozen=True, slots=True)
 class RawNode:
-    """A node as a database returns it: its label and its properties, with ``id``."""
+    """A node as a database returns it: its label and its properties, including ``id``."""
 
     label: str
     values: Mapping[str, Any]
@@ -32,7 +32,7 @@ class RawRelation:
 
 
 class Store(Protocol):
-    """A graph database, used by one thread.
+    """A graph database; only one thread uses it.
 
     Statements are Cypher that Neo4j 5, ladybug and ArcadeDB all read. Functions of labels and types differ, so
     statements return whole nodes and relations. Values are always parameters. Names come from the types, which allow
@@ -43,12 +43,12 @@ class Store(Protocol):
         """Create the missing tables, columns or indexes for the types, properties and relations.
 
         Raises:
-            PlatformError: The database uses these names for something else, or is newer.
+            PlatformError: The database uses these names for something else, or its format is newer.
         """
         ...
 
     def read(self, statement: str, parameters: Mapping[str, Any]) -> list[Sequence[Any]]:
-        """Run a statement that writes nothing; each row has `RawNode`, `RawRelation` and plain values.
+        """Run a statement that writes nothing, and return its rows of `RawNode`, `RawRelation` and plain values.
 
         Raises:
             PlatformError: The database failed.
@@ -56,7 +56,7 @@ class Store(Protocol):
         ...
 
     def write(self, statement: str, parameters: Mapping[str, Any]) -> list[Sequence[Any]]:
-        """Run a statement that writes. Outside a transaction, the write is committed when this returns.
+        """Run a statement that writes, and return its rows. Outside a transaction, this also commits the write.
 
         Raises:
             PlatformError: The database failed.
@@ -64,7 +64,7 @@ class Store(Protocol):
         ...
 
     def transaction(self) -> AbstractContextManager[None]:
-        """Commit all statements in the ``with`` block together, or none. A transaction inside another is part of it.
+        """Commit all statements in the ``with`` block together, or none. An inner transaction is part of the outer one.
 
         Raises:
             PlatformError: The database failed.
@@ -72,15 +72,15 @@ class Store(Protocol):
         ...
 
     def purge(self) -> None:
-        """Remove the traces of deleted nodes, as far as this process can."""
+        """Remove the bytes that deleted nodes have left behind, as far as this process can."""
         ...
 
     def tidy(self) -> None:
-        """Move the log of writes into the database, and free its memory."""
+        """Move the log of writes into the database, and free the main memory that the log takes up."""
         ...
 
     def undeclared(self, types: Types) -> list[str]:
-        """Return the names of types that are in the database and not in `types`."""
+        """Return the names of the types that have nodes in the database but are not in `types`."""
         ...
 
     def close(self) -> None:
@@ -89,7 +89,7 @@ class Store(Protocol):
 
 
 def check_format(place: str, found: object) -> None:
-    """Refuse a newer format.
+    """Refuse a memory of a newer format than this version of ravestate knows.
 
     Raises:
         PlatformError: The format is newer.

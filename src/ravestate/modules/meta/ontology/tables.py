@@ -29,12 +29,12 @@ def missing_tables(execute: Execute, types: Types, place: str) -> Iterator[str]:
     """Yield the statements that create missing tables and columns.
 
     Args:
-        execute: Runs a statement.
+        execute: A function that runs a statement and returns its rows.
         types: The types that need tables.
         place: The database's path, for messages.
 
     Raises:
-        PlatformError: The database has other data, a newer format, or a property of another kind.
+        PlatformError: The database belongs to something else, has a newer format, or has a property of another kind.
     """
     tables = {str(row[0]) for row in execute("CALL show_tables() RETURN name")}
     if META in tables:
@@ -68,7 +68,7 @@ def missing_tables(execute: Execute, types: Types, place: str) -> Iterator[str]:
 
 
 def undeclared_types(execute: Execute, types: Types) -> list[str]:
-    """Return the types that have nodes in the database and are not in `types`."""
+    """Return the names of the types that have nodes in the database but are not in `types`."""
     tables = execute("CALL show_tables() RETURN name, type")
     unknown = {str(name) for name, kind in tables if kind == "NODE"} - {META, *types}
     return sorted(name for name in unknown if execute(f"MATCH (n:`{name}`) RETURN n.`id` LIMIT 1"))

@@ -1,9 +1,9 @@
-"""Files of types: several YAML files make one `Types`.
+"""Files of types: YAML files that together declare one `Types`.
 
 ::
 
     Boat:
-      is: Thing                         # its parent
+      is: Thing                         # the parent type
       has: {length: number}             # properties and their kinds
       relations:
         sails_to: [City, Country]       # to nodes of these types, and their subtypes
@@ -36,7 +36,7 @@ OF_A_RELATION = ("to", "has")
 
 
 def read_types(paths: Iterable[Path | Traversable]) -> Types:
-    """Read files in the given order.
+    """Return the types that files declare together, read in the given order.
 
     Raises:
         DeclarationError: A file is invalid or contradicts another; the message names file and line.
@@ -49,7 +49,7 @@ def read_types(paths: Iterable[Path | Traversable]) -> Types:
 
 
 def types_in(paths: Iterable[Path]) -> Types:
-    """Return the built-in types together with those of files. Files are read once, and again after a change.
+    """Return the built-in types together with those of files. A file is read once, and again after a change.
 
     Raises:
         DeclarationError: A file is invalid or contradicts another.
@@ -58,7 +58,7 @@ def types_in(paths: Iterable[Path]) -> Types:
     return _read(tuple((path.expanduser(), _state_of(path.expanduser())) for path in paths))
 
 
-@lru_cache(maxsize=8)  # each visitor to a page opens memory
+@lru_cache(maxsize=8)  # cached, since each visitor to a page opens memory
 def _read(own: tuple[tuple[Path, object], ...]) -> Types:
     built_in = files("ravestate.modules.meta.ontology") / "types.yaml"
     return read_types([built_in, *(path for path, _ in own)])
@@ -68,23 +68,23 @@ def _state_of(path: Path) -> object:
     """Return a value that changes when the file changes."""
     try:
         stat = path.stat()
-    except OSError:  # reading the file reports that
+    except OSError:  # reading the file will report the problem
         return None
     return stat.st_ino, stat.st_size, stat.st_mtime_ns
 
 
 class _Reader:
-    """The content of the files so far, and its lines."""
+    """Collects the content of files, with the line of each declaration."""
 
     def __init__(self) -> None:
         self._places: dict[str, str] = {}
-        """The first ``file:line`` of each type and relation."""
+        """Name of a type or relation → the first ``file:line`` that declares it."""
         self._parents: dict[str, tuple[str, str]] = {}
         self._has: dict[str, dict[str, Kind]] = {}
         self._ends: dict[str, dict[tuple[str, str], str]] = {}
         self._relation_has: dict[str, dict[str, Kind]] = {}
         self._kinds: dict[tuple[bool, str], tuple[str, Kind, str]] = {}
-        """The spelling, kind and line of each property, of types (False) and relations (True)."""
+        """(whether a relation has it, name in lower case) of a property → its spelling, kind and ``file:line``."""
 
     def read(self, file: str, root: yaml.Node | None) -> None:
         if root is None:
@@ -93,7 +93,7 @@ class _Reader:
             self._name(file, key, name, self._has, self._ends)
             self._has.setdefault(name, {})
             if kind_of(body) == "scalar" and not body.value:
-                continue  # a type without parts
+                continue  # the type has neither parent, properties nor relations
             for part_key, part, value in _entries(file, body, f"{name} has keys and values"):
                 if part not in OF_A_TYPE:
                     raise fault(
@@ -191,7 +191,7 @@ class _Reader:
     def _name(
         self, file: str, node: yaml.Node, name: str, among: Mapping[str, object], others: Mapping[str, object]
     ) -> None:
-        """Register the name of a type or relation. Names must differ by more than capitals."""
+        """Register the name of a type or relation. Names that differ only by upper and lower case are refused."""
         _check_name(file, node, name, "type or relation")
         for other in (*among, *others):
             if other.lower() == name.lower() and (other != name or other in others):

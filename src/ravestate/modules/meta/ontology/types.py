@@ -29,12 +29,12 @@ _EXAMPLES: dict[Kind, str] = {
 
 @dataclass(frozen=True, slots=True)
 class Type:
-    """A type of nodes with its own properties; `Types` has the inherited ones.
+    """A type of nodes, with its own properties; `Types` has the inherited properties.
 
     Args:
         name: Letters, digits and ``_``.
-        parent: The name of its supertype, if any.
-        properties: The kinds of its own properties by name.
+        parent: The name of its supertype; None if it has none.
+        properties: Name of one of its own properties → the property's kind.
     """
 
     name: str
@@ -49,7 +49,7 @@ class Relating:
     Args:
         name: Letters, digits and ``_``.
         ends: Pairs of a source type and a target type.
-        properties: The kinds of its properties by name.
+        properties: Name of one of its properties → the property's kind.
     """
 
     name: str
@@ -58,10 +58,10 @@ class Relating:
 
 
 class Types:
-    """All types and relations, with checks. ``read_types`` reads them from files."""
+    """All declared types and relations, with checks of values. ``read_types`` reads them from files."""
 
     def __init__(self, types: Mapping[str, Type], relations: Mapping[str, Relating]) -> None:
-        """Take valid types: all parents and ends exist, and there are no cycles."""
+        """Take valid types and relations: all parents and ends exist, and no type is its own ancestor."""
         self._types = dict(types)
         self._relations = dict(relations)
         self._lines = {name: tuple(self._line(name)) for name in self._types}
@@ -72,16 +72,16 @@ class Types:
         return iter(sorted(self._types, key=lambda name: len(self._lines[name])))
 
     def __contains__(self, name: object) -> bool:
-        """Return whether there is such a type."""
+        """Return whether there is a type with this name."""
         return name in self._types
 
     @property
     def relations(self) -> Mapping[str, Relating]:
-        """All relations by name."""
+        """Name of a relation → the relation."""
         return self._relations
 
     def properties(self, type: str) -> Mapping[str, Kind]:
-        """Return the kinds of all properties of a type, inherited ones first.
+        """Return name → kind for all properties of a type, inherited properties first.
 
         Raises:
             RuleError: There is no such type.
@@ -90,7 +90,7 @@ class Types:
         return self._properties[type]
 
     def subtypes(self, type: str) -> tuple[str, ...]:
-        """Return a type and all of its subtypes.
+        """Return the names of a type and of all its subtypes.
 
         Raises:
             RuleError: There is no such type.
@@ -109,7 +109,7 @@ class Types:
         return other in self._lines[type]
 
     def pairs(self, relation: str) -> list[tuple[str, str]]:
-        """Return all pairs of types that a relation may join, with subtypes, sorted."""
+        """Return all pairs (source type, target type) that a relation may join, including subtypes, sorted."""
         return sorted(
             {
                 (source, target)
@@ -120,7 +120,7 @@ class Types:
         )
 
     def stored(self, type: str, values: Mapping[str, Value]) -> dict[str, Any]:
-        """Return values as they are stored: dates and times become texts that sort by time.
+        """Return a node's properties as memory stores them: dates and times become texts that sort by time.
 
         Raises:
             RuleError: There is no such type or property, or a value is not of its kind.
@@ -128,7 +128,7 @@ class Types:
         return _stored(type, self.properties(type), values)
 
     def loaded(self, type: str, values: Mapping[str, Any]) -> dict[str, Value]:
-        """Return stored values as rules see them, without missing and undeclared ones."""
+        """Return a node's stored properties as rules see them, without missing and undeclared ones."""
         return _loaded(type, self._properties[type], values)
 
     def check_relation(self, source: str, relation: str, target: str) -> None:
@@ -145,10 +145,10 @@ class Types:
             raise RuleError(f"{relation} does not go from {source} to {target}, but {known}")
 
     def check_end(self, type: str, relation: str, *, back: bool = False) -> None:
-        """Check that nodes of a type may have a relation; with `back`, be its target.
+        """Check that nodes of a type may be the source of a relation; with `back`, its target.
 
         Raises:
-            RuleError: There is no such type, or no such relation of it.
+            RuleError: There is no such type or relation, or the type has no such relation.
         """
         self._check(type)
         ends = {pair[1 if back else 0] for pair in self.relating(relation).ends}
@@ -158,7 +158,7 @@ class Types:
             )
 
     def relating(self, relation: str) -> Relating:
-        """Return a relation by its name.
+        """Return the relation with this name.
 
         Raises:
             RuleError: There is no such relation.
@@ -172,7 +172,7 @@ class Types:
         return found
 
     def stored_of(self, relation: str, values: Mapping[str, Value]) -> dict[str, Any]:
-        """Return a relation's properties as they are stored."""
+        """Return a relation's properties as memory stores them."""
         return _stored(relation, self.relating(relation).properties, values)
 
     def loaded_of(self, relation: str, values: Mapping[str, Any]) -> dict[str, Value]:
@@ -229,7 +229,7 @@ def _as_stored(what: str, kind: Kind, value: Value) -> Any:
     if kind == "time" and isinstance(value, datetime) and value.tzinfo is not None:
         try:
             return value.astimezone(UTC).isoformat(timespec="microseconds")
-        except OverflowError:  # in the first or last hours that the calendar can express
+        except OverflowError:  # the time is in the first or last hours that the calendar can express
             pass
     if kind == "date" and isinstance(value, date) and not isinstance(value, datetime):
         return value.isoformat()

@@ -14,7 +14,7 @@ T = TypeVar("T")
 
 _shared: dict[str, StoreWorker] = {}
 _closing: dict[str, Future[None]] = {}
-"""Stores that are closing; the next opening waits for them."""
+"""Key of a store that is closing → the end of the closing; the next opening of the store waits for it."""
 _lock = threading.Lock()
 
 
@@ -26,11 +26,11 @@ class StoreWorker:
     """
 
     def __init__(self, place: str, make: Callable[[], Store]) -> None:
-        """Start the thread, which opens the store.
+        """Start the thread, which first opens the store.
 
         Args:
-            place: The path or address, for messages.
-            make: Opens the store. If it raises, every job raises the same.
+            place: The path or address of the store, for messages.
+            make: A function that opens the store. If it raises an exception, every job raises the same one.
         """
         self.place = place
         self._jobs: SimpleQueue[Callable[[], None] | None] = SimpleQueue()
@@ -43,7 +43,7 @@ class StoreWorker:
 
     @classmethod
     def shared(cls, key: str, make: Callable[[], Store]) -> StoreWorker:
-        """Return the process's worker for the store at `key`, or a new one."""
+        """Return the process's worker for the store at `key`, or start one; each call needs a `release`."""
         with _lock:
             worker = _shared.get(key)
             if worker is not None:
@@ -61,7 +61,7 @@ class StoreWorker:
             return worker
 
     def submit(self, job: Callable[[Store], T]) -> Future[T]:
-        """Queue a job."""
+        """Queue a job for the thread; return its future result."""
         future: Future[T] = Future()
 
         def do() -> None:
@@ -76,7 +76,7 @@ class StoreWorker:
         return future
 
     def release(self) -> Future[None]:
-        """Release one use. The last release closes the store after all queued jobs."""
+        """Release the worker for one user. The last release closes the store after all queued jobs."""
         done: Future[None] = Future()
         with _lock:
             self._users -= 1
@@ -105,7 +105,7 @@ class StoreWorker:
     def _open(self, make: Callable[[], Store]) -> None:
         try:
             self._store = make()
-        except BaseException as error:  # every job raises it
+        except BaseException as error:  # every job will raise it
             self._failure = error
 
     def _close(self, done: Future[None]) -> None:

@@ -1,4 +1,4 @@
-"""Phrases for intents: the agent says an intent in words from a file of phrases."""
+"""Phrases for intents: the agent says an intent with a phrase from a file of phrases."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""An intent: a meaning without words."""
+"""An intent: a meaning that the agent wants to say, without words."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from pathlib import Path
 
 @dataclass(frozen=True, slots=True)
 class Intent:
-    """A meaning that the agent wants to say.
+    """A meaning that the agent wants to say; a `PhraseBook` has the words.
 
     Example:
         >>> Intent("greet", {"name": "Ada"})
@@ -19,10 +19,10 @@ class Intent:
     name: str
     """The intent's name in the files of phrases."""
     parameters: Mapping[str, object] = field(default_factory=dict[str, object])
-    """Values for the parameters of phrases; None counts as missing."""
+    """Name of a parameter in phrases → its value; None counts as missing."""
     package: str | None = None
-    """The package that contains ``phrases.yaml``, usually the rule's ``__package__``."""
+    """The package whose ``phrases.yaml`` has phrases for the intent, usually the rule's ``__package__``; or None."""
     file: Path | None = None
-    """A file with the phrases, for a rule outside packages."""
+    """A file with phrases for the intent, for a rule outside packages; or None."""
     phrases: Mapping[str, Sequence[str]] | None = None
-    """The phrases by language, for a rule that provides them itself; then no file is read."""
+    """Language → phrases, for a rule that provides the phrases itself; no file is then read."""

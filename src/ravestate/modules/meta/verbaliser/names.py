@@ -11,10 +11,10 @@ from .intents import Intent
 
 
 class Settings(rs.Settings):
-    """The language of the agent, and its phrases."""
+    """The language of the agent, and the user's phrases for it."""
 
     language: str = "en"
-    """The language, e.g. ``de`` or ``de-AT``. An intent without phrases in it is said in English."""
+    """The agent's language, e.g. ``de`` or ``de-AT``. An intent without phrases in this language is said in English."""
     phrases: tuple[Path, ...] = ()
     """Your own files of phrases. They replace the modules' phrases, or add to them."""
 
@@ -22,7 +22,7 @@ class Settings(rs.Settings):
 module = rs.Module("verbaliser", requires=[rawio], settings=Settings)
 
 intent: rs.Slot[str | Intent | None] = module.slot("intent", None, type=str | Intent, always=True)
-"""The agent's next intent: a name, or an `Intent` with parameters. The agent says it at once."""
+"""The intent that the agent says at once: a name, or an `Intent` with parameters."""
 
 last: rs.Collection[str] = module.collection("last")
-"""The template that was last used for each intent, by the intent's name."""
+"""Intent's name → the template that was used for it last."""

@@ -8,7 +8,7 @@ greet:
     - Hello!
     - Hello {name}, good to see you.
   de: [Hallo!, "Schön, dich zu sehen, {name}."]
-farewell: Goodbye!           # without a language: the default one
+farewell: Goodbye!           # without a language: the default language
 ```
 
 Several files make one phrase book. The phrases of a later file *replace* those of earlier files for the same intent and
@@ -19,7 +19,7 @@ greet:
   en: !add [Ahoy!]
 ```
 
-Every value is text: ``no`` is Norwegian and ``1`` is a phrase. ``{{`` and ``}}`` are braces.
+Every value is text: ``no`` is the Norwegian language, and ``1`` is a phrase. ``{{`` and ``}}`` stand for single braces.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ Source = Path | Traversable | str
 
 @dataclass(frozen=True, slots=True)
 class Template:
-    """A phrase with parameters in braces, and their names."""
+    """A phrase with parameters in braces, and the names of the parameters."""
 
     text: str
     parameters: frozenset[str]
@@ -49,7 +49,7 @@ class Template:
 
 @dataclass(frozen=True, slots=True)
 class Phrase:
-    """A phrase with its parameters filled in, and its template."""
+    """A phrase with values in place of its parameters, and the text of its template."""
 
     text: str
     template: str
@@ -74,9 +74,9 @@ class PhraseBook:
         """Make a book from texts.
 
         Args:
-            phrases: Texts by intent and language.
-            language: The language to speak, as in ``de-AT``. It falls back to ``de``, then to the default language.
-            default_language: The language of intents without phrases in `language`.
+            phrases: Intent → language → texts.
+            language: The language to speak. If ``de-AT`` has no phrase, ``de`` is next, then the default language.
+            default_language: The language for intents without phrases in `language`.
 
         Raises:
             DeclarationError: The braces in a phrase do not hold a name.
@@ -96,12 +96,12 @@ class PhraseBook:
         *,
         default_language: str = "en",
     ) -> PhraseBook:
-        """Read YAML files in the given order; the module's docstring describes their format.
+        """Return a book of the phrases in YAML files, read in the given order; for their format, see this file's start.
 
         Args:
             sources: Paths, or files in packages as ``importlib.resources`` gives them.
-            language: See the class.
-            default_language: See the class; also the language of phrases without one.
+            language: As for the class.
+            default_language: As for the class; also the language of phrases without a language in the files.
 
         Raises:
             DeclarationError: A file is invalid; the message names file and line.
@@ -120,11 +120,11 @@ class PhraseBook:
 
     @property
     def languages(self) -> tuple[str, ...]:
-        """All languages of any intent, sorted."""
+        """All languages in which any intent has phrases, sorted."""
         return tuple(sorted({tag for languages in self._phrases.values() for tag in languages}))
 
     def templates(self, intent: str, language: str | None = None) -> tuple[Template, ...]:
-        """Return the phrases for `intent` in `language` (default: the book's) or its fallbacks.
+        """Return the phrases for `intent` in `language` (the book's by default), or in the first fallback that has any.
 
         Raises:
             RuleError: There is no such intent, or it has no phrases in these languages.
@@ -158,14 +158,14 @@ class PhraseBook:
     ) -> Phrase:
         """Choose a phrase at random, and fill in its parameters.
 
-        A phrase is eligible if all of its parameters have values. A phrase that begins with a parameter gets a capital.
+        A phrase is eligible if all its parameters have values. If it begins with a parameter, it gets a capital letter.
 
         Args:
             intent: The intent's name.
-            parameters: Values for the braces; None counts as missing.
-            rng: The random number generator; the same state gives the same phrase.
-            last: The last template of this intent; it is not chosen again if there is another.
-            language: Replaces the book's language.
+            parameters: Name of a parameter → its value; None counts as missing.
+            rng: A random number generator; with the same state, it gives the same phrase.
+            last: The text of the intent's last template; it is not chosen again if another is eligible.
+            language: The language to speak, instead of the book's.
 
         Raises:
             RuleError: There is no such intent or language, or each phrase lacks a parameter.
@@ -192,7 +192,7 @@ class PhraseBook:
             return
         for key, languages in _entries(name, root, "a file of phrases maps intents to languages"):
             intent = self._phrases.setdefault(_text_of(name, key, "an intent is a text"), {})
-            if kind_of(languages) != "mapping":  # without a language: the default one
+            if kind_of(languages) != "mapping":  # without a language: the default language
                 self._put(name, intent, self.default_language, languages)
                 continue
             for tag, phrases in _entries(name, languages, "an intent maps languages to phrases"):
@@ -217,8 +217,8 @@ class PhraseBook:
 
 
 def _begun(template: str, text: str) -> str:
-    """Return the text with a capital if it begins with a parameter, as in *Chess? You must show me*; but keep
-    *eBay*."""
+    """Return the text with a capital letter if its template begins with a parameter: *Chess? You must show me*. A
+    word like *eBay* stays as it is."""
     first = text.split(maxsplit=1)[0] if template.startswith("{") and text.strip() else ""
     return text[:1].upper() + text[1:] if first.islower() else text
 

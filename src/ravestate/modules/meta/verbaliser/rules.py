@@ -19,7 +19,7 @@ HERE = "ravestate.modules.meta.verbaliser"
 
 @module.rule(when=intent.changed, writes=(rawio.output, last))
 async def verbalise(ctx: rs.RuleContext) -> None:
-    """Say a phrase for the intent. Do not repeat the last one if there are others."""
+    """Say a phrase for the intent: not the same as last time, if there is another."""
     meant = as_intent(ctx.payload(intent.changed))
     settings = ctx.settings
     if meant.phrases is not None:
@@ -37,7 +37,7 @@ def as_intent(value: object) -> Intent:
     """Return the slot's value as an `Intent`.
 
     Raises:
-        RuleError: The value is not an intent.
+        RuleError: The value is neither an `Intent` nor the name of one.
     """
     if isinstance(value, Intent):
         return value
@@ -51,9 +51,9 @@ def as_intent(value: object) -> Intent:
 
 @lru_cache(maxsize=256)
 def phrase_book(package: str | None, own: tuple[Path, ...], language: str) -> PhraseBook:
-    """Read the built-in phrases, those of `package`, and the user's `own` (absolute paths), in this order.
+    """Return a book of the built-in phrases, those of `package`, and those in the user's files `own` (absolute paths).
 
-    Each process reads a file once; all contexts share the book.
+    Later phrases replace earlier ones. A process reads each file once; all its contexts share the book.
     """
     packages = (HERE,) if package in (None, HERE) else (HERE, package)
     try:

@@ -1,4 +1,4 @@
-"""The users that platforms see or hear, and the agent itself."""
+"""The names of the users who are present, and of the agent."""
 
 from __future__ import annotations
 

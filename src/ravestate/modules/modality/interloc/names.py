@@ -9,7 +9,7 @@ import ravestate as rs
 module = rs.Module("interloc")
 
 agent: rs.Slot[str] = module.slot("agent", "Ravestate", type=str, input=True)
-"""The agent's name. A module that knows the name writes it: `agentqa` takes it from the agent's life file."""
+"""The agent's name. A module that knows it writes the slot: `agentqa` takes the name from the agent's life file."""
 
 users: rs.Collection[Any] = module.collection("users", input=True)
-"""The users present: a key that the platform chooses, and the user's name, or None while it is unknown."""
+"""Key that the platform chooses for a present user → the user's name, or None while it is unknown."""

@@ -1,4 +1,4 @@
-"""Raw text in and out, whatever the platform."""
+"""The user's text to the agent and the agent's text to the user, on any platform."""
 
 from __future__ import annotations
 

@@ -12,17 +12,17 @@ input = module.slot("input", "", type=str, always=True, input=True)
 """The user's last utterance. Each utterance raises the signal, even if it repeats the last one."""
 
 output = module.slot("output", "", type=str, always=True)
-"""The words of the agent. Each write is one whole utterance."""
+"""The agent's last utterance. Each write is one whole utterance."""
 
 piece = module.signal("piece", payload=str)
-"""A piece of an unfinished utterance, for platforms that show it as it grows. Once the utterance is complete, the rule
-that produces it writes it to `output`."""
+"""A piece of an unfinished utterance of the agent, for platforms that show it as it grows. Once the utterance is
+complete, the rule that produces it writes it to `output`."""
 
 speaking = module.flag("speaking")
-"""Whether the agent is producing an utterance piece by piece."""
+"""True while the agent is producing an utterance piece by piece."""
 
 typing = module.signal("typing", input=True, keep="latest")
-"""The user is writing a line. A platform that notices emits this with each key press, or now and then."""
+"""The user is typing. A platform that notices this emits the signal at each key press, or every few seconds."""
 
 picture: rs.Slot[Any] = module.slot("picture", None, always=True, input=True)
-"""The picture that the user showed last: encoded bytes (JPEG, PNG) or a path."""
+"""The picture that the user showed last: the bytes of an encoded picture (JPEG, PNG), or a path; None at first."""

@@ -1,4 +1,4 @@
-"""The console: the agent hears the lines that the user types, and prints its answers."""
+"""The console: the agent reads the lines that the user types, and prints its answers."""
 
 from __future__ import annotations
 

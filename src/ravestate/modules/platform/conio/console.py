@@ -1,4 +1,4 @@
-"""A console: lines come in and texts go out, on a terminal or through pipes."""
+"""A console: it reads the user's lines and prints the agent's texts, on a terminal or through pipes."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ Ending = Literal["end of input", "interrupt", "closed"]
 
 
 class Screen(Protocol):
-    """A source of lines and a target of texts, for a `Console`."""
+    """The input and output of a `Console`: it reads lines and prints texts."""
 
     interactive: bool
     """Whether a person types the lines."""
@@ -31,28 +31,28 @@ class Screen(Protocol):
     async def __aexit__(self, *_: object) -> None: ...
 
     async def read(self) -> str:
-        """Return the next line. Raises EOFError at the end, KeyboardInterrupt for Ctrl-C, OSError if the input fails."""
+        """Return the next line. Raise EOFError at the end, KeyboardInterrupt for Ctrl-C, OSError if the input fails."""
         ...
 
     def show(self, text: str) -> None:
-        """Print whole lines. Raises OSError if the output is gone."""
+        """Print a text of whole lines. Raise OSError if the output is gone."""
         ...
 
     def stream(self, piece: str) -> None:
-        """Print a piece of a line as soon as that is useful."""
+        """Print a piece of a line: at once on a terminal, else once the line is complete."""
         ...
 
     def end(self) -> None:
-        """End the line that was streamed, if any."""
+        """End the line of pieces that `stream` has begun, if there is one."""
         ...
 
 
 class Console:
-    """An async iterator of the lines that the user types, and a place to write to meanwhile.
+    """An async iterator of the lines that the user types; meanwhile, `write` and `stream` print texts.
 
     If input and output are a terminal, there is a prompt with editing and a history, and output appears above it.
-    Otherwise lines are read and written plainly. Control characters, and bytes that are not text, are removed in both
-    directions: neither a user nor a language model can move the cursor.
+    Otherwise the console reads and writes plain lines. Control characters, and bytes that are not text, are removed in
+    both directions: neither a user nor a language model can move the cursor.
 
     Call everything on one event loop. Writing never fails: if the output is gone, the iteration ends.
 
@@ -74,13 +74,13 @@ class Console:
         stdin: TextIO | None = None,
         stdout: TextIO | None = None,
     ) -> None:
-        """Choose how to read and write; nothing is read or written yet.
+        """Make a console that has not read or written anything yet.
 
         Args:
-            screen: The source of lines and the target of texts, chosen by default.
+            screen: The input and output; by default, the streams decide whether that is a terminal or pipes.
             prompt: The text before the line that the user types.
-            history: The file for typed lines; None keeps them for this session only.
-            on_key: Called when the user types, which only a terminal notices.
+            history: The file that keeps typed lines; None keeps them for this session only.
+            on_key: Called when the user presses a key; only a terminal notices that.
             stdin: The stream to read instead of standard input.
             stdout: The stream to write instead of standard output.
 
@@ -94,9 +94,9 @@ class Console:
         self._streamed = ""
         self._line_is_open = False
         self.ending: Ending | None = None
-        """Why the iteration ended: end of input (Ctrl-D), interrupt (Ctrl-C), or closed (the output is gone)."""
+        """Why the iteration ended: end of input (Ctrl-D), interrupt (Ctrl-C), closed (output is gone); None before."""
         self.failure: PlatformError | None = None
-        """The reason why nothing more can be written, e.g. a full disk; None if the output was merely closed."""
+        """The error after which nothing can be written, e.g. a full disk; None if the output was merely closed."""
 
     @property
     def interactive(self) -> bool:
@@ -147,7 +147,7 @@ class Console:
             self._safely(lambda: self._screen.show(text))
 
     def stream(self, piece: str) -> None:
-        """Print `piece` behind the pieces before it; without a terminal, once its line is complete."""
+        """Print `piece` behind the earlier pieces of its text: at once on a terminal, else with its whole line."""
         piece = without_controls(piece)
         if piece:
             self._streamed += piece
@@ -155,7 +155,7 @@ class Console:
             self._safely(lambda: self._screen.stream(piece))
 
     def end(self) -> None:
-        """End the streamed text; if there is none, do nothing."""
+        """End the text whose pieces were streamed; if there is none, do nothing."""
         self._streamed = ""
         self._end_line()
 
@@ -176,9 +176,9 @@ class Console:
 
 
 def prepare() -> None:
-    """Load the library for a terminal. This takes a while, and would block the event loop."""
+    """Load the library for a terminal, if there is one. Call this in a thread: it would block the event loop."""
     if is_terminal(sys.stdin, sys.stdout):
-        with contextlib.suppress(ImportError):  # the console reports it
+        with contextlib.suppress(ImportError):  # the console reports the missing package
             importlib.import_module(".terminal", __package__)
 
 

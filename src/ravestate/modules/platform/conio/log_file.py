@@ -1,4 +1,4 @@
-"""The log of a chat on a terminal goes to a file, so that no log line appears between the lines of the chat."""
+"""The log of a chat on a terminal, which goes to a file, so that no log line appears between the lines of the chat."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ LARGEST = 1_000_000
 
 
 def log_file() -> Path:
-    """Return the log file for chats, in the user's state folder."""
+    """Return the path of the log file for chats, in the user's state folder."""
     return user_folder("state") / "log"
 
 
 @contextlib.contextmanager
 def log_to_file(file: Path) -> Generator[None]:
-    """Write the log to a file while the chat and the log would share a terminal.
+    """In the body, write the log to a file, if the chat and the log would share a terminal.
 
     Afterwards the log goes where it went before, and a line on standard error names the file if it got warnings or errors. If
     either stream is redirected, or the file cannot be written, the log stays as it is.

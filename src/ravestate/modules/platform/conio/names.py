@@ -9,7 +9,7 @@ from .console import Console
 
 
 class Settings(rs.Settings):
-    """The look of the console, and the data that it keeps."""
+    """The settings of conio: the look of the console, and the data that it keeps."""
 
     prompt: str = "> "
     """The text before the line that the user types."""
@@ -18,10 +18,10 @@ class Settings(rs.Settings):
     plain: bool = False
     """Whether a terminal is used like a pipe: plain lines, without prompt_toolkit."""
     name: str | None = None
-    """The name of the user at the console, if it is known."""
+    """The name of the user at the console; None if it is unknown."""
 
 
 module = rs.Module("conio", requires=(rawio, interloc), settings=Settings)
 
 screen: rs.Slot[Console | None] = module.slot("screen", None)
-"""The console while it is open."""
+"""The console while it is open; None before and after."""

@@ -22,11 +22,11 @@ class Pipes:
     interactive = False
 
     def __init__(self, stdin: TextIO | None, stdout: TextIO | None, *, longest_line: int = 1 << 20) -> None:
-        """Prepare to read and write; nothing is read yet.
+        """Make a console that has not read anything yet.
 
         Args:
-            stdin: The source of lines; None, for a closed standard input, is an input that has ended.
-            stdout: The target of lines; None is a closed output.
+            stdin: The stream to read; None, for a closed standard input, counts as an input that has ended.
+            stdout: The stream to write; None counts as a closed output.
             longest_line: The maximum number of bytes to read of a line; the rest of the line is left out.
         """
         self._stdin = stdin
@@ -43,11 +43,11 @@ class Pipes:
         return self
 
     async def __aexit__(self, *_: object) -> None:
-        self._loop = None  # no task wants the remaining lines
+        self._loop = None  # from now on, no task wants a line
         self._wanted.release()
 
     async def read(self) -> str:
-        """See `Screen.read`."""
+        """Return the next line, as `Screen.read` describes."""
         if self._stdin is None or self._ended:
             raise EOFError
         if self._loop is None:
@@ -57,7 +57,7 @@ class Pipes:
         if self._line is None:
             self._line = self._loop.create_future()
             self._wanted.release()
-        line = await asyncio.shield(self._line)  # if this is cancelled, the next call gets the line
+        line = await asyncio.shield(self._line)  # if this wait is cancelled, the next call gets the line
         self._line = None
         if line is None:
             self._ended = True
@@ -65,11 +65,11 @@ class Pipes:
         return line
 
     def show(self, text: str) -> None:
-        """See `Screen.show`."""
+        """Print whole lines, as `Screen.show` describes."""
         self._write(text + "\n")
 
     def stream(self, piece: str) -> None:
-        """See `Screen.stream`. A terminal shows each piece at once; elsewhere a piece waits for its line end."""
+        """Print a piece of a line: at once on a terminal; elsewhere, a piece waits for the end of its line."""
         self._unwritten += piece
         if self._watched:
             ready, self._unwritten = self._unwritten, ""
@@ -80,7 +80,7 @@ class Pipes:
             self._write(ready)
 
     def end(self) -> None:
-        """See `Screen.end`."""
+        """End the line of pieces, as `Screen.end` describes."""
         rest, self._unwritten = self._unwritten, ""
         self._write(rest + "\n")
 
@@ -98,14 +98,14 @@ class Pipes:
             raise
 
     def _silence(self) -> None:
-        """Redirect Python's own flush at exit, which would print a second error."""
+        """Redirect the broken standard output: Python's own flush at exit would print a second error."""
         if self._stdout is not None and self._stdout is sys.stdout:
             with contextlib.suppress(OSError, ValueError):
                 nowhere = os.open(os.devnull, os.O_WRONLY)
                 os.dup2(nowhere, self._stdout.fileno())
                 os.close(nowhere)
 
-    # Runs in the thread.
+    # The following methods run in the reading thread.
 
     def _read_all(self, stdin: TextIO) -> None:
         rest, ended, skipping = b"", False, False
@@ -140,5 +140,5 @@ class Pipes:
             if not future.done():
                 future.set_result(line)
 
-        with contextlib.suppress(RuntimeError):  # the loop is closed
+        with contextlib.suppress(RuntimeError):  # the event loop is closed
             loop.call_soon_threadsafe(resolve)

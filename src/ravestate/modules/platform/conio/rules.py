@@ -1,4 +1,4 @@
-"""The rules of the console: read lines, print utterances, print pieces while an utterance grows."""
+"""The rules of the console: they read lines, print utterances, and print the pieces of growing utterances."""
 
 from __future__ import annotations
 
@@ -16,18 +16,18 @@ from .names import module, screen
 from .pipes import Pipes
 
 USER = "conio"
-"""The key of the user at the console, among the users present."""
+"""The key of the user at the console in ``interloc.users``."""
 
 
 @module.rule(
-    when=rs.startup.detached(),  # so that it does not block slots for other platforms
+    when=rs.startup.detached(),  # detached, so that the rule does not block slots for other platforms
     writes=(screen, rawio.input, interloc.users),
     emits=rawio.typing,
     detached=True,  # each line is a separate cause
     background=True,
 )
 async def listen(ctx: rs.RuleContext) -> None:
-    """Write each typed line to the input; end the agent after the last line."""
+    """Write each typed line to ``rawio.input``; end the agent after the last line."""
     await asyncio.to_thread(prepare)
     history = history_file() if ctx.settings.history else None
 
@@ -35,13 +35,13 @@ async def listen(ctx: rs.RuleContext) -> None:
         ctx.emit(rawio.typing)
 
     try:
-        # This runs off the loop, because it takes long while other threads load models.
+        # This runs in a thread, because it takes long while other threads load models.
         plain = Pipes(sys.stdin, sys.stdout) if ctx.settings.plain else None
         console = await asyncio.to_thread(
             Console, screen=plain, prompt=ctx.settings.prompt, history=history, on_key=tell
         )
     except PlatformError as error:
-        ctx.stop(error)  # otherwise the agent would keep running, and nobody could talk to it
+        ctx.stop(error)  # without this, the agent would keep running, and nobody could talk to it
         return
     async with contextlib.AsyncExitStack() as stack:
         stack.enter_context(log_to_file(log_file()))
@@ -57,11 +57,11 @@ async def listen(ctx: rs.RuleContext) -> None:
                 if not console.interactive:
                     await ctx.quiet()  # all lines may arrive at once, and each needs its own answer
             if console.ending == "end of input":
-                await ctx.quiet()  # a user who leaves normally hears the answer
+                await ctx.quiet()  # a user who ends the input still gets the last answer
             else:
-                ctx.wipe(rawio.input.changed)  # a user who interrupts does not
+                ctx.wipe(rawio.input.changed)  # a user who interrupts gets no answer
             ctx[interloc.users].remove(USER)
-            await ctx.quiet()  # the farewell
+            await ctx.quiet()  # wait for the farewell
         finally:
             ctx[screen] = None
             ctx.stop(console.failure)
@@ -69,7 +69,7 @@ async def listen(ctx: rs.RuleContext) -> None:
 
 @module.rule(when=rawio.output.changed.max_age(None).detached(), reads=screen)
 async def show(ctx: rs.RuleContext) -> None:
-    """Print each utterance."""
+    """Print each utterance of the agent."""
     console = ctx[screen]
     if console is not None:
         console.write(ctx.payload(rawio.output.changed))
@@ -77,7 +77,7 @@ async def show(ctx: rs.RuleContext) -> None:
 
 @module.rule(when=rawio.piece.max_age(None).detached(), reads=screen, background=True)
 async def show_piece(ctx: rs.RuleContext) -> None:
-    """Print the pieces of the utterance that is being made."""
+    """Print each piece of an utterance that is still growing."""
     console = ctx[screen]
     if console is not None:
         console.stream(ctx.payload(rawio.piece))
@@ -85,7 +85,7 @@ async def show_piece(ctx: rs.RuleContext) -> None:
 
 @module.rule(when=rawio.speaking.false.max_age(None).detached(), reads=screen, background=True)
 async def end_line(ctx: rs.RuleContext) -> None:
-    """End the line of pieces, even if they never became an utterance."""
+    """End the line of pieces, even if they have not become a whole utterance."""
     console = ctx[screen]
     if console is not None:
         console.end()

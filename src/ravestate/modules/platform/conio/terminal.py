@@ -25,15 +25,15 @@ from prompt_toolkit.utils import get_cwidth
 from ravestate.modules._text import without_controls
 
 LONGEST = 10_000
-"""The length of a line after which keys add nothing. Every key can be undone, which may cost as much memory as the
+"""The number of characters in a line after which a key adds nothing. Undoing a key may cost as much memory as the whole
 line. Pasted text is always accepted whole."""
 
 _OPEN = "…"
-"""The mark behind a streamed line that the user has interrupted by typing another."""
+"""The mark behind a streamed line that the user has interrupted by entering a line."""
 
 
 class Terminal:
-    """Reads lines by prompt_toolkit, and prints without disturbing the line that the user types.
+    """Reads lines with prompt_toolkit, and prints texts without disturbing the line that the user types.
 
     A finished line appears above the prompt. A streamed line is the first row of the prompt until it is finished or
     full. It can grow while the user types below it.
@@ -50,14 +50,14 @@ class Terminal:
         input: Input | None = None,
         output: Output | None = None,
     ) -> None:
-        """Prepare to read and write; nothing is read or written yet.
+        """Make a console that has not read or written anything yet.
 
         Args:
             prompt: The text before the line that the user types.
-            history: The file for typed lines. Without a writable file, the lines are kept for this session.
+            history: The file that keeps typed lines. Without a writable file, they are kept for this session only.
             on_key: Called with each key that changes the line, unless the line is empty afterwards.
-            input: The keyboard, by default the terminal's.
-            output: The screen, by default the terminal's.
+            input: The keyboard; by default, that of the terminal.
+            output: The screen; by default, that of the terminal.
         """
         self._prompt = prompt
         self._streamed = ""
@@ -77,7 +77,7 @@ class Terminal:
     async def __aenter__(self) -> Terminal:
         self._context = contextvars.copy_context()
         stderr = sys.stderr
-        self._patch.enter_context(patch_stdout(raw=True))  # other prints go above the prompt as well
+        self._patch.enter_context(patch_stdout(raw=True))  # so that any other print goes above the prompt as well
         if not stderr.isatty():  # a redirected stream does not disturb the prompt
             self._patch.enter_context(contextlib.redirect_stderr(stderr))
         return self
@@ -89,7 +89,7 @@ class Terminal:
         self._patch.close()
 
     async def read(self) -> str:
-        """See `Screen.read`."""
+        """Return the next line, as `Screen.read` describes."""
         if self._lost:
             raise EOFError
         try:
@@ -100,7 +100,7 @@ class Terminal:
             self._streamed = ""
 
     def show(self, text: str) -> None:
-        """See `Screen.show`."""
+        """Print whole lines, as `Screen.show` describes."""
         if self._lost:
             raise BrokenPipeError
         self._unprinted.append(text + "\n")
@@ -109,8 +109,8 @@ class Terminal:
             self._printing = loop.create_task(self._print(), context=self._context.copy())
 
     def stream(self, piece: str) -> None:
-        """See `Screen.stream`."""
-        if self._left_open:  # only the last piece shows whether the typed line was an interruption
+        """Print a piece of a line, as `Screen.stream` describes."""
+        if self._left_open:  # only the last piece shows whether the user's line interrupted the text
             self._late += piece
             return
         *lines, self._streamed = (self._streamed + piece).split("\n")
@@ -123,10 +123,10 @@ class Terminal:
         self._session.app.invalidate()
 
     def end(self) -> None:
-        """See `Screen.end`."""
+        """End the line of pieces, as `Screen.end` describes."""
         late, self._late, self._left_open = self._late, "", False
         line, self._streamed = self._streamed, ""
-        if late and not late.endswith(_OPEN):  # otherwise these pieces came after the interruption
+        if late and not late.endswith(_OPEN):  # with the mark, these pieces came after the interruption
             line += late
         if line:
             self.show(line)
@@ -137,9 +137,9 @@ class Terminal:
         keys = KeyBindings()
         is_full = Condition(lambda: len(self._session.default_buffer.text) >= LONGEST)
 
-        @keys.add(Keys.Any, filter=is_full)  # keys that insert themselves; not editing keys, Enter or pasting
+        @keys.add(Keys.Any, filter=is_full)  # keys that insert a character; not editing keys, Enter or pasting
         def leave_out(event: KeyPressEvent) -> None:
-            """Ignore the key: the line is full."""
+            """Ignore the key, because the line is full."""
 
         return keys
 
@@ -170,7 +170,7 @@ class Terminal:
 
 
 def _full_row(text: str, width: int) -> tuple[str, str]:
-    """Cut a text that is too long into a row of less than `width` columns, and the rest."""
+    """Return the first row of a text that is too long, with less than `width` columns, and the rest of the text."""
     used = end = 0
     for end, character in enumerate(text):  # noqa: B007  # used after the loop
         used += get_cwidth(character)

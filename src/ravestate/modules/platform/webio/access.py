@@ -1,4 +1,4 @@
-"""The access check: the hosts that the page answers to, the web sites that may connect or embed it, and the token."""
+"""The access check: the host names of the page, the web sites that may connect to it or embed it, and the token."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ if TYPE_CHECKING:
     from .names import Settings
 
 PAUSE = 1.0
-"""Seconds before the server refuses a wrong token, so that guessing takes long."""
+"""The seconds that the server waits before it refuses a wrong token, so that guessing takes long."""
 
 
 def is_local(host: str) -> bool:
-    """Return whether only this machine can reach an address to listen on."""
+    """Return whether only this machine can reach a server that listens on `host`."""
     if host == "localhost":
         return True
     try:
@@ -47,7 +47,7 @@ class Access:
         self._named = {urlsplit(origin).netloc for origin in settings.origins}
 
     def refusal(self, headers: Mapping[str, str]) -> str | None:
-        """Return why the server refuses a request; None if it accepts it."""
+        """Return why the server refuses a request with these headers; None if it accepts the request."""
         host = headers.get("host", "").lower()
         name = _name_of(host)
         ours = host in self._named or is_local(name) or name == self._host.lower()
@@ -59,7 +59,7 @@ class Access:
         return None
 
     def refusal_of_board(self, headers: Mapping[str, str]) -> str | None:
-        """Return why a request may not reach the board; None if it may. Only the server's own page may."""
+        """Return why a request with these headers may not reach the board; None if it may. Only the own page may."""
         origin, host = headers.get("origin", "").lower(), headers.get("host", "").lower()
         if origin and not _is_own(origin, host):
             return (
@@ -69,9 +69,9 @@ class Access:
         return None
 
     def foreign_embedder(self, headers: Mapping[str, str]) -> str | None:
-        """Return the origin of a site that tries to embed the page without permission; None for any other request.
+        """Return the origin of the site whose request tries to embed the page without permission; None if none does.
 
-        Browsers send the necessary headers over HTTPS and to this machine, because widget.js permits it.
+        Browsers send the necessary headers only over HTTPS or to this machine, and because widget.js permits them.
         """
         if headers.get("sec-fetch-dest") not in ("iframe", "frame"):
             return None
@@ -84,7 +84,7 @@ class Access:
         return _is_own(origin, host) or origin in self.origins
 
     def admits(self, token: str | None) -> bool:
-        """Return whether a token is right, or none is needed. The time does not reveal which character is wrong."""
+        """Return whether a token is right, or none is needed. The time taken reveals nothing about the token."""
         return self._token is None or hmac.compare_digest(
             (token or "").encode("utf-8", "replace"), self._token.encode("utf-8", "replace")
         )
@@ -102,12 +102,12 @@ class Access:
 
 
 def _is_own(origin: str, host: str) -> bool:
-    """Return whether an origin is the requested host itself."""
+    """Return whether an origin is that of the requested host itself."""
     return origin.partition("://")[2] == host
 
 
 def _name_of(host: str) -> str:
-    """Return the name in a Host header, without the port."""
+    """Return the host's name in a Host header, without the port; empty if the header is invalid."""
     try:
         return urlsplit(f"//{host}").hostname or ""
     except ValueError:

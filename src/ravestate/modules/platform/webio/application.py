@@ -1,4 +1,4 @@
-"""The page as an ASGI application: its files, its WebSocket, and the access check."""
+"""The chat page as an ASGI application: its files, its WebSocket, and the access check."""
 
 from __future__ import annotations
 
@@ -29,13 +29,13 @@ if TYPE_CHECKING:
     from .names import Settings
 
 PAGE = Path(__file__).parent / "page"
-"""The output of ``npm run build`` in ``frontend/``."""
+"""The folder of the built page: the output of ``npm run build`` in ``frontend/``."""
 
 CONSOLES = ("conio",)
-"""Platforms for a single user. With webio, each visitor's context would contain one."""
+"""The names of platforms for a single user. With webio, each visitor's context would contain such a platform."""
 
 MOST_LOGGED = 100
-"""The maximum number of sites that the log names, each once, so that strangers cannot fill the log."""
+"""The maximum number of embedding sites that the log names, each once, so that strangers cannot fill the log."""
 
 log = logging.getLogger("ravestate.webio")
 
@@ -78,18 +78,18 @@ def _settings_of(agent: Agent) -> Settings:
     for name in CONSOLES:
         if name in names:
             raise PlatformError(f"webio has many users, {name} has one: leave {name} out")
-    return agent.settings["webio"]  # type: ignore[return-value]  # the module's own
+    return agent.settings["webio"]  # type: ignore[return-value]  # the settings class of webio
 
 
 class AccessMiddleware:
     """Middleware that refuses requests without access, and adds headers that restrict scripts and frames.
 
-    The log names sites that try to embed the page without permission: their visitors see an empty frame only. One instance
-    guards the whole application; a second instance guards the board, which no other site may reach.
+    The log names sites that try to embed the page without permission: such a site's visitors see only an empty frame.
+    One instance guards the whole application; a second instance guards the board, which no other site may reach.
 
     Args:
         app: The application to guard.
-        inside: Whether the application is the board.
+        inside: Whether the application is the board, not the whole page.
     """
 
     def __init__(self, app: ASGIApp, *, inside: bool = False) -> None:
@@ -119,7 +119,7 @@ class AccessMiddleware:
             if message["type"] == "http.response.start":
                 answered = MutableHeaders(scope=message)
                 for name, value in _bounds(() if self._inside else access.origins).items():
-                    answered.setdefault(name, value)  # the board's header is stricter and wins
+                    answered.setdefault(name, value)  # the board's own header is stricter, so it stays
             await send(message)
 
         answer = self._app if refusal is None else PlainTextResponse(refusal, 403)
@@ -132,7 +132,7 @@ class AccessMiddleware:
 
 
 def _bounds(framing: Iterable[str]) -> dict[str, str]:
-    """Return headers that restrict scripts, and frames to the origins `framing`."""
+    """Return headers that restrict scripts, and let only the page's own site and the origins `framing` embed it."""
     policy = (
         "default-src 'none'",
         "script-src 'self'",

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 
 class Bucket:
-    """A rate limit: a burst, then a fixed number a second.
+    """A rate limit for events: a burst, then a fixed number per second.
 
     Args:
-        burst: The maximum number of events at once.
-        rate: Events per second after that.
-        now: The time (seconds).
+        burst: The maximum number of events in a burst.
+        rate: The number of events per second after a burst.
+        now: The present time (seconds on any clock, which `wait` and `take` use as well).
 
     Example:
         >>> bucket = Bucket(burst=2, rate=0.5, now=0.0)
@@ -28,7 +28,7 @@ class Bucket:
         self._time = now
 
     def wait(self, now: float) -> float:
-        """Count an event even beyond the limit; return the seconds until the limit allows it."""
+        """Count an event, even beyond the limit; return the seconds until the limit allows it, 0 if it does now."""
         self._fill(now)
         self._level -= 1
         return max(0.0, -self._level / self._rate)

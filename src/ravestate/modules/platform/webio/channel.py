@@ -12,10 +12,10 @@ from starlette.websockets import WebSocket, WebSocketDisconnect
 from .protocol import CLOSING_CODES, Error, ProtocolError, serialise
 
 LONGEST = 128 * 1024
-"""The maximum number of bytes of a frame. A text may have 10,000 characters, with twelve bytes each in JSON."""
+"""The maximum number of bytes in a frame. A text may have 10,000 characters, each up to twelve bytes in JSON."""
 
 SILENT = 10.0
-"""Seconds that a client has for its hello."""
+"""The seconds that a client has to send its first frame."""
 
 
 class Channel:
@@ -32,10 +32,10 @@ class Channel:
         self._most = replies
         self._replies: deque[str] = deque()
         self.woken = asyncio.Event()
-        """Set when there is something to send, such as a reply."""
+        """An event that is set when there is something to send, such as a reply."""
 
     async def carry(self, serve: Callable[[], Awaitable[None]]) -> None:
-        """Accept the client, and serve it until either side closes. The client gets each `ProtocolError` as a frame."""
+        """Accept the client, and run `serve` until either side closes. The client gets a `ProtocolError` as a frame."""
         try:
             await self._socket.accept()
             try:
@@ -47,7 +47,7 @@ class Channel:
             pass
 
     async def both(self, read: Coroutine[Any, Any, None], write: Coroutine[Any, Any, None]) -> None:
-        """Read and write at once until either ends."""
+        """Run both coroutines at the same time until one of them ends; then cancel the other."""
         tasks = [asyncio.create_task(read), asyncio.create_task(write)]
         try:
             await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
@@ -59,10 +59,10 @@ class Channel:
                 raise end
 
     async def first(self, expected: str) -> str | bytes:
-        """Return the first frame.
+        """Return the client's first frame.
 
         Args:
-            expected: An example of the first frame, for the error.
+            expected: An example of the first frame, for the error message.
 
         Raises:
             ProtocolError: The frame does not come in time, or is too large.
@@ -74,7 +74,7 @@ class Channel:
             raise ProtocolError("silent", f"no hello within {SILENT:g} s: begin with {expected}") from None
 
     async def receive(self) -> str | bytes:
-        """Return the next frame.
+        """Return the client's next frame.
 
         Raises:
             ProtocolError: The frame is too large.
@@ -83,16 +83,16 @@ class Channel:
         if message["type"] == "websocket.disconnect":
             raise WebSocketDisconnect(message.get("code", 1006))
         text: str | bytes = message.get("text") or message.get("bytes") or ""
-        if len(text) > LONGEST:  # most servers refuse such frames themselves
+        if len(text) > LONGEST:  # most servers refuse such frames before this line
             raise ProtocolError("too-large", f"a frame has at most {LONGEST:,} bytes, not {len(text):,}")
         return text
 
     async def send(self, text: str) -> None:
-        """Send a frame now."""
+        """Send a frame to the client at once."""
         await self._socket.send_text(text)
 
     def reply(self, text: str) -> None:
-        """Queue a frame for the writing task."""
+        """Queue a frame for the task that writes; it calls `send_replies`."""
         if len(self._replies) >= self._most:
             raise WebSocketDisconnect(1008, "it does not read")
         self._replies.append(text)
@@ -104,5 +104,5 @@ class Channel:
             await self.send(self._replies.popleft())
 
     async def end(self) -> None:
-        """Close the WebSocket cleanly."""
+        """Close the WebSocket with the code for a conversation that has ended."""
         await self._socket.close(CLOSING_CODES["ended"], "ended")

@@ -1,4 +1,4 @@
-"""One WebSocket between a client and a conversation."""
+"""A connection: one WebSocket between a client and a conversation."""
 
 from __future__ import annotations
 
@@ -38,11 +38,11 @@ if TYPE_CHECKING:
     from .sessions import Sessions
 
 BURST, RATE = 20, 5.0
-"""Frames that a client may send at once, and each second after that. The server delays further frames, and loses none.
-`Writing` has a separate limit with the same numbers; the server ignores the rest."""
+"""How many frames a client may send in a burst, and per second after it. The server delays further frames, and loses
+none. `Writing` frames have a limit of their own with the same numbers; the server ignores further ones."""
 
 REPLIES = 32
-"""The maximum number of replies that may wait for a client."""
+"""The maximum number of replies that may wait to be sent to a client."""
 
 HELLO = f'{{"type": "hello", "v": {VERSION}}}'
 
@@ -52,12 +52,12 @@ class Connection:
 
     Args:
         socket: A WebSocket, not accepted yet.
-        sessions: The conversations.
-        access: The access check.
-        title: The agent's name on the page; None for its own name.
+        sessions: The server's conversations.
+        access: The check of the client's token.
+        title: The agent's name on the page; None for the agent's own name.
         inside: The path of the board, e.g. ``board/``; None if there is none.
-        suggestions: Things that the visitor could say first.
-        note: A line that the page shows once; None for none.
+        suggestions: A few things that the visitor could say first.
+        note: A line of text that the page shows until the visitor has said something; None for no line.
     """
 
     def __init__(
@@ -84,7 +84,7 @@ class Connection:
         await self._channel.carry(self._serve)
 
     def wake(self) -> None:
-        """Look for changes in the conversation."""
+        """Wake the task that sends changes in the conversation to the client."""
         self._channel.woken.set()
 
     async def _serve(self) -> None:
@@ -124,7 +124,7 @@ class Connection:
                 if isinstance(frame, Writing):
                     if writing.take(now()):
                         session.notice_writing()
-                    await asyncio.sleep(0)  # let other tasks run between many of them
+                    await asyncio.sleep(0)  # let other tasks run between many such frames
                     continue
                 self._take(frame, session)
             except ProtocolError as error:
@@ -148,7 +148,7 @@ class Connection:
     # ------------------------------------------------------------------------------------ to the client
 
     async def _write(self, session: Session, last: int, agent: str) -> None:
-        """Send all that the client has not seen: a name other than `agent`, messages after `last`, the growing utterance."""
+        """Send all that the client lacks: a name other than `agent`, messages after number `last`, a new `Piece`."""
         shown, typing, paused = "", False, False
         woken = self._channel.woken
         while True:
@@ -180,7 +180,7 @@ class Connection:
             await woken.wait()
 
     def _name_of(self, session: Session) -> str:
-        """Return the agent's name on the page."""
+        """Return the agent's name for the page of a conversation."""
         return session.agent if self._title is None else self._title
 
     async def _send(self, frame: ServerFrame) -> None:

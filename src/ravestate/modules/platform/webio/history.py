@@ -1,4 +1,4 @@
-"""The last messages of a conversation, with their numbers."""
+"""The history of a conversation: its last messages, with their numbers."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class History:
         self._characters = characters
         self._size = 0
         self.last = 0
-        """The number of the newest message."""
+        """The number of the newest message; 0 before the first."""
 
     @property
     def first(self) -> int:
@@ -42,11 +42,11 @@ class History:
         return self.last - len(self._messages) + 1
 
     def newest(self, speaker: Speaker) -> Message | None:
-        """Return the newest message of a speaker, if the history has one."""
+        """Return the newest message of a speaker, or None."""
         return next((message for message in reversed(self._messages) if message.speaker == speaker), None)
 
     def add(self, speaker: Speaker, text: str, time: int, id: str | None = None) -> Message:
-        """Add a message and return it. A text that is longer than a whole history is cut."""
+        """Add a message, and return it; `time` is in milliseconds since 1970. A text longer than a history is cut."""
         text = text[: self._characters]
         self.last += 1
         message = Message(self.last, speaker, text, time, id)
@@ -57,7 +57,7 @@ class History:
         return message
 
     def since(self, number: int) -> Iterator[Message]:
-        """Yield the messages with greater numbers, in order; others may be added meanwhile."""
+        """Yield the messages with numbers greater than `number`, in order, including those added meanwhile."""
         while number < self.last:
             number = max(number + 1, self.first)
             yield self._messages[number - self.first]

@@ -1,4 +1,4 @@
-"""Connection limits, for the time before the application gets a request and after a client has stopped reading.
+"""Limits on connections, before the application gets a request and after a client has stopped reading.
 
 The classes extend uvicorn's protocols, which have no such limits.
 """
@@ -18,13 +18,13 @@ from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIO
 from websockets.exceptions import InvalidState
 
 TIMEOUT = 10.0
-"""Seconds that a client has to send its request, and then to read the answer."""
+"""The seconds that a client has to send its request, and then again to read the answer."""
 
 LOWEST_RATE = 8 * 1024
-"""The lowest rate of a request (bytes a second). A client may fall behind by `TIMEOUT` seconds."""
+"""The lowest rate at which a client may send a request (bytes per second). It may fall behind by `TIMEOUT` seconds."""
 
 STALL_TIMEOUT = 20.0
-"""Seconds for which a client may leave data unread."""
+"""The seconds for which a client of a WebSocket may leave data unread."""
 
 FULL = (
     b"HTTP/1.1 503 Service Unavailable\r\nconnection: close\r\ncontent-type: text/plain\r\ncontent-length: %d\r\n\r\n%s"
@@ -35,7 +35,7 @@ FOREIGN = (
     "Invalid UTF-8 sequence received from client.",
     "Unsupported upgrade request.",
 )
-"""Uvicorn's messages about clients' faults. Only clients get them; in the log, strangers could fill the disk."""
+"""Uvicorn's messages about faults of clients. The log leaves them out, or strangers could fill the disk with it."""
 
 log = logging.getLogger("ravestate.webio.limits")
 log.setLevel(logging.WARNING)
@@ -55,12 +55,12 @@ class LimitedHTTP(H11Protocol):
         self.logger = log
         self._per_address = per_address
         self._most = most
-        self._received = 0  # bytes since the last check
+        self._received = 0  # how many bytes came since the last check
         self._waited: object = None  # the request whose client was slow at the last check
-        self._late: tuple[object, float] = (None, 0.0)  # a request, and its deficit in bytes
+        self._late: tuple[object, float] = (None, 0.0)  # a request, and by how many bytes it is behind the lowest rate
 
     def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]  # as in the base class
-        """Take a connection, or refuse it."""
+        """Take a new connection, or refuse it if there are too many."""
         super().connection_made(transport)
         if len(self.connections) > self._most:
             self._refuse("too many connections")
@@ -80,12 +80,12 @@ class LimitedHTTP(H11Protocol):
         return sum(1 for address in addresses if address and address[0] == here)
 
     def _refuse(self, why: str) -> None:
-        self.connections.discard(self)  # stop counting it, though closing takes a moment
+        self.connections.discard(self)  # stop counting this connection, though closing it takes a moment
         self.transport.write(FULL % (len(why), why.encode()))
         self.transport.close()
 
     def _check(self) -> None:
-        """Hang up if the client has sent no request since the last check, sends one too slowly, or leaves its answer unread."""
+        """Hang up if the client has sent no request since the last check, sends too slowly, or does not read."""
         if self.transport.is_closing() or self.transport.get_protocol() is not self:
             return
         request = cast("RequestResponseCycle | None", self.cycle)
@@ -94,7 +94,7 @@ class LimitedHTTP(H11Protocol):
             self._waited = request
         else:
             spent = self._is_late(request)
-            self._waited = self  # equal to no request
+            self._waited = self  # a value that is not equal to any request
         if spent:
             _hang_up(self.transport)
             return
@@ -102,7 +102,7 @@ class LimitedHTTP(H11Protocol):
         self.loop.call_later(TIMEOUT, self._check)
 
     def _is_late(self, request: RequestResponseCycle) -> bool:
-        """Return whether the client sends a request too slowly overall. Waits for the server do not count."""
+        """Return whether the client sends a request too slowly on average. Waits for the server do not count."""
         due = LOWEST_RATE * TIMEOUT
         behind = self._late[1] if self._late[0] is request else 0.0
         waits = self.flow.read_paused or not request.more_body
@@ -112,7 +112,7 @@ class LimitedHTTP(H11Protocol):
 
 
 class LimitedWebSocket(WebSocketsSansIOProtocol):
-    """A WebSocket that drops clients which do not read, instead of keeping their data."""
+    """A WebSocket that hangs up on a client that does not read, instead of keeping the client's data."""
 
     _stalled: asyncio.TimerHandle | None = None
 
@@ -126,10 +126,10 @@ class LimitedWebSocket(WebSocketsSansIOProtocol):
             raise ClientDisconnected
         await super().send(message)
         if self.close_sent:
-            self.handshake_complete = True  # uvicorn would log the missing answer as an error
+            self.handshake_complete = True  # else uvicorn would log the missing answer as an error
 
     async def run_asgi(self) -> None:
-        """Run the application; later, hang up on a client that does not close."""
+        """Run the application; some time after its end, hang up on a client that has not closed the connection."""
         await super().run_asgi()
         self.loop.call_later(TIMEOUT, self._end_late)
 
@@ -144,7 +144,7 @@ class LimitedWebSocket(WebSocketsSansIOProtocol):
             _hang_up(self.transport)
 
     def pause_writing(self) -> None:
-        """Give a client that leaves much unread some time to catch up."""
+        """Start a time limit for a client that leaves much data unread."""
         super().pause_writing()
         self._stalled = self.loop.call_later(STALL_TIMEOUT, _hang_up, self.transport)
 
@@ -154,12 +154,12 @@ class LimitedWebSocket(WebSocketsSansIOProtocol):
         self._stop_timer()
 
     def connection_lost(self, exc: Exception | None) -> None:
-        """Clean up after a connection."""
+        """Stop the time limit: the connection has ended."""
         self._stop_timer()
         super().connection_lost(exc)
 
     def handle_ping(self) -> None:
-        """Answer a ping, unless the client does not read the answers."""
+        """Answer a ping; hang up on a client that does not read the answers."""
         if self.writable.is_set():
             super().handle_ping()
         else:
@@ -177,7 +177,7 @@ class LimitedWebSocket(WebSocketsSansIOProtocol):
 
 
 def _hang_up(transport: asyncio.Transport) -> None:
-    """Close at once; the system drops unread data instead of trying to deliver it."""
+    """Close a connection at once; the system drops the unread data instead of trying to deliver it."""
     connected = transport.get_extra_info("socket")
     if connected is not None:
         with contextlib.suppress(OSError):

@@ -26,18 +26,18 @@ def _origin(text: str) -> str:
 
 
 class Settings(rs.Settings):
-    """Where the server listens, who may connect, and how much it takes."""
+    """The settings of webio: where the server listens, who may connect, and how much it takes."""
 
     host: str = "127.0.0.1"
     """The address to listen on. Any address that others can reach needs a token."""
     port: int = pydantic.Field(8420, ge=0, le=65535)
-    """The port; 0 takes any free one."""
+    """The port to listen on; 0 takes any free port."""
     token: pydantic.SecretStr | None = None
-    """The secret that each visitor needs, as in a link with ``#token=...``. Set it as ``RAVESTATE_WEBIO_TOKEN``."""
+    """The secret that each visitor's link needs at its end: ``#token=...``. Set it as ``RAVESTATE_WEBIO_TOKEN``."""
     origins: tuple[Annotated[str, pydantic.AfterValidator(_origin)], ...] = ()
-    """Web sites that may embed the page, e.g. ``https://museum.example``. Behind a proxy, also the page's own site."""
+    """The sites that may embed the page, e.g. ``https://museum.example``. Behind a proxy, add the page's own site."""
     title: str | None = None
-    """The agent's name on the page, by default ``interloc.agent``."""
+    """The agent's name on the page; by default, the value of ``interloc.agent``."""
     suggestions: tuple[Annotated[str, pydantic.Field(min_length=1, max_length=80)], ...] = pydantic.Field(
         ("Hello!", "Who are you?", "What can you do?"), max_length=6
     )
@@ -45,7 +45,7 @@ class Settings(rs.Settings):
     note: Annotated[str, pydantic.Field(min_length=1, max_length=300)] | None = None
     """A line that the page shows once in each browser, until the visitor has said something."""
     keep: float = pydantic.Field(600.0, ge=0, allow_inf_nan=False)
-    """Seconds for which the server keeps a conversation after its visitor has disconnected."""
+    """The seconds for which the server keeps a conversation after its visitor has disconnected."""
     sessions: int = pydantic.Field(1000, ge=1)
     """The maximum number of conversations at a time."""
     per_address: int = pydantic.Field(100, ge=1)
@@ -67,4 +67,4 @@ class Settings(rs.Settings):
 module = rs.Module("webio", requires=(rawio, interloc), settings=Settings, serve=serve)
 
 page: rs.Slot[Session | None] = module.slot("page", None)
-"""The visitor's conversation of this context; None for a context without a page."""
+"""The conversation on the page that this context belongs to; None for a context without a page."""

@@ -1,4 +1,4 @@
-"""The files of the built page, in memory, plain and compressed."""
+"""The files of the built pages, which the server keeps in memory, plain and compressed."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ KINDS = {
     ".woff2": "font/woff2",
 }
 COMPRESSED = {".woff2"}
-"""Types that are compressed already."""
+"""The endings of files whose content is compressed already."""
 
 
 async def refuse(socket: WebSocket, answer: Response) -> None:
-    """Answer a WebSocket's handshake with a response. Servers without that ASGI extension answer with 403."""
+    """Refuse a WebSocket's handshake with a response. Servers without that ASGI extension answer with status 403."""
     if "websocket.http.response" in (socket.scope.get("extensions") or {}):
         await socket.send_denial_response(answer)
     else:
@@ -44,7 +44,7 @@ class Pages:
     """An ASGI application that serves the files of a folder, with ``index.html`` for folders.
 
     Args:
-        folder: The folder; later changes in it have no effect.
+        folder: The folder to read; later changes in it have no effect.
     """
 
     def __init__(self, folder: Path) -> None:
@@ -57,7 +57,7 @@ class Pages:
                 self._files[f"/{file.relative_to(folder).as_posix()}"] = _File(data, packed, KINDS[file.suffix], tag)
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Answer a request; a WebSocket has no page here."""
+        """Answer a request for a file; refuse a WebSocket."""
         if scope["type"] == "websocket":
             await refuse(WebSocket(scope, receive, send), PlainTextResponse("there is no such WebSocket", 404))
         else:

@@ -29,13 +29,13 @@ __all__ = [
 ]  # fmt: skip
 
 VERSION = 1
-"""The version of the protocol. A new frame or field keeps the number; any other change raises it."""
+"""The version of the protocol. A new frame or field keeps this number; any other change increases it."""
 
 LONGEST_NAME = 80
-"""The maximum number of characters of a name."""
+"""The maximum number of characters in a visitor's name."""
 
 LONGEST_TEXT = 10_000
-"""The maximum number of characters that a visitor may say at once."""
+"""The maximum number of characters in one utterance of a visitor."""
 
 GREATEST = 2**53 - 1
 """The greatest whole number that every JSON reader can hold."""
@@ -51,7 +51,7 @@ CLOSING_CODES = {
     "silent": 4408,
     "behind": 4409,
 }
-"""The WebSocket's closing code for each error; any other error closes with the code of ``malformed``."""
+"""Error code → the WebSocket's closing code; any other error closes with the code of ``malformed``."""
 
 
 class ProtocolError(PlatformError, ValueError):
@@ -59,7 +59,7 @@ class ProtocolError(PlatformError, ValueError):
 
     Attributes:
         code: One word for programs, e.g. ``malformed``; the message is for people.
-        id: The `id` of the refused frame, if it is a `Say`.
+        id: The refused frame's `id`, if that frame is a `Say`.
     """
 
     def __init__(self, code: str, message: str, id: str | None = None) -> None:
@@ -69,7 +69,7 @@ class ProtocolError(PlatformError, ValueError):
 
 
 def heard_text(text: str) -> str:
-    """Return a visitor's text without control characters.
+    """Return the text of a visitor's utterance without control characters.
 
     Raises:
         ProtocolError: The code is ``too-long`` for too many characters, ``empty`` for a blank text.
@@ -87,7 +87,7 @@ def heard_text(text: str) -> str:
 
 
 def name_of(text: str) -> str:
-    """Return a text as a name: one line, without invisible characters or a change of direction. It may be empty.
+    """Return a text as one line, without invisible characters or characters that change the writing direction.
 
     Example:
         >>> name_of(" Ada\\u202e\\nLovelace ")
@@ -113,7 +113,7 @@ def _spoken(version: int) -> int:
     return version
 
 
-# The message about a refused value contains the description of its type.
+# An error message about a refused value contains the description of the expected type.
 Number = Annotated[int, Field(strict=True, ge=0, le=GREATEST, description="a whole number from 0 on")]
 Version = Annotated[Number, AfterValidator(_spoken), Field(description=f"the version, {VERSION}")]
 Truth = Annotated[bool, Field(strict=True, description="true or false")]
@@ -139,8 +139,8 @@ class Hello:
 
     Attributes:
         v: The version of the protocol.
-        session: The conversation to resume; without one, a new conversation begins.
-        last: The number of the last message that the client has.
+        session: The id of the conversation to resume; if it is missing, a new conversation begins.
+        last: The number of the last message that the client has; 0 if it has none.
         token: The server's token, if the server asks for one.
         name: The visitor's name, if it is known.
     """
@@ -164,7 +164,7 @@ class Say:
 
 @dataclass(frozen=True, slots=True)
 class Writing:
-    """The visitor is writing; the client repeats this now and then."""
+    """The visitor is typing; the client repeats this frame while they type."""
 
     type: Literal["writing"] = "writing"
 
@@ -178,7 +178,7 @@ class Bye:
 
 @dataclass(frozen=True, slots=True)
 class Ping:
-    """A question for a `Pong`. Browsers need it: they cannot send the WebSocket's own pings."""
+    """A request for a `Pong`. Browsers need it: they cannot send the WebSocket's own pings."""
 
     type: Literal["ping"] = "ping"
 
@@ -192,15 +192,15 @@ class Welcome:
 
     Attributes:
         v: The version of the protocol.
-        session: The conversation: a secret, with which a client resumes it.
-        resumed: Whether the client asked for this conversation.
+        session: The conversation's secret id; a client sends it to resume.
+        resumed: Whether this resumes the conversation that the client asked for.
         first: The number of the oldest message that the server keeps.
         agent: The agent's name.
-        inside: The address of the board for this conversation, relative to the page.
-        last: The number of the newest message; 0 before the first.
-        writing: Whether the server takes `Writing`. The first servers did not.
+        inside: The address of the board for this conversation, relative to the page; None without a board.
+        last: The number of the newest message; 0 before the first message.
+        writing: Whether the server accepts `Writing` frames. Early server releases did not.
         suggestions: A few things that the visitor could say first.
-        note: A line to show once, until the visitor has said something.
+        note: A line of text that the page shows until the visitor has said something; None for no line.
     """
 
     v: Version
@@ -229,11 +229,11 @@ class Message:
     """An utterance.
 
     Attributes:
-        n: Its number: the first message has 1, and no number is left out.
-        speaker: The side that said it.
+        n: The message's number: the first message of a conversation has 1, and no number is left out.
+        speaker: The side that said the utterance.
         text: Plain text.
-        time: Milliseconds since 1970 (UTC).
-        id: The `id` of the client's `Say`, if it came from one.
+        time: The time of the utterance, in milliseconds since 1970 (UTC).
+        id: The `id` of the client's `Say`, if the utterance came from a `Say`.
     """
 
     n: Number
@@ -249,8 +249,8 @@ class Piece:
     """A piece of an utterance that is still growing: `text` replaces everything from character `at` on.
 
     Attributes:
-        at: A place in the utterance, in UTF-16 units as JavaScript counts.
-        text: The new end of the utterance.
+        at: The position in the utterance where `text` begins, in UTF-16 units as JavaScript counts.
+        text: The utterance from `at` to its new end.
     """
 
     at: Number
@@ -276,7 +276,7 @@ class Paused:
 
 @dataclass(frozen=True, slots=True)
 class Ended:
-    """The conversation is over, and why; the server closes the connection."""
+    """The conversation is over; `text` says why. The server then closes the connection."""
 
     text: Text
     type: Literal["ended"] = "ended"
@@ -284,12 +284,12 @@ class Ended:
 
 @dataclass(frozen=True, slots=True)
 class Error:
-    """A fault in a frame or a connection.
+    """A fault in a frame from the client, or in the connection.
 
     Attributes:
         code: One word for programs.
         text: An explanation for people.
-        id: The `id` of the `Say` that is refused, if it is one.
+        id: The refused frame's `id`, if that frame is a `Say`.
     """
 
     code: Text
@@ -322,21 +322,21 @@ F = TypeVar("F")
 
 
 def serialise(frame: ClientFrame | ServerFrame) -> str:
-    """Return a frame as text. A field that is None is left out."""
+    """Return a frame as JSON text, without the fields that are None."""
     fields = _FRAMES.dump_python(frame, by_alias=True, exclude_none=True)
     return json.dumps({"type": frame.type, **fields}, ensure_ascii=False, separators=(",", ":"))
 
 
 def parse(text: str | bytes, frames: TypeAdapter[F]) -> F:
-    """Return the frame that a text stands for. Unknown fields are ignored; null counts as a missing field.
+    """Return the frame that a JSON text describes. Unknown fields are ignored; null counts as a missing field.
 
     Args:
         text: The message that was received.
-        frames: The frames that may come: `CLIENT` or `SERVER`.
+        frames: The kinds of frames to accept: `CLIENT` or `SERVER`.
 
     Raises:
-        ProtocolError: The text is not such a frame. The code is ``version`` for another version, that of `heard_text` for
-            a refused `Say`, else ``malformed``.
+        ProtocolError: The text is not such a frame. The code is ``version`` for another version, ``too-long`` or
+            ``empty`` for a `Say` whose text is refused, else ``malformed``.
     """
     if not isinstance(text, str):
         raise _malformed("a frame is a text message, not a binary one")
@@ -355,7 +355,7 @@ def parse(text: str | bytes, frames: TypeAdapter[F]) -> F:
 
 
 def _explained(error: ValidationError, fields: dict[str, Any], frames: TypeAdapter[Any]) -> ProtocolError:
-    """Return the first fault that pydantic has found, in words."""
+    """Return an error that explains the first fault in pydantic's list."""
     fault = error.errors(include_url=False)[0]
     refused = fault.get("ctx", {}).get("error")
     if isinstance(refused, ProtocolError):
@@ -374,7 +374,7 @@ def _explained(error: ValidationError, fields: dict[str, Any], frames: TypeAdapt
 
 @functools.cache
 def _expected(frames: TypeAdapter[Any]) -> dict[str, dict[str, str]]:
-    """Return what each field of each frame holds, in words: the descriptions in the JSON schema."""
+    """Return frame type → field → the description of the field's value, from the JSON schema."""
     schema = frames.json_schema()
     kinds = (schema["$defs"][kind["$ref"].rpartition("/")[2]]["properties"] for kind in schema["oneOf"])
     return {

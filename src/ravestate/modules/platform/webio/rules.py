@@ -8,12 +8,12 @@ from ravestate.modules import interloc, rawio
 from .names import module, page
 
 SLOW = 0.3
-"""Seconds of waiting before the page shows that the agent is working."""
+"""The seconds of waiting after which the page shows that the agent is working."""
 
 
 @module.rule(when=rawio.output.changed.max_age(None).detached(), reads=page)
 async def show(ctx: rs.RuleContext) -> None:
-    """Show an utterance."""
+    """Show each utterance of the agent on the page."""
     session = ctx[page]
     if session is not None:
         session.utter(ctx.payload(rawio.output.changed))
@@ -21,7 +21,7 @@ async def show(ctx: rs.RuleContext) -> None:
 
 @module.rule(when=rawio.piece.max_age(None).detached(), reads=page, background=True)
 async def show_piece(ctx: rs.RuleContext) -> None:
-    """Show a piece of a growing utterance."""
+    """Show each piece of a growing utterance on the page."""
     session = ctx[page]
     if session is not None:
         session.grow(ctx.payload(rawio.piece))
@@ -29,7 +29,7 @@ async def show_piece(ctx: rs.RuleContext) -> None:
 
 @module.rule(when=rawio.speaking.false.max_age(None).detached(), reads=page, background=True)
 async def end_piece(ctx: rs.RuleContext) -> None:
-    """End a growing utterance that was never written as a whole."""
+    """End a growing utterance that no rule has written as a whole."""
     session = ctx[page]
     if session is not None:
         session.fall_silent()
@@ -37,7 +37,7 @@ async def end_piece(ctx: rs.RuleContext) -> None:
 
 @module.rule(when=interloc.agent.changed.max_age(None).detached(), reads=page, background=True)
 async def show_name(ctx: rs.RuleContext) -> None:
-    """Show the agent's new name."""
+    """Show the agent's new name on the page."""
     session = ctx[page]
     if session is not None:
         session.notify()
@@ -45,7 +45,7 @@ async def show_name(ctx: rs.RuleContext) -> None:
 
 @module.rule(when=rs.pressure.true.min_age(SLOW).max_age(None).detached(), reads=page, background=True)
 async def show_delay(ctx: rs.RuleContext) -> None:
-    """Show that the agent is working."""
+    """Show on the page that the agent is working."""
     session = ctx[page]
     if session is not None:
         session.show_work()

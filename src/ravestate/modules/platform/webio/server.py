@@ -34,24 +34,24 @@ SPARE = 128
 """The number of open files that the server leaves to the rest of the process."""
 
 BACKLOG = 256
-"""Connections that the system accepts before the server takes them."""
+"""How many connections the system accepts before the server takes them."""
 
 UNREAD = 128 * 1024
-"""Bytes that the system buffers for a client that does not read."""
+"""How many bytes the system buffers for a client that does not read."""
 
 LAST_WORDS = 2.0
-"""Seconds that connections have to close when the server ends."""
+"""The seconds that connections have to close when the server ends."""
 
 
 class Server:
     """Serves the page of an agent: ``async with Server(agent) as server``.
 
     Args:
-        agent: An agent with ``webio`` among its modules; the settings say where to listen.
-        routes, inside: See `webio.app`.
+        agent: An agent with ``webio`` among its modules; its settings say where to listen.
+        routes, inside: As for `webio.app`.
 
     Raises:
-        PlatformError: Others can reach the address, and there is no token; or see `make_app`.
+        PlatformError: Other machines can reach the address, and there is no token; or as for `make_app`.
     """
 
     def __init__(self, agent: Agent, routes: Iterable[BaseRoute] = (), inside: str | None = None) -> None:
@@ -83,7 +83,7 @@ class Server:
                 ws=LimitedWebSocket,
                 lifespan="on",
                 ws_max_size=LONGEST,
-                ws_per_message_deflate=False,  # frames are small, and each window would take memory
+                ws_per_message_deflate=False,  # frames are small, and each compressor would take memory
                 backlog=BACKLOG,
                 timeout_keep_alive=15,
                 timeout_graceful_shutdown=int(LAST_WORDS),
@@ -106,7 +106,7 @@ class Server:
     async def __aexit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        """End the conversations cleanly, and close."""
+        """End the conversations in order, and stop the server."""
         assert self._uvicorn is not None and self._task is not None  # set by `__aenter__`
         with self._saved:
             await self._app.state.sessions.close()
@@ -121,14 +121,14 @@ class Server:
 
     @property
     def address(self) -> str:
-        """The address of the page; it has this machine's name if the server listens on all addresses."""
+        """The address of the page; if the server listens on all addresses, it contains this machine's name."""
         host = self._settings.host.strip("[]")
         if host in ("0.0.0.0", "::"):
             host = socket.gethostname()
         return f"http://{f'[{host}]' if ':' in host else host}:{self.port}/"
 
     def link(self, path: str = "") -> str:
-        """Return the address of a page, with the token that lets its visitor in."""
+        """Return the address of the page at `path`, with the token that its visitor needs."""
         token = self._settings.token
         secret = f"#token={quote(token.get_secret_value(), safe='')}" if token else ""
         return f"{self.address}{path}{secret}"
@@ -139,7 +139,7 @@ class Server:
         The token appears only on a terminal: other outputs are often kept in files that others can read.
 
         Args:
-            pages: The path of each page, by its name.
+            pages: Name of a page → its path.
         """
 
         def lines(address: Callable[[str], str]) -> str:
@@ -157,7 +157,7 @@ class Server:
         sys.stdout.flush()
 
     async def until_failed(self) -> None:
-        """Wait until the server ends by itself, which happens only after a failure."""
+        """Wait until the server ends by itself, which happens only after a failure; raise that failure."""
         assert self._task is not None  # set by `__aenter__`
         await asyncio.shield(self._task)
 
@@ -171,7 +171,7 @@ class _Uvicorn(uvicorn.Server):
         self.told = asyncio.Event()
 
     async def main_loop(self) -> None:
-        """Wait for the order to end."""
+        """Wait until `told` is set, which orders the server to end."""
         self.listening.set()
         await self.told.wait()
 
@@ -191,7 +191,7 @@ def _listen(host: str, port: int) -> socket.socket:
     listener = socket.socket(family, kind, protocol)
     try:
         listener.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, UNREAD)  # accepted sockets inherit it
-        if sys.platform != "win32":  # on Windows, this would share the port
+        if sys.platform != "win32":  # on Windows, this option would let others share the port
             listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         listener.bind(address)
     except OSError as error:
@@ -205,10 +205,10 @@ def _listen(host: str, port: int) -> socket.socket:
 
 
 def _most(wanted: int) -> int:
-    """Return the wanted number of connections, or fewer if the limit on open files demands it."""
+    """Return how many connections to allow: the wanted number, or fewer if the limit on open files demands it."""
     try:
         import resource
-    except ImportError:  # not on Windows
+    except ImportError:  # Windows has no such limit
         return wanted
     soft, _ = resource.getrlimit(resource.RLIMIT_NOFILE)
     return wanted if soft == resource.RLIM_INFINITY else max(16, min(wanted, soft - SPARE))

@@ -1,4 +1,4 @@
-"""The two ways to serve an agent's page: by itself, or as an ASGI application in another one."""
+"""The two ways to serve an agent's page: alone, or as an ASGI application within another application."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ async def serve(agent: Agent) -> None:
     Raises:
         PlatformError: The port is in use, a token is missing, or starlette or uvicorn is not installed.
     """
-    await asyncio.to_thread(_load)  # the imports take a quarter of a second, and other tasks may be running
+    await asyncio.to_thread(_load)  # the imports take a quarter of a second, and would hold up other tasks
     from .server import Server
 
     async with Server(agent) as server:
@@ -31,14 +31,14 @@ async def serve(agent: Agent) -> None:
 
 
 def app(agent: Agent, routes: Iterable[BaseRoute] = (), inside: str | None = None) -> Starlette:
-    """Return an agent's page as an ASGI application, to serve, or to mount in another application.
+    """Return an agent's page as an ASGI application, to serve alone or to mount in another application.
 
     The application's lifespan ends the conversations. A mounted application has no lifespan of its own: enter
-    ``chat.router.lifespan_context(chat)`` in the lifespan of the outer one. The outer server limits the connections.
+    ``chat.router.lifespan_context(chat)`` in the outer application's lifespan. The outer server limits the connections.
 
     Args:
         agent: An agent with ``webio`` among its modules.
-        routes: More routes beside the page, behind the same checks of host and origin.
+        routes: More routes beside the page, protected by the same checks of host and origin.
         inside: The path of the board among those routes, e.g. ``board/``.
 
     Raises:

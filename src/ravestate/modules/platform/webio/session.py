@@ -1,4 +1,4 @@
-"""One conversation: a context, its messages, and its open windows."""
+"""A session: one conversation, with its context, its messages, and its open windows."""
 
 from __future__ import annotations
 
@@ -25,16 +25,16 @@ REMEMBERED = 512
 """The number of message ids that a session remembers, to ignore repeated messages."""
 
 GRACE = 0.3
-"""Seconds of waiting before the page shows that the agent is working."""
+"""The seconds after the visitor's words before the page shows that the agent is working."""
 
 FAREWELL = 5.0
-"""Seconds that the agent has for a farewell."""
+"""The seconds that the agent has for a farewell."""
 
 log = logging.getLogger("ravestate.webio")
 
 
 class Ending(enum.StrEnum):
-    """Why a conversation is over, in words for people other than the visitor."""
+    """The reason for the end of a conversation, in words for people other than the visitor."""
 
     BYE = "the visitor left"
     ABANDONED = "nobody was there"
@@ -51,39 +51,39 @@ class Ending(enum.StrEnum):
 
 
 class Onlooker(Protocol):
-    """A listener for changes in a conversation."""
+    """An object that a session wakes after each change in its conversation."""
 
     def wake(self) -> None:
-        """Note that something has changed; look at it later."""
+        """Note that the conversation has changed; look at the change later."""
         ...
 
 
 class Session:
     """A visitor's conversation. It outlives its connections, and runs on one event loop.
 
-    It has no queue: it wakes each `Onlooker`, which reads all that it has not seen yet.
+    A session has no queue: it wakes each `Onlooker`, which reads all that it has not seen yet.
 
     Args:
         context: The visitor's context, not entered yet.
-        name: The visitor's name, if it is known.
+        name: The visitor's name; None if it is unknown.
     """
 
     def __init__(self, context: Context, name: str | None = None) -> None:
         self.id = secrets.token_urlsafe(24)
-        """The secret with which a client resumes the conversation."""
+        """The conversation's secret id; a client sends it to resume."""
         self.visitor = f"webio-{secrets.token_hex(4)}"
         """The key of the visitor in ``interloc.users``."""
         self.name = name
         self.began = _now()
-        """The time of its beginning (milliseconds since 1970)."""
+        """The time at which the conversation began (milliseconds since 1970)."""
         self.context = context
         self.history = History()
         self.partial = ""
-        """The growing utterance so far."""
+        """The text so far of a growing utterance of the agent; empty if there is none."""
         self.spoken = False
         """Whether the visitor has ever said anything."""
         self.ended: Ending | None = None
-        """Why the conversation is over; None while it goes on."""
+        """The reason for which the conversation is over; None while it goes on."""
         self.onlookers: set[Onlooker] = set()
         self._begun = False
         self._left: asyncio.Event = asyncio.Event()
@@ -98,7 +98,7 @@ class Session:
     # ------------------------------------------------------------------------------------ life
 
     async def live(self) -> None:
-        """Run until the visitor or the agent leaves, or the task is cancelled; then end cleanly."""
+        """Run the conversation until the visitor or the agent leaves, or the task is cancelled; then end it properly."""
         try:
             async with self.context as context:
                 self._begun = True
@@ -110,7 +110,7 @@ class Session:
                     await context.quiet()
         except TimeoutError:
             pass  # the farewell took too long
-        except RavestateError as failure:  # the other conversations go on
+        except RavestateError as failure:  # the other conversations continue
             self._reason = Ending.FAILED
             log.error("a conversation ended: %s", failure)
         finally:
@@ -121,7 +121,7 @@ class Session:
             self.notify()
 
     def leave(self, reason: Ending) -> None:
-        """End the conversation for good."""
+        """End the conversation for good, for a reason."""
         if not self.leaving:
             self._reason = reason
             self._left.set()
@@ -131,7 +131,7 @@ class Session:
         stopped = asyncio.create_task(self.context.until_stopped())
         try:
             await asyncio.wait((left, stopped), return_when=asyncio.FIRST_COMPLETED)
-            self._left.set()  # from now on it takes no input
+            self._left.set()  # from now on the session takes no input
             if stopped.done():
                 self._reason = Ending.LEFT
                 stopped.result()
@@ -154,11 +154,11 @@ class Session:
         """Take the visitor's words. Words that came before under the same `id` are ignored.
 
         Args:
-            id: The client's name for the words: 1 to 64 letters, digits, ``-`` or ``_``.
+            id: The client's id for the words: 1 to 64 letters, digits, ``-`` or ``_``.
             text: The words, checked by `heard_text`.
 
         Returns:
-            Whether the session took them, now or before; False while the visitor or the agent is `leaving`.
+            Whether the session took the words, now or before; False if the session is `leaving`.
         """
         if self.leaving:
             return False
@@ -183,12 +183,12 @@ class Session:
 
     @property
     def agent(self) -> str:
-        """The agent's own name, as one line of 1 to 80 characters."""
+        """The agent's own name (``interloc.agent``), as one line of 1 to 80 characters."""
         name = self.context.read(interloc.agent) if self._begun else ""
         return name_of(name[:LONGEST_NAME]) or interloc.agent.default
 
     def utter(self, text: str) -> None:
-        """Add an utterance of the agent."""
+        """Add a whole utterance of the agent to the history."""
         text = printable(text)
         self.partial = ""
         if text.strip():
@@ -196,17 +196,17 @@ class Session:
         self.notify()
 
     def grow(self, piece: str) -> None:
-        """Add a piece to the utterance that is still growing."""
+        """Add a piece to the agent's growing utterance."""
         self.partial += without_controls(piece)
         self.notify()
 
     def fall_silent(self) -> None:
-        """End the growing utterance; its text so far becomes a message."""
+        """End the agent's growing utterance; its text so far becomes a message."""
         if self.partial:
             self.utter(self.partial)
 
     def show_work(self, grace: float = 0.0) -> None:
-        """Show that the agent is working, from `grace` seconds on, until no rule may write an answer any more.
+        """Show that the agent is working, after `grace` seconds, until no rule may write an answer any more.
 
         A filler such as "Let me think…" does not end this: the rule that makes the answer still runs.
         """
@@ -238,7 +238,7 @@ class Session:
         return self._begun and self.ended is None and self.context.paused
 
     def notify(self) -> None:
-        """Wake the onlookers: something has changed."""
+        """Wake the onlookers: the conversation has changed."""
         for onlooker in self.onlookers:
             onlooker.wake()
 

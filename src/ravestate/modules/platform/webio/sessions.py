@@ -1,4 +1,4 @@
-"""All conversations with one agent, by their secrets."""
+"""All conversations with one agent, by their secret ids."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from ravestate.runtime.agent import Agent
 
 ONLOOKERS = 8
-"""The maximum number of windows of one conversation at a time."""
+"""The maximum number of windows that may show one conversation at a time."""
 
 
 class Sessions:
@@ -21,9 +21,9 @@ class Sessions:
 
     Args:
         agent: The agent; it makes a context for each conversation.
-        limit: The maximum number of conversations. Beyond it, a new conversation ends one that has no window. If there
-            is none, the server refuses the new one.
-        keep: Seconds for which a conversation without a window is kept.
+        limit: The maximum number of conversations. Beyond it, a new conversation ends one that has no window. If all
+            have windows, the server refuses the new one.
+        keep: The seconds for which a conversation without a window is kept.
     """
 
     def __init__(self, agent: Agent, *, limit: int, keep: float) -> None:
@@ -32,25 +32,25 @@ class Sessions:
         self._keep = keep
         self._sessions: dict[str, Session] = {}
         self._tasks: dict[Session, asyncio.Task[None]] = {}
-        self._timers: dict[Session, asyncio.TimerHandle] = {}  # of conversations without a window, oldest first
+        self._timers: dict[Session, asyncio.TimerHandle] = {}  # conversation without a window → timer of its end
         self._closed = False
 
     def __len__(self) -> int:
         return len(self._tasks)
 
     def __iter__(self) -> Iterator[Session]:
-        """Yield the conversations, also those about to end; the oldest first."""
+        """Yield the conversations, including those that are about to end, the oldest first."""
         return iter(tuple(self._tasks))
 
     def get(self, id: str) -> Session | None:
-        """Return the conversation with a secret, if it still goes on."""
+        """Return the conversation with this secret id; None if there is none, or if it is about to end."""
         return self._sessions.get(id)
 
     async def open(self, name: str | None = None) -> Session:
-        """Begin a conversation.
+        """Begin a conversation, and return it.
 
         Args:
-            name: The visitor's name, if it is known.
+            name: The visitor's name; None if it is unknown.
 
         Raises:
             ProtocolError: There are too many conversations already, or the agent is being switched off.
@@ -64,11 +64,11 @@ class Sessions:
         session = Session(self._agent.context(), name)
         self._sessions[session.id] = session
         self._tasks[session] = asyncio.create_task(self._live(session))
-        self._abandon(session)  # it ends if no window opens in time
+        self._abandon(session)  # the conversation ends if no window opens in time
         return session
 
     def enter(self, session: Session, onlooker: Onlooker) -> None:
-        """Add an onlooker.
+        """Add an onlooker, such as a window, to a conversation.
 
         Raises:
             ProtocolError: The conversation has too many onlookers already.
@@ -81,13 +81,13 @@ class Sessions:
             timer.cancel()
 
     def exit(self, session: Session, onlooker: Onlooker) -> None:
-        """Remove an onlooker."""
+        """Remove an onlooker from a conversation; after the last one, the conversation ends in `keep` seconds."""
         session.onlookers.discard(onlooker)
         if not session.onlookers and session in self._tasks:
             self._abandon(session)
 
     def leave(self, session: Session, reason: Ending) -> None:
-        """End a conversation for good."""
+        """End a conversation for good, for a reason."""
         self._sessions.pop(session.id, None)
         timer = self._timers.pop(session, None)
         if timer is not None:
@@ -95,7 +95,7 @@ class Sessions:
         session.leave(reason)
 
     async def close(self) -> None:
-        """End all conversations, and begin no more: the agent is being switched off."""
+        """End all conversations, and refuse new ones: the agent is being switched off."""
         self._closed = True
         for session in list(self._tasks):
             self.leave(session, Ending.OFF)
@@ -106,7 +106,7 @@ class Sessions:
         self._timers[session] = asyncio.get_running_loop().call_later(self._keep, self.leave, session, Ending.ABANDONED)
 
     async def _make_room(self) -> None:
-        """End a conversation without a window: one without words if possible, otherwise the one left longest ago."""
+        """End a conversation without a window: if possible, one whose visitor said nothing; else the one left first."""
         abandoned = min(self._timers, key=lambda session: session.spoken, default=None)
         if abandoned is not None:
             task = self._tasks[abandoned]
@@ -117,5 +117,5 @@ class Sessions:
         try:
             await session.live()
         finally:
-            self.leave(session, Ending.CANCELLED)  # this has no effect if there already is a reason
+            self.leave(session, Ending.CANCELLED)  # no effect if the conversation has a reason for its end
             self._tasks.pop(session, None)

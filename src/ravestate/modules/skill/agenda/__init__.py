@@ -1,4 +1,4 @@
-"""Goals of the agent: it pursues them during a silence, and drops them when they are reached."""
+"""Goals of the agent: it pursues them while the user is silent, until they are reached or refused."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Conditions derived from others: detached ones, and negated ones."""
+"""Functions that derive a condition from another: detached, or negated."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def negated(condition: Condition) -> Condition:
     """Return the negation of a condition that consists of ``slot.holds(...)`` alone.
 
     Raises:
-        rs.DeclarationError: The condition has a signal, which cannot be negated.
+        rs.DeclarationError: The condition contains a signal, which cannot be negated.
     """
     match condition:
         case Holds(slot, predicate):

@@ -22,10 +22,10 @@ from .state import OPEN, GoalState, Status
 Words = str | Iterable[str] | Callable[[rs.RuleContext], str | Awaitable[str]]
 
 MOMENT = 1.0
-"""Seconds for which an opportunity lasts."""
+"""The seconds for which an opportunity to pursue a goal lasts."""
 
 LONGEST = 1000
-"""The number of characters of the user's words to search."""
+"""How many characters of the user's words the expressions `done` and `refused` search."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,10 +33,10 @@ class Goal:
     """A declared goal.
 
     Attributes:
-        name: The name of its rule, ``module:name``; `agenda.goals` has its state under this name.
-        rule: The rule that pursues it; it retires when the goal is over.
+        name: The name of the goal's rule, ``module:name``; `agenda.goals` has the goal's state under this name.
+        rule: The rule that pursues the goal; the rule retires when the goal is over.
         pursued: A constraint for your own rules: the goal has just been pursued. Example:
-            ``when=offer.pursued.max_age(60) & rawio.input.changed`` is the user's answer to it.
+            ``when=offer.pursued.max_age(60) & rawio.input.changed`` is the user's answer to the goal `offer`.
     """
 
     name: str
@@ -73,19 +73,19 @@ def goal(
 
     Args:
         module: The goal's module; it must require `agenda`.
-        name: The name within the module.
-        say: The words: a text; several texts, one for each try in turn; or a function of the rule context that returns
-            a text. The function may be async, and slow.
+        name: The goal's name within the module.
+        say: The agent's words: a text; several texts, one for each try in turn; or a function of the rule context that
+            returns a text. The function may be async, and slow.
         intent: An intent for the verbaliser, instead of `say`.
-        reads: The slots that the function reads.
-        when: A further condition, e.g. ``interloc.users.holds(bool)``.
-        unless: A condition that prevents the pursuit; it consists of ``slot.holds(...)`` alone.
-        priority: A factor on the utility (L9); the goal with the greatest utility goes first.
-        cooldown: Seconds until the next try; also the time for an answer.
-        done: Success, whenever it comes: a signal, a condition, or a regular expression of whole words for the user's
-            answer. Without it, one try is a success.
-        refused: The user's "no", in the same forms: the goal is dropped.
-        tries: The number of tries before the goal is dropped.
+        reads: The slots that the function `say` reads.
+        when: A further condition for a pursuit, e.g. ``interloc.users.holds(bool)``.
+        unless: A condition that prevents a pursuit; it consists of ``slot.holds(...)`` alone.
+        priority: A factor on the utility of the goal's rule (L9); the goal with the greatest utility goes first.
+        cooldown: Seconds from one try to the next; also the seconds that the user has for an answer.
+        done: The event that makes the goal a success, at any time: a signal, a condition, or a regular expression of
+            whole words for the user's answer. Without it, one try is a success.
+        refused: The event that makes the agent drop the goal, in the same forms: the user's "no".
+        tries: The maximum number of tries; the goal is dropped after the last one.
 
     Raises:
         rs.DeclarationError: Neither or both of `say` and `intent`, an impossible number, or a faulty expression.
@@ -101,7 +101,7 @@ def goal(
     """
     whole = f"{module.name}:{name}"
     _check(whole, say, intent, priority, cooldown, tries)
-    frame = sys._getframe(1)  # pyright: ignore[reportPrivateUsage]  # messages say where the goal is declared
+    frame = sys._getframe(1)  # pyright: ignore[reportPrivateUsage]  # messages name the line of the declaration
     origin = f"{frame.f_code.co_filename}:{frame.f_lineno}"
     known = len(module.rules)
     texts = (say,) if isinstance(say, str) else say if callable(say) or say is None else tuple(say)
@@ -127,9 +127,9 @@ def goal(
         when=condition | goals.changed.where(is_over).detached(),
         reads=reads,
         writes=(rawio.output, goals) if intent is None else (verbaliser.intent, rawio.output, goals),
-        weight=priority,  # no `cooldown`: the rule rests by resigning, even if it has no rival
-        until=rawio.input.changed | goals.changed.where(is_over),  # the goal may be reached while `say` runs
-        detached=True,  # it starts a new causal group, so that rules can react to the user's answer
+        weight=priority,  # no `cooldown`, which would not hold the rule back: it rests by resigning
+        until=rawio.input.changed | goals.changed.where(is_over),  # the goal may be reached while `say()` runs
+        detached=True,  # a new causal group begins, so that rules can react to the user's answer
         name=name,
     )
     async def pursue(ctx: rs.RuleContext) -> rs.Resign | rs.Retire | None:
@@ -179,7 +179,7 @@ def goal(
 
 
 async def _worded(ctx: rs.RuleContext, say: Any, tries: int) -> str:
-    """Return the words for a try, after `tries` earlier ones."""
+    """Return the words for the next try, after `tries` earlier tries."""
     if not callable(say):
         return say[min(tries, len(say) - 1)]
     words: Any = say(ctx)
@@ -187,9 +187,9 @@ async def _worded(ctx: rs.RuleContext, say: Any, tries: int) -> str:
 
 
 def _condition(event: Condition | str, words: re.Pattern[str] | None, unless: re.Pattern[str] | None) -> Condition:
-    """Return the condition that ends a goal; it consumes nothing."""
+    """Return the condition that ends a goal: `event`, or words that fit `words`, not `unless`. It consumes nothing."""
     if words is None:
-        assert not isinstance(event, str)  # a text has become `words`
+        assert not isinstance(event, str)  # if `event` is a text, `words` is its pattern
         return watching(event)
 
     def says_so(text: str) -> bool:
@@ -202,7 +202,7 @@ def _condition(event: Condition | str, words: re.Pattern[str] | None, unless: re
 def _expression(goal: str, what: str, event: Condition | str | None) -> re.Pattern[str] | None:
     if event is None or isinstance(event, Condition):
         return None
-    if not isinstance(event, str):  # pyright: ignore[reportUnnecessaryIsInstance]  # users may not type-check
+    if not isinstance(event, str):  # pyright: ignore[reportUnnecessaryIsInstance]  # users may not check types
         hint = f": write {what}={event}.changed" if isinstance(event, rs.Slot) else ""
         raise rs.DeclarationError(f"goal {goal}: {what}={event!r} is neither a condition nor a text{hint}")
     try:

@@ -14,23 +14,23 @@ from .wish import Wish, without_twins
 
 
 class Settings(rs.Settings):
-    """When the agent may take the initiative, and goals that need no code."""
+    """The settings of agenda: when the agent may pursue goals, and goals that need no code."""
 
     gap: Annotated[float, Field(ge=0)] = 15.0
-    """Seconds from the pursuit of one goal to the next."""
+    """The least number of seconds from the pursuit of one goal to the pursuit of the next."""
     goals: Annotated[tuple[Wish, ...], without_twins] = ()
-    """Goals of your own: a name, and what to say."""
+    """Goals of your own, each with a name and words; see `Wish`."""
 
 
 module = rs.Module("agenda", requires=[rawio, idle, verbaliser], settings=Settings)
 
 opportunity = module.signal("opportunity", payload=float)
-"""One goal may be pursued: neither side is talking, and the last goal is long enough ago. The payload is the time
-(seconds)."""
+"""The agent may pursue one goal: neither side is talking, and the last pursuit is long enough ago. The payload is the
+time on the context's clock (seconds)."""
 
 goals: rs.Collection[GoalState] = module.collection("goals")
-"""The state of each goal that was pursued, reached or dropped, by the name of its rule."""
+"""Name of a goal's rule → the goal's state, for each goal that was pursued, reached or dropped."""
 
 topics: rs.Collection[str] = module.collection("topics", input=True)
-"""The topics of the conversation. While there is one, no goal is pursued. A skill adds a name when it begins something,
-and removes it at the end."""
+"""The topics of the conversation. While there is a topic, no goal is pursued. A skill adds a topic when it begins to
+talk about something, and removes the topic at the end."""

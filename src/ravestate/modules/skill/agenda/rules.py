@@ -1,4 +1,4 @@
-"""The rules: when the agent takes the initiative."""
+"""The rules of agenda: when the agent may pursue a goal."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from .names import Settings, goals, module, opportunity, topics
 
 @module.rule(when=idle.bored, reads=(goals, topics), emits=opportunity)
 async def take_initiative(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Allow one goal, unless another has just had its turn, or the conversation has a topic."""
+    """Allow the pursuit of one goal, unless another goal has just had its turn, or the conversation has a topic."""
     if ctx[topics]:
         return rs.Resign(f"the conversation is about {', '.join(ctx[topics])}")
     for name, state in ctx[goals].items():
@@ -24,15 +24,15 @@ async def take_initiative(ctx: rs.RuleContext) -> rs.Resign | None:
 
 @module.rule(when=rawio.input.changed.max_age(None).detached(), background=True)
 async def yield_to_the_user(ctx: rs.RuleContext) -> None:
-    """Take the opportunity away when the user speaks."""
+    """Withdraw the opportunity to pursue a goal when the user speaks."""
     ctx.wipe(opportunity)
 
 
 @module.rule(when=rs.startup.detached(), background=True)
 def adopt_wishes(ctx: rs.RuleContext) -> None:
-    """Add the goals from the settings to this context, and to no other that shares the policy.
+    """Add the goals in the settings to this context, and to no other context that shares the policy.
 
-    This function runs in a thread, because each rule would cost the loop a few milliseconds.
+    This function runs in a thread, because each rule would hold up the event loop for a few milliseconds.
     """
     settings: Settings = ctx.settings
     own = rs.Module(module.name)

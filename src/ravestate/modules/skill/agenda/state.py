@@ -13,8 +13,8 @@ class GoalState:
     """The state of a goal.
 
     Attributes:
-        status: ``open`` until it is first pursued, then ``pursued``; in the end ``done`` or ``dropped``.
-        tries: The number of tries.
+        status: ``open`` until the goal is first pursued, then ``pursued``; in the end ``done`` or ``dropped``.
+        tries: How many times the goal has been pursued.
         since: The time of the last try, in seconds since the context began.
     """
 
@@ -24,7 +24,7 @@ class GoalState:
 
     @property
     def is_over(self) -> bool:
-        """Return whether a goal is done or dropped."""
+        """Whether the goal is done or dropped."""
         return self.status in ("done", "dropped")
 
 

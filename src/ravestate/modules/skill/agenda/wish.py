@@ -1,4 +1,4 @@
-"""A goal from an agent's file, without code."""
+"""A goal that an agent file declares in its settings, without code."""
 
 from __future__ import annotations
 
@@ -38,15 +38,15 @@ class Wish(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
 
     name: Annotated[str, Field(pattern=r"^[A-Za-z_][A-Za-z0-9_-]*$")]
-    """The name; the rule is ``agenda:<name>``."""
+    """The goal's name; its rule is ``agenda:<name>``."""
     say: Text | Annotated[tuple[Text, ...], Field(min_length=1)]
-    """The words; several take turns."""
+    """The agent's words: a text, or several texts, one for each try in turn."""
     priority: Annotated[float, Field(gt=0)] = 1.0
     """Goals of higher priority come first."""
     cooldown: Annotated[float, Field(gt=0)] = 60.0
-    """Seconds until the next try."""
+    """Seconds from one try to the next."""
     tries: Annotated[int, Field(ge=1)] = 2
-    """The number of tries."""
+    """The maximum number of tries."""
     done: Expression | None = None
     """A regular expression for the user's words that mean success; without it, one try is a success."""
     refused: Expression | None = None
@@ -62,4 +62,4 @@ def _no_twins(wishes: tuple[Wish, ...]) -> tuple[Wish, ...]:
 
 
 without_twins = AfterValidator(_no_twins)
-"""Refuse two goals with the same name."""
+"""A check that refuses two goals with the same name."""
