@@ -150,7 +150,6 @@ def test_another_process_remembers(file: Path) -> None:
     code = """
 import sys
 from ravestate.modules import persqa
-from ravestate.modules.skill.persqa.talk import MORE
 from ravestate.testing import simulate
 with simulate(persqa, settings={"ontology": {"path": sys.argv[1]}, "persqa": {"confirm": False}}) as sim:
     for text in sys.argv[2:]:
@@ -772,7 +771,6 @@ def test_a_full_disk(file: Path, look: Look) -> None:
     code = """
 import os, resource, sys
 from ravestate.modules import ontology, persqa
-from ravestate.modules.skill.persqa.talk import MORE
 from ravestate.testing import simulate
 with simulate(persqa, settings={"ontology": {"path": sys.argv[1]}}) as sim:
     sim.say("my name is ada and i live in ulm")
