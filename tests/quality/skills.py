@@ -7,17 +7,22 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from functools import cache
 
 from quality import measure, modules
 from quality.modules import _seen
 from ravestate.language.acts import heard, only
 from ravestate.language.matcher import bundled_matcher
+from ravestate.modules.meta.nlp.analysis import MATCHERS
 from ravestate.modules.skill.agentqa.life_file import read_life
 from ravestate.modules.skill.agentqa.remarks import act_in, remark_in
 from ravestate.modules.skill.agentqa.router import Match, router_of
+from ravestate.modules.skill.persqa import kinds
+from ravestate.modules.skill.persqa.reading import Reader
 from ravestate.modules.skill.persqa.talk import Talk
+from ravestate.modules.skill.persqa.told import told_in
 from ravestate.modules.skill.persqa.topics import Fact
-from ravestate.modules.skill.persqa.understanding import Heard, understand
+from ravestate.modules.skill.persqa.understanding import understand
 from ravestate.modules.skill.wildtalk.facts import asks_for_fact
 
 __all__ = ["FLOORS", "SETS", "result", "results"]
@@ -47,17 +52,33 @@ def persqa_facts(sentence: str) -> str:
         known = {topic: (value,)}
     if what == "told":
         talk = talk.learning([topic], topic, (value,))
-    seen = _seen(text)
-    words = seen.tree.words
-    tokens, pos = tuple(word.text for word in words), tuple(word.pos for word in words)
-    heard = Heard(text, seen.yesno, seen.question, seen.entities, tokens, pos, seen.triples)
-    meaning = understand(heard, talk, known, now=1.0, within=90.0)
+    _load()
+    meaning = understand(_seen(text), talk, known, now=1.0, within=90.0)
     facts = " ".join(map(_label, sorted(meaning.facts, key=lambda fact: fact.topic)))
     if meaning.kind in ("told", "corrected"):
         return facts or "-"
     if meaning.kind == "asked":
         return f"? {facts}".rstrip()
     return {"nothing": "-", "mentioned": "-"}.get(meaning.kind, meaning.kind)
+
+
+@cache
+def _load() -> None:
+    for name in MATCHERS:
+        bundled_matcher(name).load()
+    kinds.load()
+
+
+def facts(sentence: str) -> str:
+    """Return what a sentence tells when nothing is known and nothing was asked.
+
+    The parts are joined by semicolons: ``topic=value``, ``topic=a|b``, ``not topic=value``; ``Subject / verb / object`` for
+    what no topic covers; ``-`` for nothing.
+    """
+    _load()
+    reader = Reader(_seen(sentence))
+    free = [f"{told.subject} / {told.verb} / {told.object}" for told in told_in(reader)]
+    return "; ".join([*map(_label, sorted(reader.facts(), key=lambda fact: fact.topic)), *free]) or "-"
 
 
 def _label(fact: Fact) -> str:

@@ -57,7 +57,7 @@ def test_the_types_that_come_with_it_are_complete() -> None:
     types = types_of(ontology.Settings())
     assert {
         "Thing", "Agent", "Person", "Robot", "Animal", "Place", "City", "Country", "Organisation", "Company",
-        "Institution", "University", "Hobby", "Occupation", "Subject", "Ability",
+        "Institution", "University", "Hobby", "Occupation", "Subject", "Ability", "Remark",
     } == set(types)  # fmt: skip
     assert types.properties("Person")["name"] == "text"
     for relation, source, target in (
@@ -66,7 +66,7 @@ def test_the_types_that_come_with_it_are_complete() -> None:
         ("studies_at", "Person", "University"), ("friend_of", "Person", "Robot"), ("member_of", "Robot", "Organisation"),
         ("has_father", "Robot", "Person"), ("sibling_of", "Robot", "Robot"), ("likes", "Robot", "Thing"),
         ("wants_to_become", "Robot", "Thing"), ("can", "Robot", "Ability"), ("has_learned", "Robot", "Ability"),
-        ("located_in", "City", "Country"),
+        ("located_in", "City", "Country"), ("has_told", "Person", "Remark"),
     ):  # fmt: skip
         types.check_relation(source, relation, target)
 

@@ -8,17 +8,23 @@ from typing import Any
 
 import pytest
 
+from ravestate.language.matcher import bundled_matcher
 from ravestate.modules import ontology
+from ravestate.modules.meta.nlp.analysis import MATCHERS
 from ravestate.modules.meta.nlp.pipeline import pipeline
 from ravestate.modules.meta.ontology.opening import open_memory
+from ravestate.modules.skill.persqa import kinds
 
 Look = Callable[[], dict[str, Any]]
 
 
 @pytest.fixture(scope="session")
 def reader() -> None:
-    """Load the pipeline, once for all tests."""
+    """Load the pipeline and the examples, once for all tests."""
     pipeline("").load()
+    kinds.load()
+    for name in MATCHERS:
+        bundled_matcher(name).load()
 
 
 @pytest.fixture
@@ -39,7 +45,8 @@ def look(file: Path) -> Look:
                 own = [relation for relation in relations if relation.source.id == person.id]
                 found.setdefault(person["name"], {})
                 for relation in own:
-                    found[person["name"]].setdefault(relation.name, []).append(relation.target["name"])
+                    target = relation.target.get("name") or relation.target["wording"]
+                    found[person["name"]].setdefault(relation.name, []).append(target)
             return found
         finally:
             memory.close().result(20)

@@ -15,6 +15,7 @@ from modules.skill.persqa.conftest import Look
 from ravestate.errors import PlatformError
 from ravestate.modules import hibye, idle, interloc, nlp, ontology, persqa, rawio, verbaliser
 from ravestate.modules.meta.verbaliser.phrases import PhraseBook
+from ravestate.modules.skill.persqa.talk import MORE
 from ravestate.testing import Simulation, simulate
 
 pytestmark = pytest.mark.usefixtures("reader")
@@ -49,7 +50,8 @@ def knower() -> rs.Module:
 
 def agent(file: Path | None, *others: Any, **settings: Any) -> Simulation:
     where: dict[str, Any] = {"path": file} if file is not None else {"path": "/dev/null/no/memory.lbug"}
-    return simulate(persqa, chatter(), *others, settings={"ontology": where, "persqa": settings})
+    chosen = {"confirm": False, **settings}
+    return simulate(persqa, chatter(), *others, settings={"ontology": where, "persqa": chosen})
 
 
 def meant(text: str, intent: str) -> bool:
@@ -69,10 +71,15 @@ def meant(text: str, intent: str) -> bool:
 
 
 def asked(sim: Simulation) -> str:
-    """Return the topic that the agent asks about in a silence."""
+    """Return the topic that the agent asks about in a silence; a personal question in between does not count."""
     before = len(sim.said)
     sim.advance(6.0)
     question = sim.read(persqa.talk).question
+    if question is not None and question.topic == MORE:
+        sim.say("hm, well.")
+        before = len(sim.said)
+        sim.advance(30.0)
+        question = sim.read(persqa.talk).question
     assert len(sim.said) == before + 1 and question is not None, sim.said[before:]
     assert meant(sim.said[-1], f"ask_{question.topic}"), sim.said[-1]
     return question.topic
@@ -144,7 +151,7 @@ def test_another_process_remembers(file: Path) -> None:
 import sys
 from ravestate.modules import persqa
 from ravestate.testing import simulate
-with simulate(persqa, settings={"ontology": {"path": sys.argv[1]}}) as sim:
+with simulate(persqa, settings={"ontology": {"path": sys.argv[1]}, "persqa": {"confirm": False}}) as sim:
     for text in sys.argv[2:]:
         sim.say(text)
     print(sim.said[-1])
@@ -569,7 +576,7 @@ def test_a_friend_of_ones_own_name_is_somebody_else(file: Path, look: Look) -> N
         ("my name is 🦊", "🦊"),
         ("my name is ada 🎉", "Ada"),
         ("👋 my name is 🦊 ada👍🏽❤️!", "Ada"),
-        ('my name is "; DROP', "Drop"),
+        ('my name is "; DROP', None),
         ("my name is Robert'); MATCH (n) DETACH DELETE n;--", "Robert"),
         ("my name is o'brien", "O'Brien"),
         ("my name is `}) x", None),
@@ -643,7 +650,6 @@ def test_forget_me(file: Path, look: Look) -> None:
         before = len(sim.said)
         sim.advance(300.0)
         assert len(sim.said) == before
-        assert meant(answers(sim, "forget me"), "forget_nobody")
         assert meant(answers(sim, "what is my name?"), "recall_stranger")
         assert dict(sim.read(interloc.users)) == {"console": None}
     assert look() == {}

@@ -18,7 +18,7 @@ def test_the_agents_next_words_speak_over_its_question() -> None:
 
 
 def test_an_answer_to_the_user_does_not_speak_over_it() -> None:
-    question = asked().listening(leave=False).speaking().question
+    question = asked().listening(20.0, leave=False).speaking().question
     assert question is not None and not question.spoken_over and question.turns == 1
 
 
@@ -26,30 +26,30 @@ def test_a_question_waits_for_two_utterances_and_some_time() -> None:
     talk = asked()
     assert talk.pending(100.0, within=90.0) is not None
     assert talk.pending(100.1, within=90.0) is None
-    once = talk.listening(leave=False)
+    once = talk.listening(20.0, leave=False)
     assert once.pending(20.0, within=90.0) is not None
-    assert once.listening(leave=False).pending(20.0, within=90.0) is None
+    assert once.listening(20.0, leave=False).pending(20.0, within=90.0) is None
 
 
 def test_a_goodbye_ends_the_question_until_the_user_speaks() -> None:
-    left = asked().listening(leave=True)
+    left = asked().listening(20.0, leave=True)
     assert left.question is None and left.quiet
-    assert not left.listening(leave=False).quiet
+    assert not left.listening(20.0, leave=False).quiet
 
 
 def test_ignored_questions_count_until_the_user_speaks() -> None:
     talk = asked().waiting().asking("name", 50.0).waiting()
     assert talk.ignored == 2 and talk.question is None
-    assert talk.listening(leave=False).ignored == 0
+    assert talk.listening(20.0, leave=False).ignored == 0
 
 
 def test_a_fact_can_be_corrected_for_a_while() -> None:
     talk = asked().learning(["home"], "home", ("Ulm",))
     assert talk.question is None and talk.told == {"home"}
     for _ in range(2):
-        talk = talk.listening(leave=False)
+        talk = talk.listening(20.0, leave=False)
         assert talk.correctable == "home"
-    assert talk.listening(leave=False).correctable == ""
+    assert talk.listening(20.0, leave=False).correctable == ""
 
 
 def test_to_learn_something_else_leaves_the_question_open() -> None:

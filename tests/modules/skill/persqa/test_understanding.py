@@ -2,8 +2,17 @@
 
 import pytest
 
-from ravestate.modules.skill.persqa.talk import Talk
-from ravestate.modules.skill.persqa.understanding import Heard, understand
+from ravestate.modules.meta.nlp.analysis import Analysis, analyse
+from ravestate.modules.meta.nlp.pipeline import pipeline
+from ravestate.modules.skill.persqa.talk import CONFIRM, FORGET, Talk
+from ravestate.modules.skill.persqa.topics import TOPICS
+from ravestate.modules.skill.persqa.understanding import understand
+
+pytestmark = pytest.mark.usefixtures("reader")
+
+
+def seen(text: str) -> Analysis:
+    return analyse(text, pipeline(""))
 
 
 def talk_about(topic: str) -> Talk:
@@ -13,25 +22,71 @@ def talk_about(topic: str) -> Talk:
 @pytest.mark.parametrize(
     "text", ["x" * 100_000, "a, " * 30_000, "i live in " * 10_000, "no " * 30_000, "my name is " * 9_000]
 )
-def test_a_long_text_is_read_at_once_and_only_at_its_beginning(text: str) -> None:
+def test_a_long_text_is_read_only_at_its_beginning(text: str) -> None:
+    analysis = seen(text)
     for topic in ("name", "home", "hobby", "friend", "club"):
-        meaning = understand(Heard(text), talk_about(topic), {}, 1.0, 90.0)
+        meaning = understand(analysis, talk_about(topic), {}, 1.0, 90.0)
         assert all(len(value) <= 500 for fact in meaning.facts for value in fact.values)
 
 
 @pytest.mark.parametrize("text", ["", "   ", "...", "?!", "🙂", "\x00\x1b[31m"])
 def test_empty_utterances_mean_nothing(text: str) -> None:
-    assert understand(Heard(text), talk_about("name"), {}, 1.0, 90.0).kind == "nothing"
-    assert understand(Heard(text), Talk(), {}, 1.0, 90.0).kind == "nothing"
+    assert understand(seen(text), talk_about("name"), {}, 1.0, 90.0).kind == "nothing"
+    assert understand(seen(text), Talk(), {}, 1.0, 90.0).kind == "nothing"
 
 
 def test_an_answer_counts_only_while_its_question_waits() -> None:
-    heard = Heard("hannover", tokens=("hannover",), pos=("PROPN",))
+    heard = seen("hannover")
     assert understand(heard, talk_about("home"), {}, 90.0, 90.0).kind == "told"
     assert understand(heard, talk_about("home"), {}, 91.0, 90.0).kind == "nothing"
 
 
 def test_a_denial_of_what_is_not_known_means_nothing() -> None:
-    heard = Heard("i don't live in hannover")
+    heard = seen("i don't live in hannover")
     assert understand(heard, Talk(), {}, 1.0, 90.0).kind == "nothing"
     assert understand(heard, Talk(), {"home": ("Hannover",)}, 1.0, 90.0).kind == "told"
+
+
+@pytest.mark.parametrize("topic", [name for name, topic in TOPICS.items() if topic.asked])
+@pytest.mark.parametrize(
+    "text", ["the train was late again", "can you swim?", "that movie was great", "my sister paints"]
+)
+def test_a_question_never_swallows_an_unrelated_sentence(topic: str, text: str) -> None:
+    assert not understand(seen(text), talk_about(topic), {}, 1.0, 90.0).facts
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "i used to live in Lyon",
+        "if i lived in Rome i would be happy",
+        "my brother says that i live in Rome",
+        "i want to move to Oslo",
+        "i will move to Oslo next year",
+        "maybe i live in the Matrix",
+        "do i live in Oslo?",
+        "i wish i lived in Oslo",
+    ],
+)
+def test_only_what_is_so_now_is_a_fact(text: str) -> None:
+    assert understand(seen(text), Talk(), {}, 1.0, 90.0).kind in ("nothing", "asked")
+
+
+def test_only_a_fresh_yes_forgets_the_user() -> None:
+    assert understand(seen("yes"), talk_about(FORGET), {}, 1.0, 90.0).kind == "forget_yes"
+    assert understand(seen("yes"), talk_about(FORGET).speaking(), {}, 1.0, 90.0).kind == "nothing"
+
+
+@pytest.mark.parametrize("text", ["don't forget me", "never forget me", "he wants to forget me", "forget it"])
+def test_a_wish_to_be_forgotten_is_asked_of_the_agent(text: str) -> None:
+    assert understand(seen(text), Talk(), {"name": ("Ada",)}, 1.0, 90.0).kind not in ("forget", "strike")
+
+
+@pytest.mark.parametrize(
+    ("text", "values"), [("in hannover", ("Hannover",)), ("I live in Ulm", ("Ulm",)), ("I'd rather not say", ())]
+)
+def test_the_answer_that_confirms_a_name(text: str, values: tuple[str, ...]) -> None:
+    talk = Talk(doubt="home").asking(CONFIRM, 0.0).speaking()
+    meaning = understand(seen(text), talk, {"name": ("Ada",)}, 1.0, 90.0)
+    assert meaning.kind == "vouched"
+    assert tuple(value for fact in meaning.facts for value in fact.values) == values

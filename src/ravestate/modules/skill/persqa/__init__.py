@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from . import publishing as publishing
 from . import rules as rules
-from .names import Settings, facts, module, reply, talk, who
+from .names import Settings, facts, forgotten, module, reply, talk, told, who
 from .talk import Question, Talk
+from .told import Told
 
-__all__ = ["Question", "Settings", "Talk", "facts", "module", "reply", "talk", "who"]
+__all__ = ["Question", "Settings", "Talk", "Told", "facts", "forgotten", "module", "reply", "talk", "told", "who"]

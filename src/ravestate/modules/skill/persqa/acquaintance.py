@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 from ravestate.modules import ontology
@@ -10,7 +11,9 @@ from ravestate.modules import ontology
 from . import records
 from .profile import Facts, merged, told_apart
 from .talk import Talk
-from .topics import NAME, in_order
+from .told import Told
+from .topics import NAME, TOPICS, in_order
+from .wording import alike, among
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,11 +24,13 @@ class Acquaintance:
         who: The user's node; None while their name is not known.
         facts: Values by topic, without the name.
         talk: The state of the conversation.
+        told: The user's free statements by key, oldest first.
     """
 
     who: ontology.Node | None
     facts: Facts
     talk: Talk
+    told: Mapping[str, Told] = field(default_factory=dict[str, Told])
 
     @property
     def name(self) -> str | None:
@@ -39,7 +44,7 @@ class Acquaintance:
 
     def recall(self, graph: ontology.Graph) -> Acquaintance:
         """Return the user with the facts that memory has under their name. Memory is asked once per conversation."""
-        if self.talk.met or self.who is None:
+        if self.talk.met or self.who is None or self.talk.doubt:
             return self
         found = graph.get(self.who.id) or records.named(graph, self.who[NAME])
         if found is None:
@@ -49,17 +54,45 @@ class Acquaintance:
             found,
             merged(remembered, self.facts),
             replace(self.talk, met=True, newcomer=False, remembered=remembered),
+            {**records.remarks(graph, found), **self.told},
         )
+
+    def doubted(self, graph: ontology.Graph) -> Acquaintance:
+        """Return the user with a doubt, if memory knows facts about a person of the name that they have just told."""
+        if self.talk.met or self.who is None:
+            return self
+        found = records.named(graph, self.who[NAME])
+        facts = records.known(graph, found) if found is not None else {}
+        if any(among(value, facts.get(topic, ())) for topic, values in self.facts.items() for value in values):
+            return self  # they have just told something that this person told before
+        topics = [topic for topic, values in facts.items() if values]
+        topic = next((topic for topic in topics if TOPICS[topic].asked), topics[0] if topics else "")
+        return replace(self, talk=replace(self.talk, doubt=topic)) if topic else self
+
+    def settled(self, graph: ontology.Graph, answer: tuple[str, ...]) -> Acquaintance:
+        """Return the user as the person of their name who told this answer, or as a new person."""
+        assert self.who is not None
+        topic, talk = self.talk.doubt, replace(self.talk, doubt="")
+        for person in records.namesakes(graph, self.who[NAME]) if answer else ():
+            values = records.known(graph, person).get(topic, ())
+            if any(alike(value, values) for value in answer):
+                return replace(self, who=person, talk=talk).recall(graph)
+        return self.stranger()
+
+    def stranger(self) -> Acquaintance:
+        """Return the user as a new person, even if memory knows another one of their name."""
+        return replace(self, talk=replace(self.talk, doubt="", met=True, newcomer=True))
 
     def noted(self, graph: ontology.Graph) -> Acquaintance:
         """Save what the user told in this conversation; nothing while their name is not known."""
         now = self.recall(graph)
-        if now.who is None:
+        if now.who is None or now.talk.doubt:
             return now
         remembered = now.talk.remembered
         new = {topic for topic, values in now.facts.items() if values != remembered.get(topic)}
         topics = in_order(new | now.talk.told)
         records.note(graph, now.who, {topic: now.facts.get(topic, ()) for topic in topics}, now._once)
+        records.note_remarks(graph, now.who, now.told)
         return now
 
     @property
@@ -76,19 +109,25 @@ class Acquaintance:
         """
         assert self.who is not None  # the agent understood their name
         if not self.talk.met:
-            return replace(self, who=self.who.with_properties(name=name))
+            renamed = ontology.Node("Person", {NAME: name})
+            return replace(self, who=renamed, talk=replace(self.talk, doubt=""))
         if self.talk.newcomer:
             if records.named(graph, name) is None:
                 return replace(self, who=self.who.with_properties(name=name))
             graph.forget(self.who)
         else:
-            before = {topic: self.talk.remembered.get(topic, ()) for topic in self.talk.told}
-            records.note(graph, self.who, before, self._once)
+            self.restored(graph)
         return Acquaintance(
             ontology.Node("Person", {NAME: name}),
             told_apart(self.facts, self.talk.remembered, self.talk.told),
             replace(self.talk, met=False, newcomer=False, remembered={}, once={}, reminded=False),
         )
+
+    def restored(self, graph: ontology.Graph) -> None:
+        """Give the person for whom the agent has mistaken the user their old facts back."""
+        assert self.who is not None
+        before = {topic: self.talk.remembered.get(topic, ()) for topic in self.talk.told}
+        records.note(graph, self.who, before, self._once)
 
     def rebased(self, base: Acquaintance, after: Acquaintance) -> Acquaintance:
         """Return this state of the user with the changes from `base` to `after`.
@@ -105,6 +144,9 @@ class Acquaintance:
             after.who if same_user else self.who,
             facts,
             self.talk.rebased(base.talk, after.talk) if same_user else self.talk,
+            {key: one for key, one in {**after.told, **self.told}.items() if key not in base.told or key in after.told}
+            if same_user
+            else self.told,
         )
 
 

@@ -1,177 +1,145 @@
-"""Bare answers to a question: *hannover*, *chess and football*, *none of your business*."""
+"""Bare answers to a question of the agent's, and corrections: *hannover*, *chess and football*, *no, Bremen*."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Collection
+from functools import cache
 
-from .patterns import either
-from .phrase import values
-from .statements import gerund, worker
-from .topics import NAME, TOPICS, Fact, Kind
-from .words import REMARKS, STATES, VERBS
+from ravestate.language.contractions import WRITTEN
+from ravestate.modules import nlp
 
-OPENING = re.compile(
-    r"^\W*("
-    + either(r"""
-        oh|well|hm+|um+|uh+|er|ah|ok|okay|alright|sure|yes|yeah|yep|yup|yea|of course|certainly|actually|honestly|so
-        that('s| is) easy|let me (see|think)|good question
-        i('d| would) say|i guess|i think|i suppose|i said|i mean|i meant|my answer is
-        probably|maybe|mostly|mainly|usually|currently|right now|just|only
-        it's|its|it is|it must be|it's called|it is called|that's|that is|thats|that would be|that'd be
-        they're|they are|they're called|they are called|there is|there's|there are
-        one is|one of them is|for example|for instance|such as|like
-    """)
-    + r"(?![\w'])[\s,.:;!…-]*)*",
-    re.IGNORECASE,
-)  # fmt: skip
-"""Words before an answer."""
+from .kinds import is_remark
+from .relations import relations
+from .topics import TOPICS, Fact, Topic
+from .values import value_of
 
-_BE = r"(i'm|i am|im)"
-_LEADS: dict[Kind, str] = {
-    "name": rf"((you can |please )?(call me|i'm called|i am called|{_BE}) )?",
-    "place": rf"(({_BE} |i (live|come|came) )?(currently )?(from|in|at|out of) )?(the (city|town|village) of )?",
-    "activity": rf"(i ((really|also|mostly|usually|sometimes|often) )*((like|love|enjoy|prefer|do|go)( to)? |(?=({'|'.join(sorted(VERBS))})\b))|"
-    rf"{_BE} (into|interested in|fond of) )?",
-    "work": r"(i work |i'm working |i am working )?(as )?",
-    "organisation": rf"(({_BE} )?(a member of|in|at|for|with|part of) )?",
-    "subject": r"(i('m| am)? )?(study|studying|studied|doing|in)? ?",
-    "people": r"((his|her|their|its) names? (is|are) )?(((s?he|it)('s| is)|they('re| are)) (called|named) )?((i have|i've got) )?",
-    "thing": r"(i ((really|also) )*(like|love|enjoy|prefer) )?",
-    "number": rf"({_BE} )?",
-}  # fmt: skip
-LEADS = {kind: re.compile("^" + words, re.IGNORECASE) for kind, words in _LEADS.items()}
-"""Words that introduce an answer of each kind."""
-
-REFUSAL = re.compile(
-    r"(?<![\w'])"
-    + either(r"""
-        (i'd|i would|id) (rather|prefer|like)( to)? (not|keep)\b(?! to (work|live|study))|rather not|prefer not to
-        ((it's|that's|it is|that is) )?(none of (your|ur)|not your) (\w+ )?business|mind your own business
-        (it's|that's|it is|that is|too|is|very|quite|rather) ((too|very|a bit|quite|rather) )?(private|personal|confidential)|^private\W*$
-        (a |my |top )?secret\b(?! (agent|service))
-        (i )?(won't|will not|wont|can't|cannot|cant) (tell|say)\b
-        i (don't|do not|dont) (want|wish|like|wanna|feel like)( to)? (tell|talk|say|answer|share|discuss)(ing)?\b
-        i('m| am) not (telling|saying|going to (tell|say|answer))|not telling|no comment|let's not (talk|speak|go)
-        ((let's|let us|can we|please) )?(change|switch) the (subject|topic)|(let's )?talk about something else
-        (next|another) question|(i )?pass\W*$|skip( it| this| that| the question)?\W*$
-        (that|this|it) is not for you|you don't need to know|(that )?does(n't| not) concern you|stop asking|don't ask
-    """),
-    re.IGNORECASE,
-)  # fmt: skip
-
-NONE = re.compile(
-    r"^\W*((no|nope|well|oh|honestly|actually|i have|i've got|i do|at the moment|right now|currently|sorry)\W+)*"
-    r"(nothing|none|nobody|no one|noone|nowhere|not any(thing|where|one|body)?)"
-    r"( (special|in particular|much|really|at all|at the moment|right now|actually|yet|sorry|to be honest))*\W*$",
-    re.IGNORECASE,
+_PREPOSITIONS = re.compile(
+    r"^(?:(?:in|from|at|out of|for|with|as|of|to|(?:the )?(?:city|town|village) of)\s+)+", re.IGNORECASE
 )
-
-CORRECTION = re.compile(
-    r"^\W*("
-    + either(r"""
-        no(?! (problem|way|worr(ies|y)|idea|thanks?|need|matter|doubt|chance|clue|one|kidding|offen[cs]e|more|longer|other|big deal|reason|wonder|joke|really))
-        nope|nah|wrong|not quite|not really|that('s| is) wrong|that('s| is) not (right|correct|true)
-        sorry|actually|wait|oh|i (meant|mean|said)|correction|rather
-    """)
-    + r"(?![\w'])[\s,.:;!…-]*)+",
-    re.IGNORECASE,
+_LISTED = re.compile(r"\s*(?:[,;/&+]|\band\b|\bor\b|\bas well as\b|\bplus\b)\s*", re.IGNORECASE)
+_FIRST = re.compile(r"[.;:!?…\n()\"]")
+_END = re.compile(
+    r"\s(?:but|because|since|so|when|while|if|that|which|who|where|though|although|until|as|with|i|i'm|you|we|it|my|not|is|was|are|has|have|"
+    r"too|though|now|then|originally|currently|actually|mostly|of course|please|thanks|thank you|by the way|again|anyway|"
+    r"(?:and )?(?:what about|how about|and) you(?:rs)?)\b.*$",
+    re.IGNORECASE | re.DOTALL,
 )  # fmt: skip
-"""Words before a correction."""
-_NOT_THIS = re.compile(
-    r"^\W*((no|it's|i'm|i am|it is)\W+)?not (?P<wrong>.+?)[,;.]\s*((but|it's|i'm|it is|i am|rather) )?(?P<right>.+)$", re.IGNORECASE
-)  # fmt: skip
-_NOT_THAT = re.compile(
-    r"^(no\W+)?((it's|it is|i'm|i am) )?(?P<right>.+?)[,;]? not (?!in\b|at\b|from\b)(?P<wrong>\w.*)$",
-    re.IGNORECASE,
+"""The words after an answer."""
+_HEDGES = re.compile(
+    r"^(?:(?:a bit of|a little|some|lots of|also|sometimes|mostly|maybe|just|both|to) )+", re.IGNORECASE
 )
-_ASIDE = re.compile(r"^\W*((hi+|hello|hey)\b\W*)?(bye|goodbye|let's|lets)\b", re.IGNORECASE)
+_WHERE = re.compile(r"\s(?:in|at|from|for|on|near|by)\s(.+)$", re.IGNORECASE)
+_PLACED = frozenset(["name", "people", "place", "work", "subject"])
+"""Kinds whose values contain no place: *teacher at a school*."""
 
 
-def refuses(text: str) -> bool:
-    """Return whether the user refuses to answer.
-
-    Example:
-        >>> refuses("I'd rather not say."), refuses("hannover")
-        (True, False)
-    """
-    return REFUSAL.search(text) is not None
+@cache
+def _before(name: str) -> re.Pattern[str]:
+    phrases = sorted(relations().words[name], key=len, reverse=True)
+    return re.compile(rf"^\W*(?:(?:{'|'.join(map(re.escape, phrases))})(?![\w'])[\s,.:;!…-]*)+", re.IGNORECASE)
 
 
-def has_none(text: str) -> bool:
-    """Return whether the user says that there are none, such as no hobbies.
-
-    Example:
-        >>> has_none("nothing special"), has_none("nothing compares to chess")
-        (True, False)
-    """
-    return NONE.match(text) is not None
+def spelled_out(text: str) -> str:
+    """Return a text with its short forms written out: *it's* as *it is*."""
+    text = re.sub(r"\b(?:im|its|thats|dont|id)\b", lambda word: WRITTEN.get(word[0].lower(), word[0]), text)
+    for form, full in ((r"n['’]t\b", " not"), (r"['’]m\b", " am"), (r"['’]re\b", " are"), (r"['’]d\b", " would")):
+        text = re.sub(form, full, text)
+    return re.sub(r"\b(it|that|he|she|there|name)['’]s\b", r"\1 is", text, flags=re.IGNORECASE)
 
 
-def answer(text: str, topic: str) -> list[Fact]:
+def answer(text: str, topic: str, seen: nlp.Analysis) -> list[Fact]:
     """Return the facts in a bare answer to a question about `topic`.
 
-    Args:
-        text: The result of `phrase.plain`.
-        topic: The topic's name.
-
     Example:
-        >>> answer("chess and football", "hobby"), answer("what?", "hobby")
-        ([Fact(topic='hobby', values=('chess', 'football'), gone=False)], [])
+        *chess and football* gives ``Fact("hobby", ("chess", "football"))``; *what?* gives nothing.
     """
     about = TOPICS[topic]
-    said = OPENING.sub("", text)
-    if _ASIDE.match(said) or "?" in re.split(r"[.!,;\n]", said, maxsplit=1)[0]:
+    said = _before("openers").sub("", text)
+    if "?" in re.split(r"[.!,;\n]", said, maxsplit=1)[0]:
         return []
-    rest = LEADS[about.kind].sub("", said)
-    if about.kind == "name":
-        return _of(topic, _name(rest))
-    if about.kind == "work":
-        facts = worker(re.sub(r"^an? ", "", rest, flags=re.IGNORECASE))
-        return facts if facts and _of(topic, facts[0].values) else []
-    if about.kind == "activity":
-        return _of(topic, values(gerund(rest), about))
-    if topic == "subject" and (where := re.match(r"(?:[^,.;]*? )?at (.+)", rest, re.IGNORECASE)):
-        return [*_of(topic, values(rest, about)), *_of("university", values(where[1], TOPICS["university"]))]
-    return _of(topic, values(rest, about))
+    said = re.sub(r"^(?:i am|i'm|we are|i)\s+", "", said, flags=re.IGNORECASE)
+    said = _before("openers").sub("", said)
+    rest = _FIRST.split(_PREPOSITIONS.sub("", said).lstrip(" .,;:-\"'"), maxsplit=1)[0]
+    rest = _END.sub("", f" {rest}").strip()
+    where = _WHERE.search(rest) if about.kind in _PLACED else None
+    if where:
+        rest = rest[: where.start()]
+    found = tuple(filter(None, _values(rest, about, seen)))
+    facts = [Fact(topic, found)] if found else []
+    beside = {"occupation": "employer", "subject": "university"}.get(topic)
+    if facts and where and beside and (place := value_of(where[1], TOPICS[beside], seen)):
+        facts.append(Fact(beside, (place,)))
+    return facts
 
 
-def _name(rest: str) -> tuple[str, ...]:
-    """Return a bare name. The checks are strict, because anything may be said without an introduction."""
-    first = re.split(r"[,.;:!?…\n]", rest.strip(), maxsplit=1)[0].split()
-    if not first or not first[0][0].isalpha() or any(word.lower() in STATES for word in first[:3]):
-        return ()
-    return values(rest, TOPICS[NAME])
+def _values(rest: str, topic: Topic, seen: nlp.Analysis) -> list[str | None]:
+    several = topic.many or topic.kind == "people"
+    pieces = [piece for piece in _LISTED.split(rest) if piece] if several else [re.split(r",", rest, maxsplit=1)[0]]
+    found: list[str | None] = []
+    for piece in pieces[:5]:
+        value = value_of(_HEDGES.sub("", piece.strip()), topic, seen, sure=topic.kind != "place")
+        if value is None or not any(map(str.isalnum, value)) or is_remark(value):
+            break  # nothing after such a piece is a value
+        found.append(value)
+    return found
 
 
-def _of(topic: str, said: tuple[str, ...]) -> list[Fact]:
-    """Return the facts in bare values. Fewer words may be a value here than after an introduction."""
-    words = said[0].lower().split() if said else []
-    if not words or (words != ["nice"] and (STATES.issuperset(words) or words[0] in REMARKS)):
-        return []
-    return [Fact(topic, said)]
+_NOT_THIS = re.compile(
+    r"^\W*(?:(?:no|it is|i am|i)\W+)*not (?P<wrong>.+?)[,;.]\s*(?:(?:but|it is|i am|rather) )*(?P<right>.+)$",
+    re.IGNORECASE,
+)
+_NOT_THAT = re.compile(r"^(?:no\W+)?(?:(?:it is|i am) )?(?P<right>.+?)[,;]? not (?P<wrong>\w.*)$", re.IGNORECASE)
 
 
-def correction(text: str, topic: str, known: Collection[str], *, explicit: bool = False) -> list[Fact]:
+def correction(
+    text: str, topic: str, known: Collection[str], seen: nlp.Analysis, *, explicit: bool = False
+) -> list[Fact]:
     """Return the facts in a correction: *no, Bremen*, *Bremen, not Hannover*.
 
     Args:
-        text: The result of `phrase.plain`.
+        text: The utterance, short forms written out.
         topic: The topic to correct.
         known: The values that were understood.
+        seen: The analysis of the utterance.
         explicit: Whether only *Bremen, not Hannover* counts, and a mere *no, Bremen* does not.
-
-    Example:
-        >>> correction("no, bremen", "home", ["Hannover"])
-        [Fact(topic='home', values=('Bremen',), gone=False)]
     """
-    denied = {value.casefold() for value in known}
     if both := _NOT_THIS.match(text) or _NOT_THAT.match(text):
-        wrong, right = both["wrong"], CORRECTION.sub("", both["right"])
-    elif not explicit and (opening := CORRECTION.match(text)):
-        return answer(text[opening.end() :], topic) if text[opening.end() :].strip() else []
-    else:
+        wrong = _PREPOSITIONS.sub("", both["wrong"]).strip(" .!?").casefold()
+        right = _before("corrections").sub("", both["right"])
+        return answer(right, topic, seen) if wrong in {value.casefold() for value in known} else []
+    opening = None if explicit else _before("corrections").match(text)
+    rest = text[opening.end() :] if opening else ""
+    if not rest or rest.lower().split()[0].strip(",.!") in relations().words["idioms"]:
         return []
-    if not denied & {value.casefold() for value in values(wrong, TOPICS[topic])}:
-        return []
-    return answer(right, topic)
+    return answer(rest, topic, seen)
+
+
+def may_stand_alone(seen: nlp.Analysis) -> bool:
+    """Return whether an utterance may be a bare answer: not a sentence about others, a request, or adverbs alone."""
+    opening = _before("openers").match(spelled_out(seen.text))
+    if seen.yesno and not (opening and seen.text[opening.end() :].strip()):
+        return False  # hard to say
+    words = [word for word in seen.tree.words if word.pos != "PUNCT"]
+    if words and not {word.pos for word in words} & {"NOUN", "PROPN", "VERB", "ADJ", "NUM", "X", "SYM", "INTJ"}:
+        return False
+    if len(words) < 3:
+        return True  # Bill Gates is not a sentence, although a parser may make one of it
+    said = {word.low for word in words}
+    return all(
+        _may_answer(one) for one in seen.statements if one.subject.person != "I" or said & {"i", "we", "i'm", "im"}
+    )
+
+
+def _may_answer(said: nlp.Statement) -> bool:
+    subject = said.subject
+    if subject.person == "you":
+        return said.verb in relations().words["pastimes"]
+    if subject.person == "I":
+        if f"i {said.verb}" in map(str.lower, relations().words["openers"]):
+            return True
+        return not said.plan and said.verb in ("be", *relations().words["likes"], *relations().words["pastimes"])
+    return (
+        subject.text.lower() in ("", "it", "that", "this", "they", "these", "those", "he", "she")
+        or subject.owner is not None
+    )

@@ -13,6 +13,7 @@ from ravestate.modules.meta.verbaliser.intents import Intent
 
 from .acquaintance import Noted
 from .talk import Talk
+from .told import Told
 from .topics import ASKED
 
 
@@ -32,6 +33,8 @@ class Settings(rs.Settings):
     """Seconds from one question to the next."""
     within: Annotated[float, Field(gt=0)] = 90.0
     """Seconds for which a question waits for its answer."""
+    confirm: bool = True
+    """Whether somebody who says a name that memory knows has to answer a question before the agent uses what it knows."""
     ignored: Annotated[int, Field(ge=1)] = 2
     """After this many unanswered questions in a row, the agent asks no more until the user speaks."""
 
@@ -44,6 +47,9 @@ who: rs.Slot[ontology.Node | None] = module.slot("who", None, type=ontology.Node
 facts: rs.Collection[tuple[str, ...]] = module.collection("facts")
 """Values by topic (``home``, ``hobby``, ...); an empty tuple means that there are none."""
 
+told: rs.Collection[Told] = module.collection("told")
+"""The user's free statements about themselves and others, oldest first: *Jonas plays the violin*."""
+
 talk: rs.Slot[Talk] = module.slot("talk", Talk(), type=Talk)
 """The state of the conversation about the user: what was asked, and what they would rather not say."""
 
@@ -52,3 +58,6 @@ reply = module.signal("reply", payload=Intent)
 
 noted = module.signal("noted", payload=Noted)
 """Memory has looked up the user, or has saved what they told."""
+
+forgotten = module.signal("forgotten")
+"""The user has been forgotten; other modules wipe what they keep of them."""

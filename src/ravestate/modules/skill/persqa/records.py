@@ -6,8 +6,14 @@ from collections.abc import Mapping, Sequence
 
 from ravestate.modules import ontology
 
+from .told import Told
 from .topics import NAME, TOPICS, Topic, about, in_order
 from .wording import among
+
+REMARK = "has_told"
+"""The relation from a person to what they told."""
+MOST = 200
+"""The number of remarks that memory keeps for a person."""
 
 
 def named(graph: ontology.Graph, name: str) -> ontology.Node | None:
@@ -70,6 +76,44 @@ def note(
                 thing = _thing(graph, topic, value, [person, *(others if topic.role else [])])
                 graph.relate(person, topic.relation, thing, {"role": name} if topic.role else {})
                 related.setdefault(name, []).append(thing)
+
+
+def remarks(graph: ontology.Graph, person: ontology.Node) -> dict[str, Told]:
+    """Return what a person told that no topic covers, by key, oldest first."""
+    found: dict[str, Told] = {}
+    for node in graph.related(person, REMARK, back=False):
+        parts = (node.get(name) or "" for name in ("subject", "verb", "object", "wording"))
+        one = Told(*parts, by=person.get(NAME) or "", at=node.get("said_at"))
+        found[one.key] = one
+    return found
+
+
+def note_remarks(graph: ontology.Graph, person: ontology.Node, told: Mapping[str, Told]) -> None:
+    """Save what a person told, at most the last `MOST` remarks; those not in `told` are removed."""
+    present = {
+        f"{n.get('subject')} / {n.get('verb')} / {n.get('object') or ''}".lower(): n
+        for n in graph.related(person, REMARK, back=False)
+    }
+    kept = dict(list(told.items())[-MOST:])
+    for key, node in present.items():
+        if key not in kept:
+            graph.unrelate(person, REMARK, node, forget=True)
+    for key, one in kept.items():
+        if key not in present:
+            values = {
+                "subject": one.subject,
+                "verb": one.verb,
+                "object": one.object,
+                "wording": one.text,
+                "said_at": one.at,
+            }
+            node = graph.save(ontology.Node("Remark", {name: value for name, value in values.items() if value}))
+            graph.relate(person, REMARK, node, {})
+
+
+def namesakes(graph: ontology.Graph, name: str) -> list[ontology.Node]:
+    """Return all people of this name, oldest first."""
+    return graph.find("Person", {"name": name})
 
 
 def _related(graph: ontology.Graph, person: ontology.Node) -> dict[str, list[ontology.Node]]:

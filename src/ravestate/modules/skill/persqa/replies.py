@@ -7,6 +7,7 @@ import random
 from ravestate.modules.meta.verbaliser.intents import Intent
 
 from .profile import Facts
+from .told import Told
 from .topics import TOPICS, in_order
 from .wording import clause, joined, spoken
 
@@ -50,3 +51,20 @@ def summary(known: Facts) -> Intent:
 def clauses(known: Facts) -> str:
     """Return all that is known, one clause per topic."""
     return joined([clause(topic, known[topic]) for topic in in_order(known) if known[topic]])
+
+
+def following(topic: str, known: Facts) -> Intent:
+    """Return a personal question between two questions about facts: about the last topic, if there is one for it."""
+    fit = topic in FOLLOWED and known.get(topic)
+    return say(f"more_{topic}" if fit else "more", known)
+
+
+def picking_up(one: Told, known: Facts) -> Intent:
+    """Return a question about what the user told."""
+    if one.verb == "be" and one.subject.lower().startswith("my "):
+        return say("how_is", known, person=f"your {one.subject[3:]}")
+    return say("pick_up", known, fact=one.text)
+
+
+FOLLOWED = frozenset(["home", "origin", "hobby", "occupation", "subject", "friend", "club"])
+"""Topics with an intent ``more_<topic>``."""

@@ -2,25 +2,36 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
+from datetime import UTC, datetime
+from typing import Any, TypeVar
 
 import ravestate as rs
 from ravestate.errors import RavestateError
+from ravestate.language.bundled import ModelMissing, warn_once
 from ravestate.modules import idle, interloc, nlp, ontology, rawio, verbaliser
 
 from .acquaintance import Acquaintance, Noted
-from .names import Settings, facts, module, noted, reply, talk, who
+from .kinds import load as load_examples
+from .names import Settings, facts, forgotten, module, noted, reply, talk, told, who
 from .profile import Facts
-from .replies import asking, memorable, stating
+from .replies import asking, following, memorable, picking_up, stating
 from .response import respond_to
-from .talk import TRIES, Talk
+from .talk import MORE, TRIES, Talk
+from .told import Told
 from .topics import NAME, due
-from .understanding import Heard, understand
+from .understanding import understand
+
+HELLO = 3.0
+"""Seconds after the first hello until the agent asks for the name; the user may go on talking meanwhile."""
+
+T = TypeVar("T")
 
 
 @module.rule(
     when=idle.bored,
-    reads=(who, facts),
+    reads=(who, facts, told),
     writes=(
         verbaliser.intent,
         rawio.output,
@@ -51,25 +62,62 @@ async def ask(ctx: rs.RuleContext) -> rs.Resign | None:
         ctx[talk] = replace(now, reminded=True, question=None).mentioning(topic, values)
         ctx[verbaliser.intent] = stating("remind", topic, values, known)
         return None
+    if (one := news(ctx[told].values(), now)) is not None:
+        ctx[talk] = replace(now.asking(MORE, ctx.now), picked_up=now.picked_up | {one.key})
+        ctx[verbaliser.intent] = picking_up(one, known)
+        return None
     topic = due(settings.topics, known, now.closed, now.tries, last=now.last, limit=TRIES)
     if not topic:
         return rs.Resign("there is nothing left to ask")
+    if now.formal:  # two questions about facts in a row would be an interview
+        ctx[talk] = now.asking(MORE, ctx.now)
+        ctx[verbaliser.intent] = following(now.last, known)
+        return None
     ctx[talk] = now.asking(topic, ctx.now)
     ctx[verbaliser.intent] = asking(topic, known)
     return None
 
 
+def news(remarks: Iterable[Told], now: Talk) -> Told | None:
+    """Return the last thing that the user told, and to which the agent has not come back."""
+    left = [one for one in remarks if one.key not in now.picked_up]
+    return left[-1] if left else None
+
+
+@module.rule(when=rs.startup, background=True)
+def learn(ctx: rs.RuleContext) -> None:
+    """Learn the examples; until then, only they themselves are recognised."""
+    try:
+        load_examples()
+    except ModelMissing as error:
+        warn_once(ctx.log, error)
+
+
 @module.rule(
-    when=nlp.text.changed
-    & nlp.tokens.changed
-    & nlp.pos.changed
-    & nlp.entities.changed
-    & nlp.triples.changed
-    & nlp.question.changed
-    & nlp.yesno.changed,
+    when=nlp.intent_hi.min_age(HELLO).max_age(None).detached(),
+    reads=(who, facts, told),
+    writes=(verbaliser.intent, rawio.output, talk),
+    detached=True,
+    background=True,
+)
+async def introduce(ctx: rs.RuleContext) -> rs.Resign | None:
+    """Ask for the name after the first hello, once."""
+    settings: Settings = ctx.settings
+    now = ctx[talk]
+    if ctx[who] is not None or NAME not in settings.topics or NAME in now.closed or now.tries.get(NAME):
+        return rs.Resign("the user is known, or was asked")
+    if now.quiet or ctx.now - now.spoke < HELLO - 0.1:
+        return rs.Resign("the user went on talking")
+    ctx[talk] = now.asking(NAME, ctx.now)
+    ctx[verbaliser.intent] = asking(NAME, known_of(ctx))
+    return None
+
+
+@module.rule(
+    when=nlp.analysis.changed,
     reads=ontology.memory,
-    writes=(talk, who, facts),
-    emits=(reply, noted),
+    writes=(talk, who, facts, told),
+    emits=(reply, noted, forgotten),
 )
 async def listen(ctx: rs.RuleContext) -> None:
     """Learn what the user tells about themselves, and raise a reply if this module has one.
@@ -78,18 +126,14 @@ async def listen(ctx: rs.RuleContext) -> None:
     of memory into the slots later.
     """
     settings: Settings = ctx.settings
-    heard = Heard(
-        ctx.payload(nlp.text.changed),
-        ctx.payload(nlp.yesno.changed),
-        ctx.payload(nlp.question.changed),
-        ctx.payload(nlp.entities.changed),
-        ctx.payload(nlp.tokens.changed),
-        ctx.payload(nlp.pos.changed),
-        ctx.payload(nlp.triples.changed),
-    )
-    meaning = understand(heard, ctx[talk], known_of(ctx), ctx.now, settings.within)
+    seen = ctx.payload(nlp.analysis.changed)
+    if seen is None:
+        return
     before = acquaintance_of(ctx)
-    response = respond_to(meaning, before, ctx.now, ctx.random)
+    meaning = understand(seen, before.talk, before.known, ctx.now, settings.within, before.told.values())
+    moment = datetime.now(UTC)
+    meaning = replace(meaning, free=tuple(replace(one, by=before.name or "", at=moment) for one in meaning.free))
+    response = respond_to(meaning, before, ctx.now, ctx.random, confirm=settings.confirm)
     keep(ctx, before, response.user)
     if response.errand is not None:
         memory, base = ctx[ontology.memory], response.user
@@ -99,6 +143,8 @@ async def listen(ctx: rs.RuleContext) -> None:
         if is_new and memory is not None and await _is_open(memory):  # otherwise the log has it
             ctx.log.error("%s", trouble)
         ctx.emit(noted, Noted(base, response.user, before.name))
+        if response.forgotten:
+            ctx.emit(forgotten)
     if response.answer is not None and meaning.aloud:
         ctx.emit(reply, response.answer)
 
@@ -112,7 +158,7 @@ async def _is_open(memory: ontology.Memory) -> bool:
     return True
 
 
-@module.rule(when=noted.max_age(None).detached(), writes=(talk, who, facts, interloc.users), background=True)
+@module.rule(when=noted.max_age(None).detached(), writes=(talk, who, facts, told, interloc.users), background=True)
 async def acknowledge(ctx: rs.RuleContext) -> None:
     """Put the result of memory into the slots, and the user's name into `interloc.users`."""
     base, after, called = ctx.payload(noted)
@@ -143,7 +189,7 @@ async def overhear(ctx: rs.RuleContext) -> rs.Resign | None:
 @module.rule(
     when=interloc.users.added.max_age(None).detached(),
     reads=(ontology.memory, interloc.users),
-    writes=(talk, who, facts),
+    writes=(talk, who, facts, told),
     emits=noted,
     background=True,
 )
@@ -166,7 +212,7 @@ async def welcome(ctx: rs.RuleContext) -> rs.Resign | None:
 @module.rule(
     when=interloc.users.removed.max_age(None).detached(),
     reads=(ontology.memory, interloc.users),
-    writes=(talk, who, facts),
+    writes=(talk, who, facts, told),
     emits=noted,
     background=True,
 )
@@ -209,7 +255,7 @@ def known_of(ctx: rs.RuleContext) -> Facts:
 
 def acquaintance_of(ctx: rs.RuleContext) -> Acquaintance:
     """Return the user from the slots."""
-    return Acquaintance(ctx[who], dict(ctx[facts]), ctx[talk])
+    return Acquaintance(ctx[who], dict(ctx[facts]), ctx[talk], dict(ctx[told]))
 
 
 def keep(ctx: rs.RuleContext, before: Acquaintance, after: Acquaintance) -> None:
@@ -218,9 +264,13 @@ def keep(ctx: rs.RuleContext, before: Acquaintance, after: Acquaintance) -> None
         ctx[who] = after.who
     if after.talk != before.talk:
         ctx[talk] = after.talk
-    items = ctx[facts]
-    for topic in [topic for topic in before.facts if topic not in after.facts]:
-        items.remove(topic)
-    for topic, values in after.facts.items():
-        if before.facts.get(topic) != values:
-            items.add(topic, values)
+    _update(ctx[facts], before.facts, after.facts)
+    _update(ctx[told], before.told, after.told)
+
+
+def _update(items: Any, before: Mapping[str, T], after: Mapping[str, T]) -> None:
+    for key in [key for key in before if key not in after]:
+        items.remove(key)
+    for key, value in after.items():
+        if before.get(key) != value:
+            items.add(key, value)

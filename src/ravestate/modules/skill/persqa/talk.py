@@ -8,6 +8,12 @@ from dataclasses import dataclass, field, fields, replace
 FORGET = "forget"
 """The topic of the question whether the user really wants to be forgotten."""
 
+CONFIRM = "confirm"
+"""The topic of the question by which somebody who says a known name shows that they are that person."""
+
+MORE = "more"
+"""The topic of a question that asks for no fact: any words answer it."""
+
 ENOUGH = 1_000
 """The number of tries after which the agent never asks about a topic again."""
 
@@ -63,6 +69,11 @@ class Talk:
         trouble: The last failure of memory; empty while it works.
         warned: Whether the user knows about the trouble.
         quiet: Whether the user has said goodbye.
+        doubt: The topic that the user must confirm before the agent takes them for the person of their name.
+        wants_out: Whether they asked to be forgotten before the agent knew who they are.
+        formal: Whether the last question asked for a fact, and nothing personal was said since.
+        spoke: Seconds from the beginning of the context to the user's last words.
+        picked_up: The keys of free statements to which the agent came back.
     """
 
     question: Question | None = None
@@ -81,11 +92,17 @@ class Talk:
     trouble: str = ""
     warned: bool = False
     quiet: bool = False
+    doubt: str = ""
+    wants_out: bool = False
+    formal: bool = False
+    spoke: float = 0.0
+    picked_up: frozenset[str] = frozenset()
 
     def asking(self, topic: str, now: float) -> Talk:
         """Ask about `topic`."""
         return replace(
             self,
+            formal=topic != MORE,
             question=Question(topic, now),
             tries={**self.tries, topic: self.tries.get(topic, 0) + 1},
         )
@@ -97,7 +114,7 @@ class Talk:
             return None
         return question
 
-    def listening(self, *, leave: bool) -> Talk:
+    def listening(self, now: float, *, leave: bool) -> Talk:
         """Count an utterance of the user; `leave` means a goodbye."""
         question = self.question
         return replace(
@@ -106,6 +123,7 @@ class Talk:
             ignored=0,
             age=self.age + 1,
             quiet=leave,
+            spoke=now,
         )
 
     def speaking(self) -> Talk:

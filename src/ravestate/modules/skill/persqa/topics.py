@@ -33,8 +33,8 @@ class Topic:
     """The topic that must be known before the agent asks about this one."""
     asked: bool = True
     """Whether the agent asks for it."""
-    nouns: str = ""
-    """Nouns for these persons or animals, as a pattern: *my sister*."""
+    nouns: tuple[str, ...] = ()
+    """Nouns for these persons or animals: *my sister*."""
     role: bool = False
     """Whether several topics share the relation; its property ``role`` then tells them apart."""
     besides: tuple[str, ...] = ()
@@ -49,7 +49,7 @@ def _relative(
 ) -> Topic:
     """Return the topic of a relative, or of a pet."""
     clause = f"your {name} is {{}}"
-    return Topic(name, "people", relation, type, clause, many, asked=False, nouns=nouns, role=role)
+    return Topic(name, "people", relation, type, clause, many, asked=False, nouns=tuple(nouns.split("|")), role=role)
 
 
 class _Topics(dict[str, Topic]):
@@ -76,18 +76,18 @@ TOPICS: Mapping[str, Topic] = _Topics(
         Topic("employer", "organisation", "works_for", "Organisation", "you work for {}", only_with="occupation"),
         Topic("subject", "subject", "studies", "Subject", "you study {}"),
         Topic("university", "organisation", "studies_at", "Institution", "you study at {}", only_with="subject"),
-        Topic("friend", "people", "friend_of", "Person", "you are a friend of {}", many=True, nouns="friend|buddy|mate"),
+        Topic("friend", "people", "friend_of", "Person", "you are a friend of {}", many=True, nouns=("friend", "buddy", "mate", "best friend")),
         Topic("club", "organisation", "member_of", "Organisation", "you are a member of {}", many=True),
-        _relative("mother", "has_mother", "mother|mum|mummy|mom|mommy", many=False),
+        _relative("mother", "has_mother", "mother|mum|mummy|mom|mommy|mam", many=False),
         _relative("father", "has_father", "father|dad|daddy", many=False),
-        _relative("sister", "sibling_of", "sister", role=True),
-        _relative("brother", "sibling_of", "brother", role=True),
+        _relative("sister", "sibling_of", "sister|stepsister|half-sister", role=True),
+        _relative("brother", "sibling_of", "brother|stepbrother|half-brother", role=True),
         _relative("wife", "partner_of", "wife", many=False, role=True),
         _relative("husband", "partner_of", "husband", many=False, role=True),
-        _relative("partner", "partner_of", "partner|boyfriend|girlfriend|fianc[eé]e?", many=False, role=True),
+        _relative("partner", "partner_of", "partner|boyfriend|girlfriend|fiancé|fiancée|fiance|fiancee", many=False, role=True),
         _relative("daughter", "has_child", "daughter", role=True),
         _relative("son", "has_child", "son", role=True),
-        _relative("child", "has_child", "child(?:ren)?|kid", role=True),
+        _relative("child", "has_child", "child|kid|baby", role=True),
         _relative("dog", "has_pet", "dog|puppy", role=True, type="Animal"),
         _relative("cat", "has_pet", "cat|kitten", role=True, type="Animal"),
         _relative("pet", "has_pet", "pet", role=True, type="Animal"),
@@ -128,9 +128,14 @@ def favourite(words: str) -> str:
     return re.sub(r"^favou?rite", "favourite", words.lower().strip())
 
 
+def is_topic(name: str) -> bool:
+    """Return whether there is a topic of this name; any favourite is one."""
+    return name in TOPICS or name.startswith("favourite ")
+
+
 def about(relation: str, role: object) -> str:
     """Return the topic of a relation in memory; empty if there is none."""
-    if isinstance(role, str) and (role in TOPICS or role.startswith("favourite ")):
+    if isinstance(role, str) and is_topic(role):
         return role if TOPICS[role].relation == relation else ""
     return next((t.name for t in TOPICS.values() if t.relation == relation and not t.role), "")
 

@@ -3,20 +3,23 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 from typing import Literal
 
 from ravestate.modules import nlp
 
-from .answers import answer, correction, has_none, refuses
-from .forgetting import to_forget, wants_to_be_forgotten
-from .inquiries import EVERYTHING, about_oneself, inquiry, of_whom
-from .phrase import plain
-from .statements import relative_in, statements
-from .talk import FORGET, Talk
-from .topics import NAME, TOPICS, Fact
-from .words import VERBS
+from . import kinds
+from .answers import answer, correction, may_stand_alone, spelled_out
+from .reading import Reader
+from .relations import relations
+from .talk import CONFIRM, FORGET, Talk
+from .told import Told, answers_in, told_in
+from .topics import NAME, TOPICS, Fact, is_topic
+from .wording import among
+
+EVERYTHING = "everything"
+"""Stands for all topics."""
 
 Kind = Literal[
     "nothing",  # for persqa
@@ -28,33 +31,15 @@ Kind = Literal[
     "which",  # the user said no more than yes
     "mentioned",  # a relative without a name
     "asked",  # about themselves
+    "asked_told",  # about a free statement of before
+    "vouched",  # the answer by which somebody shows that they are who they say
+    "identified",  # it's me, perhaps with a name
+    "mistaken",  # they are not the person that the agent takes them for
     "strike",  # forget some facts
     "forget",  # forget everything
     "forget_yes",
     "forget_no",
 ]
-
-
-LEAVE = re.compile(
-    r"(?:^|[.,;!?…] *|\b(?:ok|okay|well|thanks|thank you|so|and) )(?:bye+|goodbye|good ?night|farewell|cheerio|ciao|see (?:you|ya)|"
-    r"take care(?! of)|have a (?:nice|good|great) (?:day|evening|night|one)|(?:i'll )?talk to you (?:later|soon)|until tomorrow|"
-    r"i (?:really )?(?:have to|must|need to|gotta|got to) (?:go|leave|run))\b(?! to\b)",
-    re.IGNORECASE,
-)
-"""A goodbye."""
-
-
-@dataclass(frozen=True, slots=True)
-class Heard:
-    """An utterance with the results of `nlp`."""
-
-    text: str
-    yesno: nlp.YesNo = field(default_factory=nlp.YesNo)
-    question: nlp.QuestionWord | None = None
-    entities: tuple[nlp.Entity, ...] = ()
-    tokens: tuple[str, ...] = ()
-    pos: tuple[str, ...] = ()
-    triples: tuple[nlp.Triple, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,6 +53,7 @@ class Meaning:
         leave: Whether they say goodbye.
         aloud: Whether the agent replies. Questions, goodbyes and games of the user go first: the agent silently learns
             anything else that they say.
+        free: Free statements that they make, ask for, or want forgotten.
     """
 
     kind: Kind
@@ -75,93 +61,196 @@ class Meaning:
     topic: str = ""
     leave: bool = False
     aloud: bool = True
+    free: tuple[Told, ...] = ()
 
 
-def understand(heard: Heard, talk: Talk, known: Mapping[str, tuple[str, ...]], now: float, within: float) -> Meaning:
+def understand(
+    seen: nlp.Analysis,
+    talk: Talk,
+    known: Mapping[str, tuple[str, ...]],
+    now: float,
+    within: float,
+    told: Iterable[Told] = (),
+) -> Meaning:
     """Return the meaning of an utterance at `now`; a question waits `within` seconds for its answer."""
-    text = plain(heard.text)
-    leave = LEAVE.search(text) is not None
     pending = talk.pending(now, within)
     topic = pending.topic if pending else ""
-    if wants_to_be_forgotten(text):
-        return Meaning("forget", leave=leave)
+    reader = Reader(seen, talk.doubt if topic == CONFIRM else topic if is_topic(topic) else "")
+    acts = _acts(seen)
+    leave = seen.intent_bye or "farewell" in seen.acts
+    wish = _forgetting(seen, reader, known, told)
+    if wish is not None and wish.kind == "forget":
+        return wish
     if topic == FORGET:
         fresh = pending is not None and pending.fresh  # a yes to something else must not delete anything
-        return _of_forgetting(heard, leave) if fresh else Meaning("nothing", leave=leave)
-    if (strike := to_forget(text, known)) is not None:
-        everything = any(fact.topic == EVERYTHING for fact in strike)
-        return Meaning("forget" if everything else "strike", tuple(strike), leave=leave)
-    if heard.question is not None:
-        if asked := inquiry(text):
-            return Meaning("asked", (asked,))
-        if somebody := of_whom(text, known):
-            return Meaning("asked", (Fact(somebody, ()),))
-    told = statements(text, persons=persons_in(heard), asked=topic)
-    told = [fact for fact in told if not fact.gone or _matters(fact, known, topic)]
-    aside = leave or heard.question is not None
-    if told:
-        return Meaning("told", tuple(told), topic, leave, aloud=not aside)
+        return _of_forgetting(seen, leave) if fresh else Meaning("nothing", leave=leave)
+    if wish is not None:
+        return wish
+    if pending is not None and is_topic(topic) and not pending.turns and "refuse" in acts:
+        return Meaning("declined", topic=topic)
+    if topic == CONFIRM and (vouched := _vouched(seen, reader, talk.doubt, acts)):
+        return vouched
+    asks = seen.question is not None
+    if (asks or "ask_everything" in acts) and (inquiry := _inquiry(seen, reader, acts, known, told)):
+        return inquiry
+    facts = [fact for fact in reader.facts(known) if not fact.gone or _matters(fact, known, topic)]
+    free = tuple(told_in(reader))
+    aside = leave or asks
+    if facts or free:
+        return Meaning("told", tuple(facts), topic, leave, aloud=bool(facts) and not aside, free=free)
+    if identity := _identity(seen, known):
+        return identity
+    text = spelled_out(seen.tree.text).strip()
     if aside:
-        before = _before_question(text) if heard.question is not None and topic else ""
-        side = answer(before, topic) if before else []
-        if heard.question is not None and not side and about_oneself(text, heard.question, heard.triples):
+        before = _before_question(text) if asks and topic else ""
+        side = answer(before, topic, seen) if before else []
+        if asks and not side and "ask_own" in acts and _of_user(seen):
             return Meaning("asked", (Fact("", ()),))
         return Meaning("told" if side else "nothing", tuple(side), topic, leave, aloud=False)
-    if (relative := relative_in(text)) and not known.get(relative):
+    if (relative := reader.without_name()) and not known.get(relative):
         return Meaning("mentioned", topic=relative)
     if talk.correctable:
-        put_right = correction(text, talk.correctable, talk.latest, explicit=pending is not None)
+        put_right = correction(text, talk.correctable, talk.latest, seen, explicit=pending is not None)
         if put_right:
             return Meaning("corrected", tuple(put_right), talk.correctable)
-    if pending is None:
+    if pending is None or not is_topic(topic):
         return Meaning("nothing")
-    if not pending.turns and refuses(text):
-        return Meaning("declined", topic=topic)
-    if pending.fresh and has_none(text):
+    return _of_answer(seen, text, topic, acts, fresh=pending.fresh)
+
+
+def _of_answer(seen: nlp.Analysis, text: str, topic: str, acts: set[str], *, fresh: bool) -> Meaning:
+    """Return the meaning of words that may answer the open question."""
+    if fresh and "nothing" in acts:
         return Meaning("none" if topic != NAME else "declined", topic=topic)
-    answered = answer(text, topic) or (correction(text, topic, ()) if heard.yesno.no else [])  # no, from Bremen
-    if answered and may_stand_alone(heard):
+    answered = answer(text, topic, seen) or (
+        correction(text, topic, (), seen) if seen.yesno.no else []
+    )  # no, from Bremen
+    if answered and may_stand_alone(seen) and not {"thanks", "greeting", "acknowledgement"} & set(seen.acts):
         return Meaning("told", tuple(answered), topic)
-    if not pending.fresh:
+    if not fresh:
         return Meaning("nothing")
-    return Meaning(_of_yesno(heard.yesno, topic, text), topic=topic)
+    return Meaning(_of_yesno(seen.yesno, topic, text), topic=topic)
 
 
-def _of_forgetting(heard: Heard, leave: bool) -> Meaning:
-    if heard.yesno.yes:
+def _acts(seen: nlp.Analysis) -> set[str]:
+    """Return the acts of the sentences, by the classes of `acts.yaml`."""
+    return {match.name for match in kinds.acts().match_all(seen.sentences) if match is not None}
+
+
+# --------------------------------------------------------------------------------------------- forgetting
+
+
+def _forgetting(
+    seen: nlp.Analysis, reader: Reader, known: Mapping[str, tuple[str, ...]], told: Iterable[Told]
+) -> Meaning | None:
+    """Return the wish to forget; None if the utterance has none."""
+    table = relations()
+    for said in seen.statements:
+        if said.verb not in table.words["forgetting"] or not _is_wish(seen, said):
+            continue
+        object = said.object
+        if (
+            object.person == "I"
+            or (object.head or object.text.lower()) in table.words["everything"]
+            or object.text.lower().endswith(" data")
+        ):
+            about_me = object.person == "I" or re.search(r"\b(?:me|my|i)\b", seen.text, re.IGNORECASE)
+            return Meaning("forget") if about_me else None
+        value = object.text
+        facts = [Fact(topic, (value,), gone=True) for topic, values in known.items() if value and among(value, values)]
+        facts = facts or [Fact(topic, (), gone=True) for topic in filter(None, [reader.noun(object)])]
+        facts = facts or [
+            Fact(fact.topic, fact.values, gone=True) for fact in reader.facts() or filter(None, [reader.asks()])
+        ]
+        names = {value or "-", *(name for fact in facts for name in fact.values or known.get(fact.topic, ()))}
+        said_again = {one.key for one in told_in(reader)}
+        free = tuple(one for one in told if {one.subject, one.object} & names or one.key in said_again)
+        if facts or free:
+            return Meaning("strike", tuple(facts), free=free)
+        if object.of("I") or any(other.subject.person == "I" for other in seen.statements):
+            return Meaning("strike")
+    match = seen.act("forget_me")
+    verbs = {said.verb for said in seen.statements}
+    return Meaning("forget") if match and match.score > 0.7 and not verbs & table.words["forgetting"] else None
+
+
+def _is_wish(seen: nlp.Analysis, said: nlp.Statement) -> bool:
+    """Return whether the user asks the agent to do this: *forget me*, *can you forget me*, *I want you to forget me*."""
+    if said.negated or said.hearsay or said.conditional or said.subject.person != "you":
+        return False
+    words = [word.low for word in seen.tree.words]
+    return said.request or "want" in words or bool({"can", "could", "would", "please"} & set(words[:3]))
+
+
+def _of_forgetting(seen: nlp.Analysis, leave: bool) -> Meaning:
+    if seen.yesno.yes:
         return Meaning("forget_yes", leave=leave)
-    if heard.yesno.no or heard.yesno.unsure:
+    if seen.yesno.no or seen.yesno.unsure:
         return Meaning("forget_no", leave=leave)
     return Meaning("nothing", leave=leave)
 
 
-def may_stand_alone(heard: Heard) -> bool:
-    """Return whether an utterance may be a bare answer: not a sentence about others, a request, or adverbs alone."""
-    if heard.yesno and not _YES_AND.match(heard.text):
-        return False  # hard to say
-    if heard.pos and not _TELLING & set(heard.pos):
-        return False
-    if len(heard.tokens) < 3:
-        return True  # Bill Gates is not a sentence, although a parser may make one of it
-    for triple in heard.triples:
-        subject = str(triple.subject).lower()
-        if subject == "you" and triple.predicate.split()[0] not in VERBS:
-            return False
-        if subject and subject.split()[0] not in _SPEAKER:
-            return False
-    return True
+# ----------------------------------------------------------------------------------------------- identity
 
 
-_YES_AND = re.compile(
-    r"\W*(?:yes|yeah|yep|yup|yea|sure|of course|certainly|ok|okay|probably|maybe|perhaps|i guess|i think|i suppose|mostly|no|nope|well|"
-    r"oh|actually|honestly)\b\W+\w",
-    re.IGNORECASE,
-)
-"""A yes with an answer after it: *yes, chess*."""
-_TELLING = frozenset(["NOUN", "PROPN", "VERB", "ADJ", "NUM", "X", "SYM"])
-_SPEAKER = frozenset(
-    ["i", "we", "my", "our", "you", "it", "that", "this", "they", "these", "those", "his", "her", "their"]
-)
+def _vouched(seen: nlp.Analysis, reader: Reader, topic: str, acts: set[str]) -> Meaning | None:
+    """Return the answer by which the user shows who they are; one without facts if they cannot or will not."""
+    told = [fact for fact in reader.facts() if fact.topic == topic and not fact.gone]
+    told = told or (
+        answer(spelled_out(seen.tree.text), topic, seen) if seen.question is None and may_stand_alone(seen) else []
+    )
+    if told or seen.yesno.no or seen.yesno.unsure or {"refuse", "nothing"} & acts:
+        return Meaning("vouched", tuple(told[:1]))
+    return None
+
+
+def _identity(seen: nlp.Analysis, known: Mapping[str, tuple[str, ...]]) -> Meaning | None:
+    """Return that the user says who they are, or who they are not."""
+    if "deny_identity" in seen.acts and known.get(NAME):
+        return Meaning("mistaken")
+    match = seen.act("identify")
+    other = any(
+        said.subject.of("I") or (said.subject.person == "I" and isinstance(said.triple.object, nlp.QuestionWord))
+        for said in seen.statements
+    )  # my name is..., who am I talking to
+    if match is None or other:
+        return None
+    name = Reader(seen).remaining_name()
+    return Meaning("identified", (Fact(NAME, (name,)),) if name else ())
+
+
+# ---------------------------------------------------------------------------------------------- questions
+
+
+def _inquiry(
+    seen: nlp.Analysis, reader: Reader, acts: set[str], known: Mapping[str, tuple[str, ...]], told: Iterable[Told]
+) -> Meaning | None:
+    """Return a question about the user, or about what they told."""
+    if "ask_everything" in acts:
+        return Meaning("asked", (Fact(EVERYTHING, ()),))
+    if asked := reader.asks():
+        return Meaning("asked", (asked,))
+    wished = any(said.plan for said in seen.statements)  # do you want to know my name
+    for said in seen.statements:
+        about = said.question and not wished and said.verb in ("be", *relations().words["knowing"])
+        if about and (topic := reader.noun(said.object) or _topic_of(said, known)):
+            return Meaning("asked", (Fact(topic, ()),))
+    if "ask_name" in acts and not wished:
+        return Meaning("asked", (Fact(NAME, ()),))
+    found = answers_in(reader, told, known)
+    return Meaning("asked_told", free=tuple(found)) if found else None
+
+
+def _topic_of(said: nlp.Statement, known: Mapping[str, tuple[str, ...]]) -> str:
+    """Return the topic of a person whom a question names: *who is Emma*."""
+    named = [phrase.text for phrase in (said.subject, said.object, *said.phrases) if phrase.text]
+    people = ((topic, value) for topic, values in known.items() if TOPICS[topic].nouns for value in values)
+    return next((topic for topic, value in people if among(value, named)), "")
+
+
+def _of_user(seen: nlp.Analysis) -> bool:
+    """Return whether a question is about the user or their own."""
+    return any(said.question and (said.subject.person == "I" or said.subject.of("I")) for said in seen.statements)
 
 
 def _of_yesno(yesno: nlp.YesNo, topic: str, text: str) -> Kind:
@@ -183,8 +272,7 @@ def _matters(fact: Fact, known: Mapping[str, tuple[str, ...]], topic: str) -> bo
     if fact.topic == NAME:
         return any(value in known.get(NAME, ()) for value in fact.values)
     if fact.values:
-        low = [value.casefold() for value in known.get(fact.topic, ())]
-        return any(value.casefold() in low for value in fact.values)
+        return any(among(value, known.get(fact.topic, ())) for value in fact.values)
     return fact.topic == topic or TOPICS[fact.topic].kind != "place" or bool(known.get(fact.topic))
 
 
@@ -198,23 +286,3 @@ _TURNED = re.compile(
     r"[.;!…\n]+|,?\s(?=(?:and|what about|how about) (?:you|yours)\b|(?:what's|what is|where|who|what) (?:yours|about you|are you)\b)",
     re.IGNORECASE,
 )
-
-
-def persons_in(heard: Heard) -> frozenset[str]:
-    """Return the persons' names in an utterance: those that `nlp` found, and capitalised words that are nothing else."""
-    plain_words = {word for word, pos in zip(heard.tokens, heard.pos, strict=False) if pos in _NO_NAMES}
-    other = {word for entity in heard.entities if entity.label != "PERSON" for word in entity.text.split()}
-    found = {
-        entity.text
-        for entity in heard.entities
-        if entity.label == "PERSON" and not plain_words >= set(entity.text.split())
-    }
-    for match in _CAPITALS.finditer(heard.text):
-        words = match[0].split()
-        if not (other | plain_words) & set(words):
-            found.update((match[0], words[0]))
-    return frozenset(found)
-
-
-_NO_NAMES = frozenset(["ADJ", "ADV", "VERB", "AUX", "PRON", "DET", "NUM"])
-_CAPITALS = re.compile(r"(?<![\w'])[^\W\d_a-z][\w-]*(?: [^\W\d_a-z][\w-]+)*")

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
+from .relations import relations
 from .topics import TOPICS, Topic
-from .words import SMALL
 
 BARE = frozenset(["retired", "self-employed", "freelance", "unemployed"])
 """Occupations without an article."""
@@ -42,12 +42,13 @@ def tidy(text: str, topic: Topic) -> str:
 
 
 def _capital(word: str, *, first: bool) -> str:
-    if word in SMALL and not first:
+    if word in relations().words["small"] and not first:
         return word
     # str.title would write "O'Brien'S", and str.capitalize "Mckay"
     parts = word.split("-")
     word = "-".join(
-        part if index and part in SMALL else part[:1].upper() + part[1:] for index, part in enumerate(parts)
+        part if index and part in relations().words["small"] else part[:1].upper() + part[1:]
+        for index, part in enumerate(parts)
     )
     return "O'" + word[2:3].upper() + word[3:] if word.startswith("O'") else word
 
@@ -65,6 +66,12 @@ def same(one: str, other: str) -> bool:
 def among(value: str, others: Iterable[str]) -> bool:
     """Return whether one of `others` means the same as `value`."""
     return any(same(value, other) for other in others)
+
+
+def alike(value: str, others: Iterable[str]) -> bool:
+    """Return whether one of `others` means the same, or names a part of it: *Bremen* of *the city of Bremen*."""
+    words = set(_key(value).split())
+    return any(words and (words <= set(_key(other).split()) or words >= set(_key(other).split())) for other in others)
 
 
 def _key(value: str) -> str:

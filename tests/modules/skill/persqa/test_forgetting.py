@@ -1,0 +1,73 @@
+"""The words and the effect of forgetting a person."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from modules.skill.persqa.conftest import Look
+from modules.skill.persqa.test_scenarios import agent, answers, meant
+from ravestate.modules import persqa
+
+pytestmark = pytest.mark.usefixtures("reader")
+
+
+def files_of(file: Path) -> bytes:
+    return b"".join(one.read_bytes() for one in sorted(file.parent.iterdir()) if one.is_file())
+
+
+def test_nothing_of_a_forgotten_person_stays_on_disk(file: Path) -> None:
+    with agent(file) as sim:
+        sim.say("my name is Zwentibold and i live in Quakenbrueck")
+        sim.say("my sister is called Ermintrude")
+        sim.say("I painted a basilisk")
+    assert all(word in files_of(file) for word in (b"Zwentibold", b"Quakenbrueck", b"Ermintrude", b"basilisk"))
+    with agent(file) as sim:
+        sim.say("my name is Zwentibold")
+        said = answers(sim, "forget me")
+        assert meant(said, "forget_ask") and "your home" in said and "your sister" in said and "1 other thing" in said
+        said = answers(sim, "yes")
+        assert meant(said, "forgotten") and "your home" in said
+        assert "persqa:listen" in sim.fired and dict(sim.read(persqa.told)) == {}
+    left = files_of(file)
+    assert not any(word in left for word in (b"Zwentibold", b"Quakenbrueck", b"Ermintrude", b"basilisk"))
+
+
+def test_who_is_meant_is_asked_when_nobody_is_recognised(file: Path, look: Look) -> None:
+    with agent(file) as sim:
+        sim.say("my name is ada and i live in hannover")
+    with agent(file, confirm=True) as sim:
+        assert meant(answers(sim, "please forget me"), "forget_who")
+        assert meant(answers(sim, "ada"), "vouch_home")
+        assert meant(answers(sim, "hannover"), "forget_ask")
+        assert meant(answers(sim, "yes"), "forgotten")
+    assert look() == {}
+
+
+def test_nobody_has_another_person_forgotten(file: Path, look: Look) -> None:
+    with agent(file) as sim:
+        sim.say("my name is ada and i live in hannover")
+    with agent(file, confirm=True) as sim:
+        sim.say("forget me")
+        sim.say("ada")
+        assert meant(answers(sim, "bremen"), "forget_nobody")
+    assert look()["Ada"] == {"lives_in": ["Hannover"]}
+
+
+def test_other_modules_hear_that_somebody_was_forgotten(file: Path) -> None:
+    import ravestate as rs
+
+    listener = rs.Module("listener", requires=[persqa])
+    heard = listener.slot("heard", False)
+
+    @listener.rule(when=persqa.forgotten.detached(), writes=heard)
+    async def hear(ctx: rs.RuleContext) -> None:
+        ctx[heard] = True
+
+    with agent(file, listener) as sim:
+        sim.say("my name is ada")
+        sim.say("forget me")
+        assert not sim.read(heard)
+        sim.say("yes")
+        assert sim.read(heard)

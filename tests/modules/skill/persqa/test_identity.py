@@ -1,0 +1,128 @@
+"""Identity: names that memory knows, and people who say that it is them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from modules.skill.persqa.conftest import Look
+from modules.skill.persqa.test_scenarios import agent, answers, meant
+from ravestate.modules import hibye, interloc, persqa
+from ravestate.testing import Simulation
+
+pytestmark = pytest.mark.usefixtures("reader")
+
+
+@pytest.fixture
+def ada(file: Path) -> Path:
+    """Return a memory that knows Ada, who lives in Hannover and has a sister."""
+    with agent(file) as sim:
+        sim.say("my name is ada and i live in hannover")
+        sim.say("my sister is called Emma")
+    return file
+
+
+def name_of(sim: Simulation) -> str | None:
+    who = sim.read(persqa.who)
+    return None if who is None else who["name"]
+
+
+def test_somebody_who_says_a_known_name_is_asked_something_harmless(ada: Path) -> None:
+    with agent(ada, confirm=True) as sim:
+        said = answers(sim, "i'm ada")
+        assert meant(said, "vouch_home") and "Hannover" not in said
+        assert dict(sim.read(persqa.facts)) == {}
+        assert meant(answers(sim, "in hannover"), "welcome_back")
+        assert sim.read(persqa.facts)["sister"] == ("Emma",)
+
+
+@pytest.mark.parametrize("text", ["bremen", "i don't know", "none of your business", "no"])
+def test_a_wrong_or_refused_answer_makes_a_new_person_of_the_same_name(ada: Path, look: Look, text: str) -> None:
+    with agent(ada, confirm=True) as sim:
+        sim.say("my name is ada")
+        assert meant(answers(sim, text), "namesake")
+        assert dict(sim.read(persqa.facts)) == {}
+        sim.say("i work as a baker")
+        said = answers(sim, "what do you know about me?")
+        assert "baker" in said and "Hannover" not in said and "Emma" not in said
+    with agent(ada) as sim:
+        sim.say("i'm called ada")
+        assert "you live in Hannover" in answers(sim, "where do i live?")
+
+
+def test_nothing_leaks_before_the_answer(ada: Path) -> None:
+    with agent(ada, confirm=True) as sim:
+        sim.say("my name is ada")
+        for text in ("where do i live?", "who is my sister?", "what do you know about me?", "do i live in hannover?"):
+            said = answers(sim, text)
+            assert "Emma" not in said and "you live in Hannover" not in said
+
+
+def test_who_tells_a_fact_that_the_agent_knows_needs_no_question(ada: Path) -> None:
+    with agent(ada, confirm=True) as sim:
+        assert meant(answers(sim, "my name is ada and i live in hannover"), "welcome_back")
+
+
+def test_the_second_of_two_namesakes_is_recognised_by_the_answer(ada: Path) -> None:
+    with agent(ada, confirm=True) as sim:
+        sim.say("my name is ada")
+        sim.say("bremen")
+        sim.say("i live in bremen")
+    with agent(ada, confirm=True) as sim:
+        sim.say("my name is ada")
+        assert meant(answers(sim, "bremen"), "welcome_back")
+        assert "sister" not in sim.read(persqa.facts)
+
+
+def test_a_user_whom_the_platform_recognises_needs_no_question(ada: Path) -> None:
+    with agent(ada, confirm=True) as sim:
+        sim.put(interloc.users, {"camera": "Ada"})
+        assert "you live in Hannover" in answers(sim, "where do i live?")
+
+
+@pytest.mark.parametrize("text", ["it's me, Marlene", "this is Marlene again", "hello, it is me, marlene"])
+def test_people_say_who_they_are(file: Path, text: str) -> None:
+    with agent(file, hibye) as sim:
+        sim.say(text)
+        assert name_of(sim) == "Marlene"
+
+
+@pytest.mark.parametrize("text", ["guess who", "I'm back"])
+def test_people_say_that_it_is_them_without_a_name(file: Path, text: str) -> None:
+    with agent(file) as sim:
+        assert meant(answers(sim, text), "identify")
+        assert meant(answers(sim, "marlene"), "learned_name")
+        assert meant(answers(sim, text), "back")
+
+
+def test_somebody_else_than_the_agent_thinks(ada: Path, look: Look) -> None:
+    with agent(ada) as sim:
+        sim.say("i'm called ada")
+        sim.say("i work as a baker")
+        assert meant(answers(sim, "no, I'm her sister"), "mistaken")
+        assert name_of(sim) is None and "home" not in sim.read(persqa.facts)
+        sim.say("emma")
+        assert name_of(sim) == "Emma"
+    people = look()
+    assert "works_as" not in people["Ada"] and people["Emma"] == {"works_as": ["baker"]}
+
+
+def test_the_name_is_asked_after_the_first_hello_once(file: Path) -> None:
+    with agent(file, hibye) as sim:
+        sim.say("hello")
+        assert "hibye:answer_hello" in sim.fired and len(sim.said) == 1
+        sim.advance(3.5)
+        assert meant(sim.said[-1], "ask_name") and len(sim.said) == 2
+        sim.say("hello")
+        sim.advance(3.5)
+        assert "persqa:introduce" not in sim.fired[sim.fired.index("persqa:introduce") + 1 :]
+
+
+def test_a_user_who_goes_on_talking_after_hello_is_not_interrupted(file: Path) -> None:
+    with agent(file, hibye) as sim:
+        sim.say("hello")
+        sim.advance(2.0)
+        sim.say("what a nice day")
+        sim.advance(2.5)
+        assert "persqa:introduce" not in sim.fired
