@@ -77,7 +77,7 @@ def understand(
     topic = pending.topic if pending else ""
     reader = Reader(seen, talk.doubt if topic == CONFIRM else topic if is_topic(topic) else "")
     acts = _acts(seen)
-    leave = seen.intent_bye or "farewell" in seen.acts
+    leave = "farewell" in seen.acts
     wish = _forgetting(seen, reader, known, told)
     if wish is not None and wish.kind == "forget":
         return wish
