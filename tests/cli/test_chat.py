@@ -163,4 +163,4 @@ def test_a_module_with_settings_stays(started: Any, capsys: Capture, monkeypatch
 def test_asking_the_documents_without_the_extra_says_what_to_type(tmp_path: Path) -> None:
     run = without_the_extra("genqa", "ask", "What is the capital of Peru?", "--index", str(tmp_path / "index"))
     assert run.returncode == 1 and "Traceback" not in run.stderr
-    assert "pip install 'ravestate[sentences]'" in complaints(run.stderr)
+    assert "pip install 'ravestate[nlp]'" in complaints(run.stderr)

@@ -63,6 +63,6 @@ def test_without_the_models_one_warning_at_the_start_says_what_to_type_and_the_a
     assert told["failures"] == []
     answers = [answer for [answer] in told["said"].values()]
     assert "Ravestate" in answers[0]
-    assert answers[1] == "I don't know that, I'm afraid."
+    assert "Lima" not in answers[1]
     assert len(set(answers)) == len(SAID)
     assert not any("cannot think" in answer or "pip" in answer for answer in answers)

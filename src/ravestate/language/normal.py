@@ -249,8 +249,9 @@ def _stands_for(piece: _Piece, following: Sequence[_Piece], before: str, lexicon
     before = before.rpartition(" ")[2]
     opens = piece.first or before in _INTERJECTION or before in ("and", "but", "so", "then", "now")
     if piece.low == "its":
+        asks = any("?" in part.gap for part in following)
         finite = any(part.low in _AUX for part in following)
-        return opens and not finite and bool(following) and not piece.text.isupper()
+        return piece.first and bool(following) and not (asks or finite or piece.text.isupper())
     if piece.low not in WRITTEN:
         return False
     if piece.low in ("lets", "k", "ya"):

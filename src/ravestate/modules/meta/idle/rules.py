@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import asyncio
+from collections.abc import Mapping
+
 import ravestate as rs
 from ravestate.language.acts import acts, heard
+from ravestate.language.matcher import Match
 from ravestate.language.sentences import sentences
 from ravestate.modules import rawio
 
@@ -76,15 +80,19 @@ async def notice_delay(ctx: rs.RuleContext) -> None:
 
 
 @module.rule(when=rawio.input.changed, writes=dismissed, emits=hushed)
-def notice_dismissal(ctx: rs.RuleContext) -> None:
+async def notice_dismissal(ctx: rs.RuleContext) -> None:
     """Note whether the user asks for quiet or says goodbye; emit `hushed` in the first case.
 
-    The encoder may take a few milliseconds, so this runs in a thread. It counts as activity: the silence begins after it.
+    The encoder may take a few milliseconds, so it runs in a thread. This counts as activity: the silence begins after it.
     """
-    meant = acts(heard(ctx.payload(rawio.input.changed)))
+    meant = await asyncio.to_thread(_acts_in, ctx.payload(rawio.input.changed))
     ctx[dismissed] = "quiet" in meant or "farewell" in meant
     if "quiet" in meant:
         ctx.emit(hushed)
+
+
+def _acts_in(text: str) -> Mapping[str, Match]:
+    return acts(heard(text))
 
 
 def _has_words(text: str) -> bool:

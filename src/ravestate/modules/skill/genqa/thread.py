@@ -370,7 +370,7 @@ class _Follow:
         elif not self.named and last.tag in ("JJS", "JJR", "JJ", "RBS", "RB", "CD"):
             yield from self._ranked()
         elif first.pos in ("ADP", "SCONJ"):
-            yield from self._swapped(self.tree.phrase(self.words[1:]), named=self.named)
+            yield from self._swapped(self.tree.phrase(self.words[1:]), named=self.named, after=first.low)
             yield Reading(f"{self.before.question} {self.text}?", LESS)
         else:
             if self.named:
@@ -382,10 +382,11 @@ class _Follow:
                 yield from self._swapped(self.text, named=False)
                 yield from ([] if self.leads else [Reading(alone, -1.0)])
 
-    def _swapped(self, new: str, *, named: bool) -> Iterator[Reading]:
-        """Yield the question before about something else."""
+    def _swapped(self, new: str, *, named: bool, after: str = "") -> Iterator[Reading]:
+        """Yield the question before about something else, first in place of a thing that follows the word `after`."""
         question = self.before.question
         olds = [thing.text for thing in self.before.asked if thing.is_name == named]
+        olds.sort(key=lambda old: f"{after} {old}".lower() not in question.lower())
         for rank, old in enumerate(olds):
             at = question.lower().find(old.lower())
             if at >= 0:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import asyncio
+
 import ravestate as rs
 from ravestate.language.acts import heard, only
 from ravestate.modules import interloc, rawio, verbaliser
@@ -37,13 +39,11 @@ async def bid_farewell_to_who_leaves(ctx: rs.RuleContext) -> rs.Resign | None:
 
 
 @module.rule(when=rawio.input.changed, emits=(hello, goodbye))
-def listen(ctx: rs.RuleContext) -> None:
-    """Notice a greeting or a goodbye. The encoder may take a few milliseconds, so this runs in a thread."""
-    said = heard(ctx.payload(rawio.input.changed))
-    if only("greeting", said):
-        ctx.emit(hello)
-    elif only("farewell", said):
-        ctx.emit(goodbye)
+async def listen(ctx: rs.RuleContext) -> None:
+    """Notice a greeting or a goodbye. The encoder may take a few milliseconds, so it runs in a thread."""
+    act = await asyncio.to_thread(_only_act, ctx.payload(rawio.input.changed))
+    if act:
+        ctx.emit(hello if act == "greeting" else goodbye)
 
 
 @module.rule(when=hello, reads=greeted, writes=(verbaliser.intent, greeted), weight=GENERAL)
@@ -60,3 +60,8 @@ async def answer_goodbye(ctx: rs.RuleContext) -> None:
     """Answer a goodbye."""
     ctx[parted] = ctx.now
     ctx[verbaliser.intent] = Intent("goodbye", package=__package__)
+
+
+def _only_act(text: str) -> str:
+    said = heard(text)
+    return next((act for act in ("greeting", "farewell") if only(act, said)), "")

@@ -98,9 +98,11 @@ def understand(
     aside = leave or asks
     if facts or free:
         return Meaning("told", tuple(facts), topic, leave, aloud=bool(facts) and not aside, free=free)
+    text = spelled_out(seen.tree.text).strip()
+    if talk.correctable not in ("", NAME) and seen.yesno.no and (put_right := _put_right(seen, text, talk, pending)):
+        return put_right
     if identity := _identity(seen, known):
         return identity
-    text = spelled_out(seen.tree.text).strip()
     if aside:
         before = _before_question(text) if asks and topic else ""
         side = answer(before, topic, seen) if before else []
@@ -109,13 +111,17 @@ def understand(
         return Meaning("told" if side else "nothing", tuple(side), topic, leave, aloud=False)
     if (relative := reader.without_name()) and not known.get(relative):
         return Meaning("mentioned", topic=relative)
-    if talk.correctable:
-        put_right = correction(text, talk.correctable, talk.latest, seen, explicit=pending is not None)
-        if put_right:
-            return Meaning("corrected", tuple(put_right), talk.correctable)
+    if talk.correctable and (put_right := _put_right(seen, text, talk, pending)):
+        return put_right
     if pending is None or not is_topic(topic):
         return Meaning("nothing")
     return _of_answer(seen, text, topic, acts, fresh=pending.fresh)
+
+
+def _put_right(seen: nlp.Analysis, text: str, talk: Talk, pending: object) -> Meaning | None:
+    """Return the correction of the fact that the user told last."""
+    facts = correction(text, talk.correctable, talk.latest, seen, explicit=pending is not None)
+    return Meaning("corrected", tuple(facts), talk.correctable) if facts else None
 
 
 def _of_answer(seen: nlp.Analysis, text: str, topic: str, acts: set[str], *, fresh: bool) -> Meaning:

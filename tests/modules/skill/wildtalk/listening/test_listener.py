@@ -178,8 +178,8 @@ def test_no_phrase_claims_what_a_machine_cannot_do() -> None:
 
 def test_every_act_and_feeling_has_an_answer() -> None:
     phrases = material()
-    feelings = {one for one in bundled_matcher("feelings")._exact.values() if one}
-    acts = {one for one in bundled_matcher("acts")._exact.values() if one}
+    feelings = {one for one in bundled_matcher("feelings").exact.values() if one}
+    acts = {one for one in bundled_matcher("acts").exact.values() if one}
     assert feelings - phrases.feelings.keys() <= {"boredom"}
     assert acts - phrases.acts.keys() <= {"joke", "song", "story", "play", "repeat", "wish"}
 

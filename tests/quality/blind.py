@@ -1,0 +1,161 @@
+"""The blind sets of the folder `blind`: written without sight of code and examples, and never used for tuning.
+
+`make quality` prints their shares. It never prints a sentence: engineers who improve a module must not see them.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Sequence
+from pathlib import Path
+
+import yaml
+
+from quality import language, modules, skills
+from quality.measure import NONE, Result, Triples, measure_labels, measure_triples
+
+HERE = Path(__file__).parent / "blind"
+REMARKS = ("distress", "insult", "grief", "thanks", "acknowledgement", "contradiction")
+"""Labels of ``about_agent`` that no topic of the agent's life stands for, but an act or a feeling of the user."""
+_PRONOUNS = ("she", "he", "they", "her", "him", "them", "it", "that")
+_SAD = ("grief", "illness", "sadness", "loneliness", "worry", "failure")
+
+
+def rows(name: str) -> list[list[str]]:
+    """Return the lines of a set, split at tabs."""
+    lines = (HERE / f"{name}.tsv").read_text(encoding="utf-8").splitlines()
+    return [line.split("\t") for line in lines if line.strip() and not line.startswith("#")]
+
+
+def labelled(name: str, style: str = "") -> list[tuple[str, str]]:
+    """Return the sentences of a set with one label each; of one style (the third column) if it is given."""
+    return [(row[0], row[1]) for row in rows(name) if not style or row[2] == style]
+
+
+def triples(name: str) -> list[tuple[str, Triples]]:
+    """Return the sentences of a set with their triples, in lower case."""
+    cases = yaml.safe_load((HERE / f"{name}.yaml").read_text(encoding="utf-8"))
+    return [(case["text"], _low(case["triples"])) for case in cases]
+
+
+def _low(found: Iterable[Sequence[str]]) -> Triples:
+    return frozenset((s.lower(), predicate.lower(), o.lower()) for s, predicate, o in found)
+
+
+def _measured_triples(name: str) -> Result:
+    result = measure_triples(lambda text: _low(modules.triples(text)), triples(name))
+    return Result(f"triples, {name}", result.cases, result.shares, result.misses)
+
+
+def about_agent(text: str) -> str:
+    """Return the topic that a text asks for, or the act of the user's that the agent answers."""
+    topic = skills.agentqa_asks(text)
+    if topic != NONE:
+        return topic
+    remark = skills.agentqa_remarks(text)
+    if remark != NONE:
+        return remark
+    seen = modules._seen(text)
+    for act in ("thanks", "acknowledgement", "contradiction"):
+        if act in seen.acts:
+            return act
+    return "grief" if any(feeling in seen.feelings for feeling in _SAD) else NONE
+
+
+def _labels(name: str, see: Callable[[str], str], cases: list[tuple[str, str]]) -> Result:
+    return measure_labels(name, see, cases)
+
+
+def facts(kinds: Sequence[str] = ()) -> list[tuple[str, str]]:
+    """Return the sentences with the facts that may be stored, of some kinds or all."""
+    return [(row[0], row[1]) for row in rows("facts") if not kinds or row[2] in kinds]
+
+
+TRICKY = ("denied", "past", "hearsay", "conditional", "nothing", "question")
+"""Kinds of sentences from which something wrong is easily stored."""
+
+
+def stored(text: str) -> frozenset[str]:
+    """Return the facts that are stored for a text, in lower case; it may begin with its situation in brackets."""
+    meaning = skills.meaning_of(text)
+    if meaning.kind not in ("told", "corrected"):
+        return frozenset()
+    told = [skills._label(fact) for fact in meaning.facts]
+    told += [f"{one.subject} / {one.verb} / {one.object}" for one in meaning.free]
+    return _facts(";".join(told))
+
+
+def _facts(label: str) -> frozenset[str]:
+    found = (" ".join(fact.split()).lower() for fact in label.split(";"))
+    return frozenset(fact for fact in found if fact and fact != NONE)
+
+
+def _same(expected: frozenset[str], seen: frozenset[str]) -> bool:
+    """Return whether the facts are those expected; ``a~b`` allows two wordings, ``a|b`` names two values."""
+    return len(expected) == len(seen) and all(any(_fits(one, other) for other in seen) for one in expected)
+
+
+def _fits(expected: str, seen: str) -> bool:
+    topic, equals, values = expected.partition("=")
+    other, _, found = seen.partition("=")
+    if topic.strip() != other.strip():
+        return False
+    if not equals:
+        return True
+    wanted, given = values.split("|"), {value.strip() for value in found.split("|")}
+    return len(wanted) == len(given) and all(given & {way.strip() for way in value.split("~")} for value in wanted)
+
+
+def measured_facts() -> list[Result]:
+    """Measure what is stored: all right, and nothing wrong in tricky sentences."""
+    seen = {text: stored(text) for text, _ in facts()}
+    right = [text for text, label in facts() if _same(_facts(label), seen[text])]
+    tricky = facts(TRICKY)
+    clean = [
+        text for text, label in tricky if all(any(_fits(one, other) for one in _facts(label)) for other in seen[text])
+    ]
+    told = [case for case in facts() if case not in tricky]
+    kept = [text for text, label in told if _same(_facts(label), seen[text])]
+    return [
+        Result("facts", len(seen), {"right": len(right) / len(seen)}),
+        Result("facts, told", len(told), {"right": len(kept) / len(told)}),
+        Result("facts, tricky", len(tricky), {"nothing wrong": len(clean) / len(tricky)}),
+    ]
+
+
+def measured_feelings() -> list[Result]:
+    """Measure the agent's feelings, and the false alarms."""
+    cases = labelled("feelings")
+    quiet = [(text, label) for text, label in cases if label == NONE]
+    result = measure_labels("feelings", language.feelings, cases)
+    alarms = sum(language.feelings(text) != NONE for text, _ in quiet)
+    return [Result("feelings", len(cases), {**result.shares, "false alarms": alarms / len(cases)})]
+
+
+def measured_smalltalk() -> list[Result]:
+    """Measure how often the listener takes up what was said, by its word or by a pronoun for it."""
+    cases = [row for row in rows("smalltalk") if row[2] != NONE]
+    taken = 0
+    for text, _, about in cases:
+        words = set(re.findall(r"[\w']+", skills.smalltalk(text).lower()))
+        taken += bool(words & {*about.lower().split("|"), *_PRONOUNS})
+    return [Result("small talk", len(cases), {"taken up": taken / len(cases)})]
+
+
+def results() -> Iterable[Result]:
+    """Measure all blind sets."""
+    from quality.followups import measure_followups
+
+    yield _measured_triples("clean")
+    yield _measured_triples("typed")
+    yield _labels("yes and no", modules.yesno, labelled("answers"))
+    for style in ("clean", "typed"):
+        yield _labels(f"questions, {style}", modules.questions, labelled("kinds", style))
+    cases = labelled("about_agent")
+    yield _labels("about the agent", about_agent, [case for case in cases if case[1] not in REMARKS])
+    yield _labels("out of scope", skills.agentqa_asks, [case for case in cases if case[1] == NONE])
+    yield _labels("remarks", about_agent, [case for case in cases if case[1] in REMARKS])
+    yield from measured_facts()
+    yield from measured_feelings()
+    yield measure_followups(HERE / "followups.yaml")
+    yield from measured_smalltalk()

@@ -1,0 +1,76 @@
+"""The blind sets of language understanding share no sentence with examples, development sets or tests."""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+import yaml
+
+from ravestate.language import plain
+
+ROOT = Path(__file__).parents[2]
+BLIND = ROOT / "tests" / "quality" / "blind"
+_SITUATION = re.compile(r"\[[^\]]*\] ")
+LONGEST = 300
+
+
+def _strings(value: Any) -> Iterator[str]:
+    if isinstance(value, str):
+        yield value
+    elif isinstance(value, dict):
+        for inner in value.values():
+            yield from _strings(inner)
+    elif isinstance(value, list):
+        for inner in value:
+            yield from _strings(inner)
+
+
+def _sentences(file: Path) -> Iterator[str]:
+    """Yield the sentences of a file of examples, a set, or a test."""
+    text = file.read_text(encoding="utf-8")
+    if file.suffix == ".tsv":
+        for line in text.splitlines():
+            if line.strip() and not line.startswith("#"):
+                yield _SITUATION.sub("", line.partition("\t")[0])
+    elif file.suffix == ".yaml":
+        yield from _strings(yaml.safe_load(text))
+    else:
+        for node in ast.walk(ast.parse(text)):
+            if isinstance(node, ast.Constant) and isinstance(node.value, str) and len(node.value) < LONGEST:
+                yield node.value
+
+
+@pytest.fixture(scope="module")
+def known() -> dict[str, Path]:
+    """Return the plain form of every sentence that may be seen, with its file."""
+    files = [*ROOT.glob("src/**/*.yaml"), *ROOT.glob("examples/**/*.yaml"), *ROOT.glob("tests/**/*.yaml")]
+    files += [*ROOT.glob("tests/**/*.tsv"), *ROOT.glob("tests/**/*.py"), *ROOT.glob("src/**/*.py")]
+    seen = (file for file in files if BLIND not in file.parents)
+    return {plain(sentence): file for file in seen for sentence in _sentences(file)}
+
+
+def _asked(name: str) -> list[str]:
+    file = BLIND / name
+    if name == "followups.yaml":
+        return [case["follow"] for case in yaml.safe_load(file.read_text(encoding="utf-8"))["cases"]]
+    if file.suffix == ".yaml":
+        return [case["text"] for case in yaml.safe_load(file.read_text(encoding="utf-8"))]
+    return list(_sentences(file))
+
+
+@pytest.mark.parametrize("name", sorted(file.name for file in BLIND.iterdir()))
+def test_a_blind_set_shares_no_sentence_with_what_was_seen(name: str, known: dict[str, Path]) -> None:
+    shared = [plain(sentence) for sentence in _asked(name) if plain(sentence) in known]
+    assert not shared, f"{len(shared)} of {name}, also in {sorted({known[one].name for one in shared})}"
+
+
+@pytest.mark.parametrize("name", sorted(file.name for file in BLIND.iterdir()))
+def test_a_blind_set_has_a_hundred_sentences_each_once(name: str) -> None:
+    sentences = [plain(sentence) for sentence in _asked(name)]
+    assert len(sentences) >= 100
+    assert len(set(sentences)) == len(sentences) or name == "followups.yaml"  # a follow-up may occur in two talks
