@@ -13,6 +13,7 @@ import yaml
 
 from quality import language, modules, skills
 from quality.measure import NONE, Result, Triples, measure_labels, measure_triples
+from ravestate.language.matcher import bundled_matcher
 
 HERE = Path(__file__).parent / "blind"
 REMARKS = ("distress", "insult", "grief", "thanks", "acknowledgement", "contradiction")
@@ -32,7 +33,7 @@ def labelled(name: str, style: str = "") -> list[tuple[str, str]]:
     return [(row[0], row[1]) for row in rows(name) if not style or row[2] == style]
 
 
-def triples(name: str) -> list[tuple[str, Triples]]:
+def triple_cases(name: str) -> list[tuple[str, Triples]]:
     """Return the sentences of a set with their triples, in lower case."""
     cases = yaml.safe_load((HERE / f"{name}.yaml").read_text(encoding="utf-8"))
     return [(case["text"], _low(case["triples"])) for case in cases]
@@ -43,12 +44,14 @@ def _low(found: Iterable[Sequence[str]]) -> Triples:
 
 
 def _measured_triples(name: str) -> Result:
-    result = measure_triples(lambda text: _low(modules.triples(text)), triples(name))
+    result = measure_triples(lambda text: _low(modules.triples(text)), triple_cases(name))
     return Result(f"triples, {name}", result.cases, result.shares, result.misses)
 
 
 def about_agent(text: str) -> str:
     """Return the topic that a text asks for, or the act of the user's that the agent answers."""
+    for matcher in ("acts", "feelings"):
+        bundled_matcher(matcher).load()
     topic = skills.agentqa_asks(text)
     if topic != NONE:
         return topic
@@ -81,7 +84,9 @@ def stored(text: str) -> frozenset[str]:
     if meaning.kind not in ("told", "corrected"):
         return frozenset()
     told = [skills._label(fact) for fact in meaning.facts]
-    told += [f"{one.subject} / {one.verb} / {one.object}" for one in meaning.free]
+    told += [
+        f"{'user' if one.subject.lower() == 'i' else one.subject} / {one.verb} / {one.object}" for one in meaning.free
+    ]
     return _facts(";".join(told))
 
 

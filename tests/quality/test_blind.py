@@ -1,0 +1,37 @@
+"""The floors of language understanding on the blind sets: a little below the last measurement. They only rise."""
+
+from __future__ import annotations
+
+import pytest
+
+from quality import blind
+from quality.measure import Result
+
+FLOORS = {
+    ("triples, clean", "exact"): 0.91,
+    ("triples, typed", "exact"): 0.88,
+    ("yes and no", "right"): 0.86,
+    ("questions, clean", "right"): 0.95,
+    ("questions, typed", "right"): 0.90,
+    ("about the agent", "F1"): 0.89,
+    ("out of scope", "right"): 0.99,
+    ("facts, tricky", "nothing wrong"): 0.90,
+    ("feelings", "right"): 0.91,
+    ("followups", "right"): 0.53,
+    ("small talk", "taken up"): 0.85,
+}
+
+
+@pytest.fixture(scope="module")
+def results() -> dict[str, Result]:
+    """Return the results of all blind sets by name."""
+    return {result.name: result for result in blind.results()}
+
+
+@pytest.mark.parametrize(("name", "share"), FLOORS)
+def test_a_blind_set_is_understood_as_well_as_before(name: str, share: str, results: dict[str, Result]) -> None:
+    assert results[name].shares[share] >= FLOORS[name, share]
+
+
+def test_the_agents_feelings_are_seldom_false(results: dict[str, Result]) -> None:
+    assert results["feelings"].shares["false alarms"] <= 0.03
