@@ -68,7 +68,7 @@ def test_an_interruption_keeps_the_part_and_says_so(
     code, out, errors = call(capsys, "model", "get")
     assert (code, out) == (130, "")
     kept = f"{size_of(200_000)} of {size_of(MODEL.size)} are kept in {MODEL.part}"
-    assert errors.endswith(f"ravestate model: interrupted; {kept}, and the same command goes on\n")
+    assert errors.endswith(f"ravestate model: interrupted; {kept}, and the same command continues\n")
     assert "39% fetched" in call(capsys, "model", "list")[1]
     monkeypatch.setattr(download, "_attempt", real)
     assert call(capsys, "model", "get")[0] == 0

@@ -7,7 +7,7 @@ Making records is expensive for a busy agent, so a rate limit applies: a burst, 
 process is idle. Beyond the limit, a recorder stops listening for a moment, and the engine makes no records. A `Gap` says
 how many spikes the recorder missed.
 
-All recorders of an agent share one limit. Beyond it, the recorders with the most records are cut to the same length.
+All recorders of an agent also share one limit on the records that they keep. Beyond it, the recorders with the most records are cut to the same length.
 """
 
 from __future__ import annotations
@@ -159,7 +159,7 @@ class Recorder:
         self._take(record)  # this call may begin the next gap
 
     def _rest(self) -> None:
-        """Add the records that the passed time allows; if none is allowed, stop listening for a moment."""
+        """Renew the allowance of records for the time that has passed; if it is zero, stop listening for a moment."""
         loop = asyncio.get_running_loop()
         now = loop.time()
         earned = self._burst if self._granted is None else (now - self._granted) * self._speed()

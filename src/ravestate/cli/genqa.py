@@ -98,7 +98,7 @@ def _index(index: Index, paths: Iterable[str]) -> int:
             if outcome.kind == "unreadable":
                 _warn(f"{outcome.path}: {outcome.why}")
     except KeyboardInterrupt:
-        _warn("interrupted; what was read so far is kept, and the same command goes on")
+        _warn("interrupted; what was read so far is kept, and the same command continues")
         return 130
     told = ", ".join(f"{count} {kind}" for kind, count in counts.items()) or "nothing to read"
     print(f"{told}; {passages} new passages in {index.path}")

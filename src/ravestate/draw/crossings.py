@@ -21,7 +21,7 @@ def minimise_crossings(graph: LayeredGraph, *, centred: bool = False) -> None:
 
     Args:
         graph: Any layered graph.
-        centred: Whether each dummy begins between the neighbours that share its port, instead of in order of creation.
+        centred: Whether the initial order puts dummies in the middle of a vertex's neighbours, instead of in order of creation.
             A hyperedge through many layers then runs straight, with branches to both sides.
     """
     before, after = graph.neighbours()
@@ -161,7 +161,7 @@ def _transpose(
 def _gain(upper: Sequence[int], lower: Sequence[int]) -> int:
     """Return how many crossings a swap of two vertices saves, given the sorted places of their neighbours."""
     gain = before = upto = 0
-    for end in upper:  # lower ends before `end` cross now; lower ends after it would cross after the swap
+    for end in upper:  # the ends in `lower` before `end` cross now; those after it would cross after the swap
         while before < len(lower) and lower[before] < end:
             before += 1
         while upto < len(lower) and lower[upto] <= end:

@@ -15,7 +15,7 @@ from ravestate.draw.brandes_koepf import separation
 from ravestate.draw.layered import LayeredGraph
 
 _SWEEPS = 24  # sweeps over all layers, forwards and backwards in turn
-_BEHIND = 0.15  # weight of neighbours ahead of a sweep, relative to those behind it
+_AHEAD = 0.15  # weight of neighbours ahead of a sweep, relative to those behind it
 
 
 def relax(graph: LayeredGraph, spread: float, room: float | None = None) -> list[float]:
@@ -44,7 +44,7 @@ def relax(graph: LayeredGraph, spread: float, room: float | None = None) -> list
     half = inf if room is None else max(room, *(sum(apart) for apart in gaps)) / 2
     for sweep in range(_SWEEPS):
         forward = sweep % 2 == 0
-        ahead = 1.0 if sweep >= _SWEEPS // 2 else _BEHIND
+        ahead = 1.0 if sweep >= _SWEEPS // 2 else _AHEAD
         for at in range(len(graph.order)) if forward else range(len(graph.order) - 1, -1, -1):
             layer = graph.order[at]
             wishes: list[float] = []

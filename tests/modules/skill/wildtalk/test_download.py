@@ -66,7 +66,7 @@ def test_an_interrupted_download_keeps_its_part_and_goes_on(hub: Hub) -> None:
     assert 0.3 < have / MODEL.size < 1.0
     assert not MODEL.path.exists()
     assert interrupted(MODEL) == (
-        f"interrupted; {size_of(have)} of {size_of(MODEL.size)} are kept in {MODEL.part}, and the same command goes on"
+        f"interrupted; {size_of(have)} of {size_of(MODEL.size)} are kept in {MODEL.part}, and the same command continues"
     )
     fetch()
     assert ranges(hub) == ["", f"bytes={have}-"]

@@ -221,4 +221,4 @@ def _kept(model: CatalogueModel) -> str:
 def interrupted(model: CatalogueModel) -> str:
     """Return the message for a download that the user interrupts."""
     kept = _kept(model)
-    return f"interrupted{kept}, and the same command goes on" if kept else "interrupted; nothing had arrived yet"
+    return f"interrupted{kept}, and the same command continues" if kept else "interrupted; nothing had arrived yet"

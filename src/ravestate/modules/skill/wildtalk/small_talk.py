@@ -1,4 +1,4 @@
-"""The listening skill, the gate and the prompt within the rules of the module."""
+"""Functions by which the module's rules use the listening skill, the gate for generated sentences, and the prompt."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ from .listening.state import Pending
 from .names import clock, history, listening, notes, overheard
 
 LATELY = 12
-"""The agent's last answers that are not said again."""
+"""The number of the agent's last answers that it does not repeat."""
 MENTIONED = 4
-"""The last utterances that an answer may refer to."""
+"""The number of the last utterances that an answer may refer to."""
 
 _TONES = {
     "sad": "The user is sad. Be gentle and brief.",
@@ -76,7 +76,7 @@ def up_to_date(ctx: rs.RuleContext, text: str) -> State:
 
     Args:
         ctx: The context of the rule.
-        text: The utterance to be answered; its own traces do not count yet.
+        text: The utterance to be answered; its own entry in `overheard` is skipped.
     """
     state = ctx[listening]
     for one in ctx[overheard]:
@@ -91,14 +91,14 @@ def up_to_date(ctx: rs.RuleContext, text: str) -> State:
 
 
 def traces(ctx: rs.RuleContext, seen: nlp.Analysis) -> tuple[Overheard, ...]:
-    """Return the last two utterances, the newest last, with what they leave behind whichever module answers."""
+    """Return the records of the last two utterances, newest last: their tone and person, also where another module answers."""
     return (*ctx[overheard][-1:], listener().overhear(seen, ctx[listening].being))
 
 
 def remark(ctx: rs.RuleContext) -> str | None:
     """Return a remark about an unfinished matter, or about what was said last; None if there is nothing.
 
-    If another module has answered since, that was another subject, and only old matters are taken up.
+    If another module has answered since, the talk has moved to another subject. Then the remark takes up old matters only.
     """
     state = ctx[listening]
     old = [matter for matter in state.matters if ctx.now - matter.since >= ctx.settings.come_back_after]
