@@ -127,3 +127,16 @@ def test_functions_of_asyncio_to_thread_take_no_virtual_time(
     release.set()
     task.cancel()
     loop.run_to(6)
+
+
+def test_a_runner_that_closes_waits_for_the_threads_of_the_pool() -> None:
+    slow = threading.Event()
+
+    async def work() -> None:
+        await asyncio.to_thread(int)
+        asyncio.get_running_loop().run_in_executor(None, slow.wait, 5).cancel()  # the thread goes on
+        threading.Timer(0.05, slow.set).start()
+
+    with asyncio.Runner(loop_factory=VirtualLoop) as runner:
+        runner.run(work())
+    assert slow.is_set()

@@ -56,6 +56,15 @@ class VirtualLoop(asyncio.SelectorEventLoop):
         future.add_done_callback(lambda future: self._functions.pop(future, None))
         return future
 
+    async def shutdown_default_executor(self, *args: Any, **named: Any) -> None:
+        """Wait for the threads of the pool, as any loop does when its runner closes it. They end in real time."""
+        closing = self.create_future()
+        self._functions[closing] = "the shutdown of the thread pool"
+        try:
+            await super().shutdown_default_executor(*args, **named)
+        finally:
+            del self._functions[closing]
+
     def running_functions(self) -> list[str]:
         """Return the names of the plain functions for which virtual time waits."""
         return [*self.busy(), *self._functions.values()]
