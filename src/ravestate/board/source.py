@@ -132,7 +132,7 @@ class LiveSource:
             case Clock(type="step"):
                 if not await _outside_of_any_task(context.step):
                     raise RavestateError(
-                        "nothing is due: the agent waits for input, or for work outside its clock"
+                        "nothing is due: the agent waits for input, or for work that its clock does not control, such as a thread"
                         if context.paused
                         else "the clock is running: pause it first"
                     )
@@ -174,7 +174,10 @@ class LiveSource:
 
 
 async def _outside_of_any_task(function: Callable[[], T]) -> T:
-    """Call a function on the loop, outside this task, and return its result. A cancelled task must not cancel rules."""
+    """Call a function on the loop, outside this task, and return its result.
+
+    If the function ran in this task, a cancelled task would also cancel the rules that the function started.
+    """
     loop = asyncio.get_running_loop()
     called: asyncio.Future[T] = loop.create_future()
 

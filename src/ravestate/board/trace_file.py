@@ -157,7 +157,7 @@ def _parsed(text: str) -> Any:
 
 def _main() -> int:
     """Read a trace from the standard input, and write it to the standard output for `read_apart`."""
-    from ravestate.board import trace_file  # not `__main__`: pickled records contain the name of their module
+    from ravestate.board import trace_file  # run by -m, this module is `__main__`; the pickles need its own name
 
     try:
         read = trace_file.read_trace(sys.stdin.buffer.read())

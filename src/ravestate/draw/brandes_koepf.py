@@ -65,8 +65,8 @@ def _aligned(graph: LayeredGraph, crossed: set[int], from_left: bool, downwards:
     if not downwards:
         order = [layer[::-1] for layer in order]
     place = places(order)
-    # Vertex → (place of a neighbour, the neighbour, the offset below the neighbour at which alignment puts the vertex,
-    # the segment between the two).
+    # Vertex → (place of a neighbour, the neighbour, how far below the neighbour the vertex goes if
+    # the two are aligned, the segment between the two).
     towards: list[list[tuple[int, int, float, int]]] = [[] for _ in range(count)]
     for segment, (low, high) in enumerate(graph.segments):
         p, q = graph.ports[low], graph.ports[high]

@@ -124,7 +124,7 @@ def _sweep(
 
 
 def _by_barycentre(layer: list[int], neighbours: Sequence[Sequence[int]], place: list[int], flip: bool) -> None:
-    """Sort the vertices with neighbours by the mean place of these; other vertices stay. With `flip`, ties swap."""
+    """Sort the vertices with neighbours by the mean place of their neighbours; other vertices stay. With `flip`, ties swap."""
     moving = [(sum(place[w] for w in neighbours[v]) / len(neighbours[v]), v) for v in layer if neighbours[v]]
     if flip:
         moving.reverse()

@@ -89,7 +89,8 @@ def proper_layering(ranks: Sequence[int], sizes: Sequence[tuple[float, float]], 
     for link in links:
         share_low = from_low[_low(link)] >= from_high[_high(link)]
         if link.label is not None or link.kind not in _SOLID:
-            # A label is near the arrow's head, on a line of its own. Overlapping dashes match only from a common start.
+            # A label is near the arrow's head, on a line of its own. Dashed lines that overlap
+            # coincide only if they start at the same point.
             share_low = not link.is_reversed
         builder.link(link, ranks[link.low], ranks[link.high], share_low)
     graph.order = [[] for _ in range(max(graph.layer, default=-1) + 1)]

@@ -12,14 +12,14 @@ NEGATIONS = frozenset(["not", "n't", "nt", "never"])
 PLACES = word_set("here there home abroad outside inside upstairs downstairs away everywhere nowhere somewhere")
 _HEADS = ("ROOT", "conj", "ccomp", "xcomp", "advcl", "relcl", "parataxis", "pcomp", "csubj", "dep", "acl")
 _MOTION = word_set("come go travel fly drive run move stay")
-"""Verbs with an infinitive of purpose, which is a separate action."""
+"""Verbs whose infinitive states a purpose, and so an action of its own: *come to help*."""
 _GERUND_TAKERS = word_set("like love hate enjoy prefer dislike start stop begin continue keep practise practice try")
 _BE = frozenset(["be", "am", "is", "are", "was", "were", "m", "s", "re", "'s", "'m", "'re"])
 _SHORT = {"wan": "want", "gon": "go", "got": "get", "ca": "can", "wo": "will", "forgot": "forget", "getting": "get"}
 
 
 def heads_clause(tree: Tree, word: Word) -> bool:
-    """Return whether `word` heads a clause: a verb, or another word with a subject where *be* is missing."""
+    """Return whether `word` heads a clause: a verb, or a predicate whose *be* is missing or is an auxiliary."""
     if word.dep not in _HEADS:
         return False
     if word.pos not in VERBAL:
