@@ -130,13 +130,19 @@ def test_functions_of_asyncio_to_thread_take_no_virtual_time(
 
 
 def test_a_runner_that_closes_waits_for_the_threads_of_the_pool() -> None:
-    slow = threading.Event()
+    begun, over, ended = threading.Event(), threading.Event(), threading.Event()
+
+    def wait() -> None:
+        begun.set()
+        over.wait(5)
+        ended.set()
 
     async def work() -> None:
-        await asyncio.to_thread(int)
-        asyncio.get_running_loop().run_in_executor(None, slow.wait, 5).cancel()  # the thread goes on
-        threading.Timer(0.05, slow.set).start()
+        function = asyncio.get_running_loop().run_in_executor(None, wait)
+        begun.wait(5)
+        function.cancel()  # its thread goes on
+        threading.Timer(0.05, over.set).start()
 
     with asyncio.Runner(loop_factory=VirtualLoop) as runner:
         runner.run(work())
-    assert slow.is_set()
+    assert ended.is_set()
