@@ -2,6 +2,7 @@
 
 import contextlib
 import errno
+import fcntl
 import logging
 import shutil
 from collections.abc import Iterator
@@ -185,7 +186,6 @@ def test_a_disk_that_fails_on_the_way_keeps_the_part(
 
 
 def test_a_second_process_is_refused(hub: Hub) -> None:
-    fcntl = pytest.importorskip("fcntl")
 
     def locked(*_: Any) -> None:
         raise BlockingIOError

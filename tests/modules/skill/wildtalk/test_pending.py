@@ -14,13 +14,16 @@ def test_calls_wait_for_the_chosen_backend() -> None:
     async def main() -> None:
         pending = PendingBackend()
 
+        begun = asyncio.Event()
+
         async def answer() -> str:
+            begun.set()
             await pending.load()
             return "".join([piece async for piece in pending.stream([Message("user", "Hello.")], seed=1)])
 
         waiting = asyncio.create_task(answer())
         gone = asyncio.create_task(pending.load())
-        await asyncio.sleep(0)
+        await begun.wait()
         assert not waiting.done()
         gone.cancel()
         pending.resolve(ListeningBackend())
