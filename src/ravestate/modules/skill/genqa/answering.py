@@ -262,6 +262,7 @@ _NUMBER = re.compile(
 )
 
 
+_CAUSE = re.compile(r"\b(?:because|since|so|due|for|to|as|in|after|from|by|reason|causes?|caused|that|when)\b", re.IGNORECASE)
 _DEFINES = re.compile(r" (?:is|was|are|were) (?:an?|the) ")
 _TIME = re.compile(
     r"\b(?:century|spring|summer|autumn|winter|night|day|morning|evening|noon|\w+day|year|month|week|after|before|when|during|every|"
@@ -276,8 +277,12 @@ def _can_answer(question: Question, found: Found) -> bool:
         return _NUMBER.search(found.text) is not None
     if question.kind is QuestionWord.TIME and not re.search(r"\d", found.text):
         return _TIME.search(found.text) is not None
+    names = [*re.findall(r"(?<=[^.!?] )[A-Z][^\W_]+", found.text), *found.title.split()]
+    if question.kind is QuestionWord.PERSON and re.search(r"\bwho (?!is|was|are|were)", asked):
+        return " by " in found.text or any(name.lower() not in asked for name in names)
+    if question.kind is QuestionWord.REASON:
+        return _CAUSE.search(found.text) is not None
     if question.kind is QuestionWord.PLACE and "where" not in asked:
-        names = re.findall(r"(?<=[^.!?] )[A-Z][^\W_]+", found.text) + found.title.split()
         return any(name.lower() not in asked for name in names)
     return True
 
