@@ -160,6 +160,15 @@ class Index:
             ).fetchone()
         return "" if found is None else found[0]
 
+    def passages(self, title: str, limit: int) -> list[Found]:
+        """Return the first passages of the documents with this title."""
+        with self._lock, self._told():
+            rows = self._base.execute(
+                "SELECT rowid, title, text, hints FROM passages WHERE rowid IN (SELECT p.rowid FROM documents d JOIN passages p "
+                "ON p.rowid BETWEEN d.first AND d.last WHERE d.title = ? COLLATE NOCASE LIMIT ?)", (title, limit)
+            ).fetchall()
+        return [Found(*row) for row in rows]
+
     # ---------------------------------------------------------------------------------- searching
 
     def frequencies(self, stems: Sequence[str]) -> dict[str, int]:
