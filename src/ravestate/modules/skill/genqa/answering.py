@@ -218,7 +218,9 @@ class Answerer:
         # The sort is stable, so BM25 decides between equals.
         return sorted(retrieved, key=lambda each: -each[0])
 
-    def _read(self, question: Question, retrieved: Sequence[tuple[float, float, Found]], titles: Sequence[str]) -> list[Candidate]:
+    def _read(
+        self, question: Question, retrieved: Sequence[tuple[float, float, Found]], titles: Sequence[str]
+    ) -> list[Candidate]:
         read: list[Candidate] = []
         start = 0
         for count in READ:
@@ -232,8 +234,10 @@ class Answerer:
                 for (covered, own, found), score in zip(batch, scores, strict=True)
             ]
             best = max(candidate.score for candidate in read)
-            if best >= (GOOD if len(read) > 1 else VERY_GOOD) or (best <= HOPELESS and len(read) > 2 and not titles) or (
-                len(read) >= 8 and not titles
+            if (
+                best >= (GOOD if len(read) > 1 else VERY_GOOD)
+                or (best <= HOPELESS and len(read) > 2 and not titles)
+                or (len(read) >= 8 and not titles)
             ):
                 break
         read.sort(key=lambda candidate: -candidate.score)
@@ -256,7 +260,9 @@ _NUMBER = re.compile(
 )
 
 
-_CAUSE = re.compile(r"\b(?:because|since|so|due|for|to|as|in|after|from|by|reason|causes?|caused|that|when)\b", re.IGNORECASE)
+_CAUSE = re.compile(
+    r"\b(?:because|since|so|due|for|to|as|in|after|from|by|reason|causes?|caused|that|when)\b", re.IGNORECASE
+)
 _DEFINES = re.compile(r" (?:is|was|are|were) (?:an?|the) ")
 _TIME = re.compile(
     r"\b(?:century|spring|summer|autumn|winter|night|day|morning|evening|noon|\w+day|year|month|week|after|before|when|during|every|"

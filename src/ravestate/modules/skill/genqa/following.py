@@ -19,7 +19,7 @@ from .confidence import in_talk
 from .lexicon import variants_of
 from .names import Settings
 from .question import Parse, Question, as_question, is_vague, parse
-from .reckoning import Unanswerable, dates_in, reckon
+from .reckoning import Unanswerable, dates_in, focused, reckon
 from .thread import Reading, Turn, readings, turn_of
 
 _log = logging.getLogger("ravestate.genqa")
@@ -70,7 +70,7 @@ def answer_in(
         if not answer.text or answer.text in said:
             continue
         chance = answer.confidence
-        if answer.candidates and 0.0 < chance and (reading.text != heard.text or reading.about):
+        if answer.candidates and chance > 0.0 and (reading.text != heard.text or reading.about):
             only_names = all(word.lower() in question.given for word in question.words)
             chance = in_talk(answer.candidates[0].score, NAMES if only_names else answer.candidates[0].own)
         answer = replace(answer, confidence=_shifted(chance, reading.prior))
@@ -101,7 +101,7 @@ def _about(answerer: Answerer, question: Question, reading: Reading, latest: str
 
 def _reckoned(heard: Parse, thread: Sequence[Turn], settings: Settings) -> Answer | None:
     """Return the result of a sum; None if the utterance is none."""
-    told, today = [turn.answer for turn in thread], datetime.now().astimezone().date()
+    told, today = [focused(turn.question, turn.answer) for turn in thread], datetime.now().astimezone().date()
     text = heard.text
     try:
         result = reckon(text, told, today, settings.rates)

@@ -165,7 +165,8 @@ class Index:
         with self._lock, self._told():
             rows = self._base.execute(
                 "SELECT rowid, title, text, hints FROM passages WHERE rowid IN (SELECT p.rowid FROM documents d JOIN passages p "
-                "ON p.rowid BETWEEN d.first AND d.last WHERE d.title = ? COLLATE NOCASE LIMIT ?)", (title, limit)
+                "ON p.rowid BETWEEN d.first AND d.last WHERE d.title = ? COLLATE NOCASE LIMIT ?)",
+                (title, limit),
             ).fetchall()
         return [Found(*row) for row in rows]
 

@@ -25,7 +25,7 @@ KEPT = 6
 """The number of questions that stay in view."""
 REMEMBERED = 120.0
 """Seconds for which later questions may refer to one."""
-LESS = -0.05
+LESS = -0.15
 """The logarithm of odds that each reading loses to the one before."""
 FAR = -5.0
 """The same for *she* as a thing, such as a ship, with a person in view."""
@@ -336,7 +336,7 @@ class _Follow:
         person = pronoun in SEXES and not self.last.defines and any(thing.is_person for thing in self.last.told)
         for rank, thing in enumerate(referents(self.pronouns[0], self.thread)):
             sexes = ((thing.text, pronoun),) if pronoun in SEXES else ()
-            far = FAR if person and not thing.is_person else 0.0
+            far = FAR if person and not thing.is_person else LESS * 5 * rank if pronoun == "there" else 0.0
             yield Reading(self._with(self.words, thing.text), LESS * rank + far, thing.text, sexes)
 
     def _with(self, words: Sequence[Word], thing: str, instead: Sequence[Word] = ()) -> str:
