@@ -29,31 +29,6 @@ _DATE = re.compile(
 
 
 _PLAIN = frozenset("is was are were the a an of in on at to it how many much what when did does do".split())
-    [
-        "is",
-        "was",
-        "are",
-        "were",
-        "the",
-        "a",
-        "an",
-        "of",
-        "in",
-        "on",
-        "at",
-        "to",
-        "it",
-        "how",
-        "many",
-        "much",
-        "what",
-        "when",
-        "did",
-        "does",
-        "do",
-        "long",
-    ]
-) - {"long"}
 _DEFAULTS = (datetime(2000, 1, 1), datetime(2004, 3, 3))  # noqa: DTZ001
 
 
