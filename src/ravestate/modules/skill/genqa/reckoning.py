@@ -28,7 +28,6 @@ _DATE = re.compile(
 )
 
 
-_PLAIN = frozenset("is was are were the a an of in on at to it how many much what when did does do".split())
 _DEFAULTS = (datetime(2000, 1, 1), datetime(2004, 3, 3))  # noqa: DTZ001
 
 
@@ -141,7 +140,9 @@ def focused(question: str, answer: str) -> str:
     words = re.findall(r"[a-z]+", question.lower())
     weights = {form: 3 if word in words[1:2] else 1 for word in reversed(words) for form in variants_of(word)}
     parts = re.split(r"[,;.] | and (?=[^,.]*\d)|\.$", answer)
-    worth = {part: sum(weights.get(word, 0) for word in set(part.lower().split()) - _PLAIN) for part in parts}
+    worth = {
+        part: sum(weights.get(word, 0) for word in set(part.lower().split()) - words_for("plain")) for part in parts
+    }
     return ". ".join(sorted(filter(None, parts), key=lambda part: -worth[part]))
 
 
