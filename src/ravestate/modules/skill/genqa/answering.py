@@ -255,6 +255,7 @@ _NUMBER = re.compile(
 _CAUSE = re.compile(
     r"\b(?:because|since|so|due|for|to|as|in|after|from|by|reason|causes?|caused|that|when)\b", re.IGNORECASE
 )
+_AGE = re.compile(r"\b(?:aged?|old|older|born|founded|built|opened|established|formed|since|dates?)\b")
 _TIME = re.compile(
     r"\b(?:century|spring|summer|autumn|winter|night|day|morning|evening|noon|\w+day|year|month|week|after|before|when|during|every|"
     r"once|ago|January|February|March|April|May|June|July|August|September|October|November|December)s?\b"
@@ -266,6 +267,8 @@ def _can_answer(question: Question, found: Found) -> bool:
     asked = question.text.lower()
     if question.kind is QuestionWord.AMOUNT and ("how many " in asked or "how much " in asked):
         return _NUMBER.search(found.text) is not None
+    if "how old " in asked:
+        return _AGE.search(found.text) is not None
     if question.kind is QuestionWord.TIME and not re.search(r"\d", found.text):
         return _TIME.search(found.text) is not None
     names = [*re.findall(r"(?<=[^.!?] )[A-Z][^\W_]+", found.text), *found.title.split()]

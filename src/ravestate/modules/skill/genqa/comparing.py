@@ -67,7 +67,7 @@ def aged(heard: Parse, thread: Sequence[Turn], ask: Callable[[str], Answer]) -> 
     low = [word.low for word in words]
     when = low.index("when", 1) if "when" in low[1:] else len(words)
     lived = any(word.lemma == "live" for word in words) and "long" in low
-    died = any(word.lemma in ("get", "become", "live") for word in words) and "old" in low
+    died = "old" in low and ("was" in low or any(word.lemma in ("get", "become", "live") for word in words))
     if heard.kind is None or "how" not in low[:2] or not (lived or died or ("old" in low and when < len(words))):
         return None
     name = next((found for word in words[:when] if (found := _name(heard, word, thread))), "")

@@ -113,12 +113,14 @@ def turn_of(asked: Parse, found: Answer, at: float) -> Turn:
     answer, title, words = found.text, found.title, set(asked.text.lower().split())
     told, named, all_asked = parse(answer), set(_bare(title).split()), things_of(asked)
     things = [thing for thing in all_asked if not named.issuperset(_bare(thing.text).split())]
-    if title and title.lower() in f"{asked.tree.text} {answer}".lower():
-        label = next((thing.label for thing in all_asked if _bare(thing.text) == _bare(title)), "")
-        things.append(Thing(title, label or "TITLE"))
+    label = next((thing.label for thing in all_asked if _bare(thing.text) == _bare(title)), "")
+    whole = [Thing(title, label or "TITLE")] if title else []
+    in_question = _bare(title) in asked.tree.text.lower()
+    things += whole if in_question else []
     things = [thing for thing in things if thing.label not in ("ORDINAL", "CARDINAL")]
     things.sort(key=lambda thing: not thing.is_name)
     new = [thing for thing in things_of(told) if not (words | named).issuperset(_bare(thing.text).split())]
+    new = [*(whole if not in_question and title.lower() in answer.lower() else []), *new]
     sexes: list[tuple[str, str]] = []
     if asked.kind is QuestionWord.PERSON and new:
         name = next(
@@ -143,6 +145,8 @@ def things_of(seen: Parse) -> list[Thing]:
         own = phrase_of(seen.tree, word) if _is_noun(word) else []
         if not own or any(other.tag in WH for other in own):
             continue
+        if word.dep == "attr" and any(child.low in ("a", "an") for child in seen.tree.children(word, "det")):
+            continue  # it only says what something is
         entity = next((e for e in seen.entities if e.start < word.end and word.start < e.end), None)
         label = entity.label if entity else ""
         text = entity.text.removesuffix("'s") if entity and label == "PERSON" else seen.tree.phrase(own)
@@ -239,9 +243,14 @@ def referents(pronoun: Word, thread: Sequence[Turn]) -> list[Thing]:
             if not sex or known.get(thing.text, sex) == sex:
                 found.setdefault(thing.text.lower(), thing)
     things = [thing for thing in found.values() if thing.label not in NUMBERS]
-    likely = [t for t in things if (t.is_person if sex else not t.is_person and (t.is_name or not there))]
-    if any(turn.defines for turn in thread[-1:]):
-        likely = [*(thing for thing in thread[-1].asked if thing not in likely), *likely]
+    likely = [
+        t
+        for t in things
+        if (t.label in ("PERSON", "TITLE", "NAME") if sex else not t.is_person and (t.is_name or not there))
+    ]
+    likely.sort(key=lambda thing: bool(sex) and not thing.is_person)
+    if thread and thread[-1].defines:
+        likely = list(dict.fromkeys((*thread[-1].asked, *likely)))
     return (likely if likely and (sex or there) else [*likely, *(t for t in things if t not in likely)])[:6]
 
 
@@ -293,14 +302,13 @@ class _Follow:
                 yield from ([] if self.leads or not self.named else [self._alone(0.0)])
                 yield from self._instead(words)
                 yield from self._about()
-                yield from ([] if self.leads and not self._has_of() else [self._alone(-0.3)])
+                yield from ([] if self.leads and not self._has_of() else [self._alone(-1.0)])
         elif self.pronouns:
             yield from self._resolved()
-            if any(w.low == "it" for w in self.pronouns) and any(w.pos in ("NOUN", "PROPN", "VERB") for w in words):
-                yield self._alone(-0.3)  # when did it start to rain
+            yield from [] if self.names else [self._alone(-1.0)]  # when did it start to rain
         elif words:
             yield from ([] if self.named else self._about())
-            yield self._alone(0.0 if self.named or self.leads else -0.3)
+            yield self._alone(0.0 if self.named or self.leads else -1.0)
 
     def _has_of(self) -> bool:
         return self.named and any(word.low == "of" for word in self.words[1:])
@@ -316,7 +324,7 @@ class _Follow:
 
     def _resolved(self) -> Iterator[Reading]:
         """Yield the utterance with each thing that its pronoun may stand for."""
-        less = 5 * LESS if self.pronouns[0].low == "there" else LESS
+        less = 12 * LESS if self.pronouns[0].low == "there" else LESS
         for rank, thing in enumerate(referents(self.pronouns[0], self.thread)):
             yield Reading(self._with(self.words, thing.text), less * rank, thing.text)
 
