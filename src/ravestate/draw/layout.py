@@ -3,7 +3,7 @@
 1. Cycle removal reverses some edges (`acyclic`): preferably detached edges and reads.
 2. Layer assignment keeps edges short (`simplex`). Layers are bounded if the picture would be too tall (`bounded`).
 3. Dummies make the graph proper (`layered`). Crossing minimisation orders the layers (`crossings`).
-4. Coordinate assignment places ports and vertices (`ports`, `coordinates`).
+4. Coordinate assignment places ports (`layered`) and vertices (`coordinates`).
 5. Edge routing sets the distances of the layers and the turns of the lines (`tracks`, `routing`).
 
 Connected components are laid out one by one and packed in rows. The result depends on the diagram and its order alone.
@@ -17,13 +17,11 @@ from itertools import pairwise
 
 from ravestate.draw.acyclic import STRONG, feedback_arcs
 from ravestate.draw.bounded import fit_to_screen
-from ravestate.draw.brandes_koepf import separation
 from ravestate.draw.coordinates import assign_coordinates
 from ravestate.draw.crossings import minimise_crossings
 from ravestate.draw.graph import Diagram, Edge, EdgeKind, NodeKind
-from ravestate.draw.layered import LayeredGraph, Link, proper_layering
+from ravestate.draw.layered import LayeredGraph, Link, place_ports, proper_layering
 from ravestate.draw.notation import JUNCTIONS
-from ravestate.draw.ports import place_ports
 from ravestate.draw.routing import Point, route
 from ravestate.draw.simplex import network_simplex
 from ravestate.policy.components import components
@@ -178,7 +176,7 @@ def _extent(graph: LayeredGraph) -> Size:
     """Return an estimate of a graph's size in pixels, before its coordinates are known."""
     width = sum(max(graph.width[v] for v in layer) + _GAP for layer in graph.order)
     width += _TURN * len({low for low, _ in graph.segments})
-    height = max(sum(separation(graph, u, v) for u, v in pairwise(layer)) for layer in graph.order)
+    height = max(sum(graph.separation(u, v) for u, v in pairwise(layer)) for layer in graph.order)
     return width, height
 
 
