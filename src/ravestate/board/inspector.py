@@ -25,20 +25,14 @@ if TYPE_CHECKING:
     from ravestate.modules.platform.webio.session import Session
     from ravestate.modules.platform.webio.sessions import Sessions
 
-FRAME = 0.05
-"""The least number of seconds between two frames of records."""
+FRAME = 0.05  # the least number of seconds between two frames of records
 
 SHARE = 0.015
 """The share of the event loop's time that one inspector may use. So a long pause follows a slow frame."""
 
-OF_SPARE = 0.5
-"""The share of the process's idle time that one inspector may use in addition."""
-
-MOST = 800
-"""The maximum number of records in a frame; a longer frame would delay the agent."""
-
-BACKLOG = 20_000
-"""The maximum number of past records that a new inspector gets."""
+OF_SPARE = 0.5  # the share of the process's idle time that one inspector may use in addition
+MOST = 800  # the maximum number of records in a frame; a longer frame would delay the agent
+BACKLOG = 20_000  # the maximum number of past records that a new inspector gets
 
 LAG = 25_000
 """The maximum number of records that an inspector may lag behind. Beyond it, the server skips to the present."""
@@ -46,17 +40,10 @@ LAG = 25_000
 BURST, SPEED = 60, 30.0
 """The rate limit for a page's commands: the size of a burst, and the number of commands per second after it."""
 
-LISTED = 1.0
-"""The seconds between two checks of the list of conversations."""
-
-LIST = 100
-"""The maximum number of conversations in the list: the newest ones, and the one that the page shows."""
-
-WORDS = 48
-"""The maximum number of characters of a visitor's last words in the list of conversations."""
-
-REPLIES = 64
-"""The maximum number of answers that wait to be sent to one page."""
+LISTED = 1.0  # the seconds between two checks of the list of conversations
+LIST = 100  # the maximum number of conversations in the list: the newest ones, and the one that the page shows
+WORDS = 48  # the maximum number of characters of a visitor's last words in the list of conversations
+REPLIES = 64  # the maximum number of answers that wait to be sent to one page
 
 HELLO = f'{{"type": "hello", "v": {protocol.VERSION}}}'
 

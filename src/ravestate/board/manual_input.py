@@ -11,8 +11,7 @@ from ravestate.declare.signal import Signal
 from ravestate.declare.slot import Collection, Flag, Slot, checkable
 from ravestate.errors import RavestateError
 
-SAMPLES: tuple[Any, ...] = (True, 0, 0.5, "", [], {})
-"""One value of each JSON type except null."""
+SAMPLES: tuple[Any, ...] = (True, 0, 0.5, "", [], {})  # one value of each JSON type except null
 
 
 def check_value(slot: Slot[Any], value: object, holds: object) -> None:

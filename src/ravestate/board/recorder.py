@@ -26,26 +26,19 @@ from ravestate.declare.core import RuleFailure
 from ravestate.engine.trace import Born, Record, Settled
 from ravestate.runtime.context import Context
 
-KEPT = 100_000
-"""The maximum number of records of one context."""
+KEPT = 100_000  # the maximum number of records of one context
 
 IN_ALL = 500_000
 """The maximum number of records of all contexts together. Each takes about 136 bytes plus its payload."""
 
-BATCH = 100
-"""The number of records between two calls of `grown`."""
-
-BURST = 20_000
-"""The maximum number of records in one burst."""
-
-RATE = 2_000
-"""The records per second that a recorder keeps after a burst, while the process is always busy."""
+BATCH = 100  # the number of records between two calls of `grown`
+BURST = 20_000  # the maximum number of records in one burst
+RATE = 2_000  # the records per second that a recorder keeps after a burst, while the process is always busy
 
 SPARE = 60_000
 """Additional records per second in an idle process; the idle share of the process multiplies this number."""
 
-PAUSE = 0.1
-"""Seconds for which a recorder stops listening after too many records."""
+PAUSE = 0.1  # seconds for which a recorder stops listening after too many records
 
 
 @dataclass(slots=True)

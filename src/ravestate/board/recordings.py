@@ -7,8 +7,7 @@ from collections import OrderedDict
 
 from ravestate.board.trace_file import Recording
 
-KEPT = 4
-"""The maximum number of uploaded recordings that a server keeps: the newest ones."""
+KEPT = 4  # the maximum number of uploaded recordings that a server keeps: the newest ones
 
 
 class Recordings:

@@ -15,11 +15,8 @@ from typing import cast
 from ravestate.board.repr_chunks import repr_chunks
 from ravestate.declare.slot import Entry
 
-DEEPEST = 6
-"""The maximum depth of nested containers in JSON; a deeper value is shown by its ``repr``."""
-
-TRACEBACK = 8000
-"""The maximum number of characters of a traceback; of a longer one, the end is kept."""
+DEEPEST = 6  # the maximum depth of nested containers in JSON; a deeper value is shown by its ``repr``
+TRACEBACK = 8000  # the maximum number of characters of a traceback; of a longer one, the end is kept
 
 
 @dataclass(frozen=True, slots=True)

@@ -31,14 +31,12 @@ MOST_VALUES = 6_000_000
 """The maximum number of commas and opening brackets in a file: more would fill the memory. 64 MB of records have some
 four million."""
 
-LONGEST = 120
-"""The maximum number of seconds that reading a file may take."""
+LONGEST = 120  # the maximum number of seconds that reading a file may take
 
 CHUNK = 1000
 """The number of records in a message between processes. No other thread runs while a message is unpacked."""
 
-SURROGATE = re.compile(r"\\u[dD][89a-fA-F]")
-"""A pattern for one half of a surrogate pair, as JSON writes it."""
+SURROGATE = re.compile(r"\\u[dD][89a-fA-F]")  # a pattern for one half of a surrogate pair, as JSON writes it
 
 
 @dataclass(frozen=True, slots=True)

@@ -17,8 +17,7 @@ from ravestate.engine.explain import join, latest, seconds, why_given_up, withou
 from ravestate.engine.reasons import DropReason, LossReason, Outcome, PassReason, Verdict
 from ravestate.engine.trace import GaveUp, Passed, Record, Settled, Waits
 
-DEEPEST = 3
-"""The maximum number of causes behind each other in an answer."""
+DEEPEST = 3  # the maximum number of causes behind each other in an answer
 
 MOST = 200
 """The maximum number of moments in an answer. If there are more, the middle is left out."""

@@ -21,11 +21,8 @@ from ravestate.engine.trace import Record
 VERSION = 1
 """The version of the protocol and of trace files. Additions keep the number; any other change increases it."""
 
-PAYLOAD = 400
-"""The maximum number of characters of a payload in a record."""
-
-VALUE = 2000
-"""The maximum number of characters of a slot's value in a record or a `State`."""
+PAYLOAD = 400  # the maximum number of characters of a payload in a record
+VALUE = 2000  # the maximum number of characters of a slot's value in a record or a `State`
 
 KINDS: dict[str, type[Any]] = {kind.__name__.lower(): kind for kind in (*get_args(Record), Gap)}
 """Name of a kind of record → its class."""

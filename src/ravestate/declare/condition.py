@@ -19,9 +19,7 @@ if TYPE_CHECKING:
     from ravestate.declare.signal import Signal
     from ravestate.declare.slot import Slot
 
-DEFAULT_MAX_AGE = 5.0
-"""The default `max_age` of a constraint, in seconds (L4)."""
-
+DEFAULT_MAX_AGE = 5.0  # the default `max_age` of a constraint, in seconds (L4)
 Predicate = Callable[[Any], object]  # a function of a payload or of a slot's value
 
 LATER = inspect.CO_GENERATOR | inspect.CO_COROUTINE | inspect.CO_ASYNC_GENERATOR

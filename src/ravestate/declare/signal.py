@@ -14,8 +14,7 @@ Keep = Literal["all", "latest"]
 """The effect of a new spike on its signal's older live spikes: ``"all"`` keeps them up to a limit, ``"latest"``
 withdraws them (L20, L23)."""
 
-DEFAULT_LIMIT = 100_000
-"""The default of a signal's `limit`: its maximum number of live spikes."""
+DEFAULT_LIMIT = 100_000  # the default of a signal's `limit`: its maximum number of live spikes
 
 
 class SignalOptions(TypedDict, total=False):

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import sys
 
-LENGTH = 60
-"""The maximum number of characters that a value takes up in a message."""
+LENGTH = 60  # the maximum number of characters that a value takes up in a message
 
 HERE = __file__.removesuffix("wording.py")
 CORE = HERE + "core.py"  # the only file in this folder that declares signals

@@ -19,7 +19,6 @@ VertexKind = Literal["node", "label", "dummy"]
 _GAPS = {(True, True): 16.0, (True, False): 12.0, (False, True): 12.0, (False, False): 9.0}
 """(upper, lower neighbour in a layer) → the minimum pixels between them; `False` stands for a dummy vertex."""
 _SOLID: tuple[EdgeKind, ...] = ("writes", "emits")  # solid lines may overlap; overlapping dashes would not match
-
 _PITCH = 10.0  # pixels between ports of one side, where there is room
 _MARGIN = 10.0  # pixels from the first and last port to the corner, which is sometimes round
 _LEAST = 3.0  # minimum pixels between ports; with less room they coincide, but entering and leaving lines stay apart

@@ -11,8 +11,7 @@ from ravestate.declare.condition import AllOf, AnyOf, Compound, Condition, Const
 from ravestate.declare.signal import Signal
 from ravestate.errors import DeclarationError
 
-MAX_CLAUSES = 256
-"""The maximum number of conjunctions in a condition; a condition with more must be a mistake."""
+MAX_CLAUSES = 256  # the maximum number of conjunctions in a condition; a condition with more must be a mistake
 
 Atoms = tuple[Constraint | Holds, ...]
 

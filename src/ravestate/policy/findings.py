@@ -15,8 +15,7 @@ from ravestate.policy.policy import Policy
 from ravestate.policy.source import Source, acts_of, undeclared
 from ravestate.policy.wording import few
 
-BREAKING = frozenset({"undeclared", "unknown", "await"})
-"""The kinds of findings that make a rule fail at run time."""
+BREAKING = frozenset({"undeclared", "unknown", "await"})  # the kinds of findings that make a rule fail at run time
 
 MAX_PEERS = 64
 """The search for ties compares each rule with at most this many other rules, those declared first.

@@ -24,8 +24,7 @@ EFFORT = 100_000
 One search may use a tenth of what the earlier searches left, divided among its steps.
 """
 
-FREE = 100
-"""The number of sets that each search may always examine."""
+FREE = 100  # the number of sets that each search may always examine
 
 
 class Least:

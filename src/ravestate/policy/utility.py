@@ -10,8 +10,7 @@ from ravestate.policy.completion import UNIT, Completion
 from ravestate.policy.least import Least
 from ravestate.policy.model import RulePlan, SignalPlan
 
-PREDICATE = math.log(2)
-"""The nats that a ``where`` or ``holds`` predicate adds: it halves the prior (L9)."""
+PREDICATE = math.log(2)  # the nats that a ``where`` or ``holds`` predicate adds: it halves the prior (L9)
 
 NO_INFORMATION = 1e-9
 """The nats with which a clause without information (U = 0) competes, so that its weight and cooldown still count."""

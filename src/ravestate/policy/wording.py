@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-SHOWN = 8
-"""The maximum number of names that a list shows."""
+SHOWN = 8  # the maximum number of names that a list shows
 
 
 def few(names: Iterable[str]) -> str:

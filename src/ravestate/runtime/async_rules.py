@@ -13,8 +13,7 @@ from ravestate.runtime.blocking import StepTimer
 from ravestate.runtime.eager_task import EagerTask
 from ravestate.runtime.rule_context import RuleContext
 
-GRACE = 5.0
-"""The seconds that a cancelled rule has to clean up before its run counts as ended."""
+GRACE = 5.0  # the seconds that a cancelled rule has to clean up before its run counts as ended
 
 CLEANING = 10
 """The turns of the event loop that a cancelled rule has for its last writes before any other rule continues."""

@@ -30,14 +30,12 @@ from ravestate.runtime.plain_rules import PlainRules
 from ravestate.runtime.rule_context import RuleContext
 from ravestate.runtime.waits import Waits
 
-ENDLESS = 200_000
-"""The number of rounds of effects after which an instant of virtual time counts as endless."""
+ENDLESS = 200_000  # the number of rounds of effects after which an instant of virtual time counts as endless
 
 BATCH = 512
 """The number of rounds of effects after which the loop gets a turn, so that a busy agent still takes input."""
 
-TURN = 0.02
-"""The real seconds after which the loop gets a turn, even after fewer rounds than `BATCH`."""
+TURN = 0.02  # the real seconds after which the loop gets a turn, even after fewer rounds than `BATCH`
 
 ENDED = "the context has ended"
 

@@ -17,17 +17,13 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from time import monotonic
 
-LAST_GRACE = 5.0
-"""The seconds for which the process waits, at its end, for running functions."""
+LAST_GRACE = 5.0  # the seconds for which the process waits, at its end, for running functions
 
 SHARE = 32
 """The maximum number of functions of one context that run at once; further functions wait until one of them ends."""
 
-THREADS = 256
-"""The maximum number of worker threads in the process; if all are busy, further jobs wait."""
-
-IDLE = 30.0
-"""The seconds after which a worker thread without a job ends."""
+THREADS = 256  # the maximum number of worker threads in the process; if all are busy, further jobs wait
+IDLE = 30.0  # the seconds after which a worker thread without a job ends
 
 
 @dataclass(slots=True, eq=False)

@@ -12,8 +12,7 @@ from pathlib import Path
 
 from ravestate.folders import user_folder
 
-LARGEST = 1_000_000
-"""The size in bytes after which a new log file begins; one old file is kept."""
+LARGEST = 1_000_000  # the size in bytes after which a new log file begins; one old file is kept
 
 
 def log_file() -> Path:

@@ -15,8 +15,7 @@ from .log_file import log_file, log_to_file
 from .names import module, screen
 from .pipes import Pipes
 
-USER = "conio"
-"""The key of the user at the console in ``interloc.users``."""
+USER = "conio"  # the key of the user at the console in ``interloc.users``
 
 
 @module.rule(

@@ -28,8 +28,7 @@ LONGEST = 10_000
 """The number of characters in a line after which a key adds nothing. Undoing a key may cost as much memory as the whole
 line. Pasted text is always accepted whole."""
 
-_OPEN = "…"
-"""The mark behind a streamed line that the user has interrupted by entering a line."""
+_OPEN = "…"  # the mark behind a streamed line that the user has interrupted by entering a line
 
 
 class Terminal:

@@ -15,8 +15,7 @@ from .protocol import ProtocolError
 if TYPE_CHECKING:
     from .names import Settings
 
-PAUSE = 1.0
-"""The seconds that the server waits before it refuses a wrong token, so that guessing takes long."""
+PAUSE = 1.0  # the seconds that the server waits before it refuses a wrong token, so that guessing takes long
 
 
 def is_local(host: str) -> bool:

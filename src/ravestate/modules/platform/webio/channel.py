@@ -14,8 +14,7 @@ from .protocol import CLOSING_CODES, Error, ProtocolError, serialise
 LONGEST = 128 * 1024
 """The maximum number of bytes in a frame. A text may have 10,000 characters, each up to twelve bytes in JSON."""
 
-SILENT = 10.0
-"""The seconds that a client has to send its first frame."""
+SILENT = 10.0  # the seconds that a client has to send its first frame
 
 
 class Channel:

@@ -41,8 +41,7 @@ BURST, RATE = 20, 5.0
 """How many frames a client may send in a burst, and per second after it. The server delays further frames, and loses
 none. `Writing` frames have a limit of their own with the same numbers; the server ignores further ones."""
 
-REPLIES = 32
-"""The maximum number of replies that may wait to be sent to a client."""
+REPLIES = 32  # the maximum number of replies that may wait to be sent to a client
 
 HELLO = f'{{"type": "hello", "v": {VERSION}}}'
 

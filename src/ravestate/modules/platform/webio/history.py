@@ -10,11 +10,8 @@ from .protocol import Message
 
 Speaker = Literal["user", "agent"]
 
-MESSAGES = 500
-"""The maximum number of messages that a history keeps."""
-
-CHARACTERS = 200_000
-"""The maximum number of characters that a history keeps."""
+MESSAGES = 500  # the maximum number of messages that a history keeps
+CHARACTERS = 200_000  # the maximum number of characters that a history keeps
 
 
 class History:

@@ -17,14 +17,12 @@ from uvicorn.protocols.utils import ClientDisconnected
 from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
 from websockets.exceptions import InvalidState
 
-TIMEOUT = 10.0
-"""The seconds that a client has to send its request, and then again to read the answer."""
+TIMEOUT = 10.0  # the seconds that a client has to send its request, and then again to read the answer
 
 LOWEST_RATE = 8 * 1024
 """The lowest rate at which a client may send a request (bytes per second). It may fall behind by `TIMEOUT` seconds."""
 
-STALL_TIMEOUT = 20.0
-"""The seconds for which a client of a WebSocket may leave data unread."""
+STALL_TIMEOUT = 20.0  # the seconds for which a client of a WebSocket may leave data unread
 
 FULL = (
     b"HTTP/1.1 503 Service Unavailable\r\nconnection: close\r\ncontent-type: text/plain\r\ncontent-length: %d\r\n\r\n%s"

@@ -7,8 +7,7 @@ from ravestate.modules import interloc, rawio
 
 from .names import module, page
 
-SLOW = 0.3
-"""The seconds of waiting after which the page shows that the agent is working."""
+SLOW = 0.3  # the seconds of waiting after which the page shows that the agent is working
 
 
 @module.rule(when=rawio.output.changed.max_age(None).detached(), reads=page)

@@ -30,17 +30,10 @@ if TYPE_CHECKING:
 
     from .names import Settings
 
-SPARE = 128
-"""The number of open files that the server leaves to the rest of the process."""
-
-BACKLOG = 256
-"""How many connections the system accepts before the server takes them."""
-
-UNREAD = 128 * 1024
-"""How many bytes the system buffers for a client that does not read."""
-
-LAST_WORDS = 2.0
-"""The seconds that connections have to close when the server ends."""
+SPARE = 128  # the number of open files that the server leaves to the rest of the process
+BACKLOG = 256  # how many connections the system accepts before the server takes them
+UNREAD = 128 * 1024  # how many bytes the system buffers for a client that does not read
+LAST_WORDS = 2.0  # the seconds that connections have to close when the server ends
 
 
 class Server:

@@ -21,14 +21,9 @@ from .protocol import LONGEST_NAME, name_of
 if TYPE_CHECKING:
     from ravestate.runtime.context import Context
 
-REMEMBERED = 512
-"""The number of message ids that a session remembers, to ignore repeated messages."""
-
-GRACE = 0.3
-"""The seconds after the visitor's words before the page shows that the agent is working."""
-
-FAREWELL = 5.0
-"""The seconds that the agent has for a farewell."""
+REMEMBERED = 512  # the number of message ids that a session remembers, to ignore repeated messages
+GRACE = 0.3  # the seconds after the visitor's words before the page shows that the agent is working
+FAREWELL = 5.0  # the seconds that the agent has for a farewell
 
 log = logging.getLogger("ravestate.webio")
 

@@ -12,8 +12,7 @@ from .session import Ending, Onlooker, Session
 if TYPE_CHECKING:
     from ravestate.runtime.agent import Agent
 
-ONLOOKERS = 8
-"""The maximum number of windows that may show one conversation at a time."""
+ONLOOKERS = 8  # the maximum number of windows that may show one conversation at a time
 
 
 class Sessions:

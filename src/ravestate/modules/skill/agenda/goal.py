@@ -21,11 +21,8 @@ from .state import OPEN, GoalState, Status
 
 Words = str | Iterable[str] | Callable[[rs.RuleContext], str | Awaitable[str]]
 
-MOMENT = 1.0
-"""The seconds for which an opportunity to pursue a goal lasts."""
-
-LONGEST = 1000
-"""How many characters of the user's words the expressions `done` and `refused` search."""
+MOMENT = 1.0  # the seconds for which an opportunity to pursue a goal lasts
+LONGEST = 1000  # how many characters of the user's words the expressions `done` and `refused` search
 
 
 @dataclass(frozen=True, slots=True)
