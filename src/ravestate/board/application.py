@@ -14,8 +14,7 @@ from starlette.websockets import WebSocket
 
 from ravestate.board.inspector import Inspector
 from ravestate.board.recorder import Recorders
-from ravestate.board.recordings import Recordings
-from ravestate.board.trace_file import Recording, read_apart
+from ravestate.board.trace_file import Recording, Recordings, read_apart
 from ravestate.modules.platform.webio.access import PAUSE
 from ravestate.modules.platform.webio.application import AccessMiddleware
 from ravestate.modules.platform.webio.pages import Pages

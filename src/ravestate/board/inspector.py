@@ -9,15 +9,13 @@ from typing import TYPE_CHECKING
 from starlette.websockets import WebSocket
 
 from ravestate.board import picture, protocol
-from ravestate.board.idle_share import IdleShare
-from ravestate.board.recorder import Gap, Recorders
-from ravestate.board.recordings import Recordings
+from ravestate.board.recorder import Gap, IdleShare, Recorders
 from ravestate.board.source import LiveSource, RecordedSource, Source
+from ravestate.board.trace_file import Recordings
 from ravestate.board.why_not import why_not
 from ravestate.board.wire import data_of
 from ravestate.errors import RavestateError
-from ravestate.modules.platform.webio.bucket import Bucket
-from ravestate.modules.platform.webio.channel import Channel
+from ravestate.modules.platform.webio.channel import Bucket, Channel
 from ravestate.modules.platform.webio.protocol import ProtocolError
 
 if TYPE_CHECKING:

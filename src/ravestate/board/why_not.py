@@ -11,8 +11,7 @@ from typing import Any
 
 from ravestate.board.answer import Missing, Moment, Raiser, WhyNot
 from ravestate.board.description import ClauseView, Description, RuleView
-from ravestate.board.history import Attempt, History
-from ravestate.board.rivals import Rivals
+from ravestate.board.history import Attempt, History, Rivals
 from ravestate.engine.explain import join, latest, seconds, why_given_up, without, words_of
 from ravestate.engine.reasons import DropReason, LossReason, Outcome, PassReason, Verdict
 from ravestate.engine.trace import GaveUp, Passed, Record, Settled, Waits

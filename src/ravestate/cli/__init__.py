@@ -53,7 +53,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     commands = parser.add_subparsers(dest="command", metavar="COMMAND", required=True, parser_class=CommandParser)
     arguments = sys.argv[1:] if argv is None else list(argv)
     if not {"-h", "--help"}.isdisjoint(arguments):
-        from ravestate.cli.built_in import listing
+        from ravestate.cli.agent import listing
 
         parser.epilog = listing()
     for name, summary in COMMANDS.items():

@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 import argparse
+import ast
+import shutil
 import sys
+import textwrap
 from collections.abc import Iterable
+from importlib.resources import files
 from pathlib import Path
 
 from ravestate.errors import UsageError
@@ -63,3 +67,14 @@ def load_agent(options: argparse.Namespace, first: Iterable[str] = (), *, announ
     if options.seed is not None:
         agent.seed = options.seed
     return agent
+
+
+def listing() -> str:
+    """Return a list of the built-in modules, each with the first line of its docstring, without importing any."""
+    width = min(shutil.get_terminal_size().columns, 120) - 2
+    lines = ["built-in modules:"]
+    for name, folder in sorted(BUILT_IN.items()):
+        source = (files("ravestate.modules") / folder / name / "__init__.py").read_text(encoding="utf-8")
+        summary = (ast.get_docstring(ast.parse(source)) or "").partition("\n")[0]
+        lines.append(textwrap.fill(summary, width, initial_indent=f"  {name:<13}", subsequent_indent=" " * 15))
+    return "\n".join(lines)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Iterable
 
 LENGTH = 60  # the maximum number of characters that a value takes up in a message
 
@@ -62,3 +63,20 @@ def cut(text: str, length: int = LENGTH) -> str:
 def short(value: object, length: int = LENGTH) -> str:
     """Return the `repr` of a value, cut to `length` characters."""
     return cut(shown(value), length)
+
+
+SHOWN = 8  # the maximum number of names that a list shows
+
+
+def few(names: Iterable[str]) -> str:
+    """Join names with commas, each name once; after the first eight, add how many more there are.
+
+    Example:
+        >>> few(["m:a", "m:b", "m:a"]), few(f"m:r{number}" for number in range(100))
+        ('m:a, m:b', 'm:r0, m:r1, m:r2, m:r3, m:r4, m:r5, m:r6, m:r7 and 92 more')
+    """
+    found = list(dict.fromkeys(names))
+    more = len(found) - SHOWN
+    if more <= 1:  # one more name is as short as "and 1 more"
+        return ", ".join(found)
+    return f"{', '.join(found[:SHOWN])} and {more} more"

@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from types import ModuleType
 from typing import Any
 
+from ravestate.declare.core import core
 from ravestate.declare.module import Module, as_module
 from ravestate.declare.rule import Rule
+from ravestate.declare.wording import few
 from ravestate.errors import DeclarationError, DeclarationErrors
 from ravestate.policy.causes import Causes
 from ravestate.policy.connect import connect, find_contests, find_kin
 from ravestate.policy.names import Names
 from ravestate.policy.numbers import Numbers
-from ravestate.policy.order import in_order
 from ravestate.policy.policy import Policy
-from ravestate.policy.reachable import check_reachable
 from ravestate.policy.rules import Rules
 from ravestate.policy.utility import assign_utilities
 
@@ -92,3 +92,63 @@ def build(
         refers=numbers.refers,
         settings=settings,
     )
+
+
+def check_reachable(causes: Causes, faults: list[str]) -> None:
+    """Add a fault for each rule that waits for its own effects, directly or not, and that no input can start.
+
+    A rule that lacks only the signal of a slot, or a detached effect, gets a finding instead. Code outside the rules
+    may write slots, and detached effects make loops on purpose.
+    """
+    given = {s.index for s in causes.signals if s.input or s.slot is not None}
+    given |= {signal for rule in causes.rules if rule.detached for signal in rule.raises}
+    grounded = causes.grounded(given)
+    for rule in causes.rules:
+        if any(all(n.signal.index in grounded for n in clause.needs) for clause in rule.clauses):
+            continue
+        lacking = [n.signal for clause in rule.clauses for n in clause.needs if n.signal.index not in grounded]
+        if not lacking:
+            continue
+        raisers = few(r.name for s in lacking for r in causes.all_causes[s.index])
+        faults.append(
+            f"rule {rule.name} ({rule.rule.origin}) is unreachable: it waits for {few(s.name for s in lacking)}; "
+            f"only {raisers} may raise it, and they wait for each other; if it comes from outside, declare it "
+            "with input=True"
+        )
+
+
+def in_order(given: Iterable[Module], faults: list[str]) -> list[Module]:
+    """Return the given modules and all that they require, in order.
+
+    Args:
+        given: The modules in the user's order.
+        faults: The list to which this function adds faults: cycles of `requires`, and names that two modules share.
+    """
+    ordered: dict[Module, None] = {core: None}
+    names = {core.name: core}
+    for wanted in given:
+        way = {wanted: iter(wanted.requires)}  # a chain of modules, each of which requires the next
+        while way:
+            module, ahead = next(reversed(way.items()))
+            required = next(ahead, None)
+            if required is not None and required in way:
+                members = list(way)
+                cycle = [*members[members.index(required) :], required]
+                faults.append(
+                    f"modules require each other in a cycle: {' -> '.join(m.name for m in cycle)}; remove one `requires`, "
+                    "or move the common names to a module of their own"
+                )
+            elif required is not None:
+                if required not in ordered:
+                    way[required] = iter(required.requires)
+            else:
+                del way[module]
+                if module in ordered:
+                    continue
+                other = names.setdefault(module.name, module)
+                if other is not module:
+                    faults.append(
+                        f"two modules are named {module.name!r}: {other.origin} and {module.origin}; rename one"
+                    )
+                ordered[module] = None
+    return list(ordered)

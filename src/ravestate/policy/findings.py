@@ -7,13 +7,13 @@ from dataclasses import dataclass
 from itertools import islice
 
 from ravestate.declare.core import startup
+from ravestate.declare.wording import few
 from ravestate.policy.completion import each
 from ravestate.policy.conflicts import Conflicts, writers
 from ravestate.policy.loops import endless_loops
 from ravestate.policy.model import Clause, RulePlan
 from ravestate.policy.policy import Policy
 from ravestate.policy.source import Source, acts_of, undeclared
-from ravestate.policy.wording import few
 
 BREAKING = frozenset({"undeclared", "unknown", "await"})  # the kinds of findings that make a rule fail at run time
 

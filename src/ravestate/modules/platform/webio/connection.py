@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 
 from starlette.websockets import WebSocket
 
-from .bucket import Bucket
-from .channel import Channel
+from .channel import Bucket, Channel
 from .protocol import (
     CLIENT,
     VERSION,

@@ -16,8 +16,7 @@ from ravestate.modules import rawio, verbaliser
 from ravestate.modules.meta.verbaliser.intents import Intent
 
 from .conditions import negated, watching
-from .names import goals, opportunity
-from .state import OPEN, GoalState, Status
+from .names import OPEN, GoalState, Status, goals, opportunity
 
 Words = str | Iterable[str] | Callable[[rs.RuleContext], str | Awaitable[str]]
 
