@@ -8,7 +8,6 @@ from __future__ import annotations
 from bisect import bisect_right
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from itertools import accumulate
 from operator import attrgetter
 
 from ravestate.board.description import Description, RuleView
@@ -17,7 +16,6 @@ from ravestate.engine.explain import join, seconds
 from ravestate.engine.reasons import Outcome
 from ravestate.engine.trace import GaveUp, Passed, Waits
 
-NEVER = float("inf")
 BY_TIME = attrgetter("time")
 
 
@@ -115,11 +113,8 @@ class History:
         self._into: dict[int, int] = {}
         self._answers: list[Attempt] = []  # in the order of their ends
         self._of: dict[str, list[Attempt]] = {}
-        self._spans: dict[str, tuple[list[float], list[float]]] = {}
-        started = False
-        for record in records:
-            if not started:
-                self.first, started = record.time, True
+        for number, record in enumerate(records):
+            self.first = record.time if not number else self.first
             self.last = record.time
             self._read(record)
         if spike not in self.born:
@@ -149,19 +144,12 @@ class History:
 
     def ran(self, rule: str, time: float) -> bool:
         """Return whether a rule was running for the group at a time (seconds)."""
-        if rule not in self._spans:
-            spans = sorted(
-                (attempt.started.time, NEVER if attempt.end is None else attempt.end)
-                for attempt in self.of(rule)
-                if attempt.started is not None
-            )
-            self._spans[rule] = (
-                [start for start, _ in spans],
-                list(accumulate((end for _, end in spans), max)),
-            )
-        starts, ends = self._spans[rule]
-        begun = bisect_right(starts, time)
-        return begun > 0 and ends[begun - 1] >= time
+        return any(
+            attempt.started is not None
+            and attempt.started.time <= time
+            and (attempt.end is None or attempt.end >= time)
+            for attempt in self.of(rule)
+        )
 
     def answered(self, hears: Mapping[str, Sequence[Collection[str]]]) -> Attempt | None:
         """Return the first run that answered the cause of the group; None if no run of the given rules did.
@@ -170,11 +158,11 @@ class History:
             hears: Rule to consider → for each of its clauses, the signals that the clause consumes. A detached
                 constraint consumes none (L19).
         """
-        return next((a for a in self._answers if a.rule in hears and self._is_taken(a, hears[a.rule][a.clause])), None)
 
-    def _is_taken(self, attempt: Attempt, signals: Collection[str]) -> bool:
-        """Return whether an attempt took a spike of one of these signals in the group."""
-        return any(spike in self.group and self.born[spike].signal in signals for spike in attempt.spikes)
+        def is_taken(attempt: Attempt, signals: Collection[str]) -> bool:
+            return any(spike in self.group and self.born[spike].signal in signals for spike in attempt.spikes)
+
+        return next((a for a in self._answers if a.rule in hears and is_taken(a, hears[a.rule][a.clause])), None)
 
     def before(self, run: int) -> str:
         """Return the rule that raised the input of a run in this group; empty if no rule did, or the trace lacks it."""
@@ -254,12 +242,7 @@ class History:
 
 
 class Rivals:
-    """Phrases about other rules.
-
-    Args:
-        history: The history of the context, from its trace.
-        description: The description of the context's policy.
-    """
+    """Phrases about the other rules in an explanation: those for which a rule waited, and the one that answered."""
 
     def __init__(self, history: History, description: Description) -> None:
         self._history = history

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 from time import perf_counter
 from typing import TYPE_CHECKING
 
@@ -47,15 +48,9 @@ HELLO = f'{{"type": "hello", "v": {protocol.VERSION}}}'
 
 
 class Inspector:
-    """The server's side of the board's protocol, for one WebSocket.
+    """The server's side of the board's protocol, for one WebSocket that is not accepted yet.
 
-    Args:
-        socket: The connection, not accepted yet.
-        access: The check of the client's token.
-        sessions: The server's conversations.
-        recorders: The recorders of the conversations' contexts.
-        recordings: The recordings that the server holds.
-        title: The agent's name on the page; None for the name that the agent gives itself.
+    Without a `title`, the page shows the name that the agent gives itself.
     """
 
     def __init__(
@@ -99,11 +94,8 @@ class Inspector:
             seen = max(source.first - 1, source.last - BACKLOG)
             visitor = None if session is None else session.visitor
             whole = source.whole and seen == 0
-            await self._send(
-                protocol.Welcome(
-                    protocol.VERSION, title, source.live, visitor, whole, source.description, *source.clock()
-                )
-            )
+            state = source.description, *source.clock()
+            await self._send(protocol.Welcome(protocol.VERSION, title, source.live, visitor, whole, *state))
             await self._send(source.look())
             await self._channel.both(self._read(source), self._write(source, session, seen, title))
         finally:
@@ -172,15 +164,8 @@ class Inspector:
         match command:
             case protocol.Why():
                 records = [r for r in source.since(source.first - 1, source.last) if not isinstance(r, Gap)]
-                found = await asyncio.to_thread(
-                    why_not,
-                    records,
-                    source.description,
-                    command.rule,
-                    command.spike,
-                    source.opens,
-                    source.whole,
-                )
+                question = records, source.description, command.rule, command.spike, source.opens, source.whole
+                found = await asyncio.to_thread(why_not, *question)
                 self._reply(protocol.Answer(**protocol.fields_of(found)))
             case protocol.Unfold():
                 diagram = source.description.diagram
@@ -251,11 +236,9 @@ class Inspector:
         if seconds == 0.0 and not more:
             await self._channel.woken.wait()
             return
-        try:
+        with contextlib.suppress(TimeoutError):
             async with asyncio.timeout(seconds):
                 await self._channel.woken.wait()
-        except TimeoutError:
-            pass
 
     def _title_of(self, session: Session) -> str:
         return session.agent if self._title is None else self._title
@@ -266,13 +249,12 @@ class Inspector:
         listed = running[-LIST:]
         if own in running[:-LIST]:
             listed[0] = own
-        return protocol.Conversations([_conversation(session) for session in listed], len(running) - len(listed))
+        shown: list[protocol.Conversation] = []
+        for session in listed:
+            newest = session.history.newest("user")
+            said = None if newest is None else newest.text[:WORDS]
+            shown.append(protocol.Conversation(session.visitor, session.name, session.began, said))
+        return protocol.Conversations(shown, len(running) - len(listed))
 
     async def _send(self, frame: protocol.ServerFrame) -> None:
         await self._channel.send(protocol.serialise(frame))
-
-
-def _conversation(session: Session) -> protocol.Conversation:
-    newest = session.history.newest("user")
-    said = None if newest is None else newest.text[:WORDS]
-    return protocol.Conversation(session.visitor, session.name, session.began, said)

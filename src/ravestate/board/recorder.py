@@ -95,14 +95,8 @@ def _kept_waiting() -> float:
 class Recorder:
     """Keeps the records of a context from now on.
 
-    Args:
-        context: A context, running or not.
-        kept: The maximum number of records to keep.
-        burst: The maximum number of records in one burst.
-        rate: The number of records per second after a burst.
-        spare: Additional records per second in an idle process, as for `SPARE`.
-        whole: True if the context has not started: the records are then complete.
-        grown: A callback that runs after every `BATCH` records.
+    The limits are explained at `KEPT`, `BURST`, `RATE` and `SPARE`. The records are `whole` if the context has not
+    started yet. The callback `grown` runs after every `BATCH` records.
     """
 
     def __init__(
@@ -217,9 +211,7 @@ class Recorder:
 class Recorders:
     """The recorders of an agent's contexts. Each lives as long as its context.
 
-    Args:
-        in_all: The maximum number of records of all contexts together. The actual number may exceed it by a fiftieth,
-            plus one batch for each context.
+    All records together may exceed `in_all` by a fiftieth, plus one batch for each context.
     """
 
     def __init__(self, in_all: int = IN_ALL) -> None:
@@ -247,12 +239,7 @@ class Recorders:
 
 
 def _fair(lengths: list[int], in_all: int) -> int:
-    """Return the maximum length for each recorder, so that the total is at most `in_all`.
-
-    Example:
-        >>> _fair([10, 500, 700], 610)
-        300
-    """
+    """Return the maximum length for each recorder, so that the total is at most `in_all`."""
     left = in_all
     for number, length in enumerate(sorted(lengths)):
         share = left // (len(lengths) - number)

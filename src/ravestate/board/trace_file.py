@@ -60,11 +60,7 @@ KEPT = 4  # the maximum number of uploaded recordings that a server keeps: the n
 
 
 class Recordings:
-    """A table of recordings by their names, which nobody can guess.
-
-    Args:
-        first: The recording for a request without a name; None if there is none.
-    """
+    """A table of uploaded recordings by their names, which nobody can guess. The `first` recording needs no name."""
 
     def __init__(self, first: Recording | None = None) -> None:
         self._first = first
@@ -117,11 +113,7 @@ def save_trace(
 
 
 def open_trace(path: Path) -> Recording:
-    """Return the trace in a file.
-
-    Raises:
-        PlatformError: The file cannot be read, or is not a trace.
-    """
+    """Return the trace in a file, or raise a `PlatformError`."""
     try:
         return read_trace(path.read_bytes())
     except OSError as error:
@@ -153,11 +145,7 @@ def read_trace(text: str | bytes) -> Recording:
 
 
 def read_apart(data: bytes) -> Recording:
-    """Return the trace that `data` describes, read in a separate process: so this process's other threads keep running.
-
-    Raises:
-        ValueError: The data is not a trace, or reading takes too long.
-    """
+    """As `read_trace`, in a separate process with a time limit: this process's other threads keep running."""
     command = [sys.executable, "-m", __name__]
     paths = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
     try:

@@ -108,8 +108,7 @@ class _Inquiry:
                 reason += ", and a rule never causes itself"
             return Verdict.PASSED, f"it did not take {first.signal}: {reason}", first.time
         if retired is not None:
-            words = f"it retired at {seconds(retired)} without a spike of this cause"
-            return Verdict.RETIRED, words, retired
+            return Verdict.RETIRED, f"it retired at {seconds(retired)} without a spike of this cause", retired
         return Verdict.UNTOUCHED, "none of the signals that it hears occurred for this cause", None
 
     def _judge(self, rule: RuleView, attempt: Attempt) -> Reached:
@@ -157,13 +156,15 @@ class _Inquiry:
         reason = f": {settled.reason}" if settled.reason else ""
         at = settled.time
         if settled.outcome == Outcome.FAILED and settled.fired:
-            words = f"it fired at {seconds(began)}, and failed after its write at {seconds(at)}{reason}"
-            return Verdict.FIRED, words, at
+            return (
+                Verdict.FIRED,
+                f"it fired at {seconds(began)}, and failed after its write at {seconds(at)}{reason}",
+                at,
+            )
         if settled.outcome == Outcome.FAILED:
             return Verdict.FAILED, f"it ran at {seconds(began)} and failed{reason}", at
         if not settled.fired:
-            words = f"it ran at {seconds(began)} and resigned{reason or ' without a reason'}"
-            return Verdict.RESIGNED, words, at
+            return Verdict.RESIGNED, f"it ran at {seconds(began)} and resigned{reason or ' without a reason'}", at
         parts = [f"it fired at {seconds(began)}"]
         slots = dict.fromkeys(write.slot for write in self.history.writes.get(attempt.id, ()))
         if slots:

@@ -55,8 +55,6 @@ else:
         ],
     )
 
-_RECORD: pydantic.TypeAdapter[dict[str, Any]] = pydantic.TypeAdapter(TraceRecord)
-
 
 def data_of(record: Record | Gap) -> TraceRecord:
     """Return a record as plain data for JSON.
@@ -69,15 +67,6 @@ def data_of(record: Record | Gap) -> TraceRecord:
     return _WRITERS[type(record)](record)
 
 
-def record_of(data: Any) -> Record | Gap:
-    """Return the record that `data` describes. Its values stay `Rendered`.
-
-    Raises:
-        ValueError: The data is not a record.
-    """
-    return checked_record(_RECORD.validate_python(data))
-
-
 def checked_record(data: TraceRecord) -> Record | Gap:
     """Return the record that `data`, already validated, describes."""
     fields = {f"{name}_" if name == "for" else name: value for name, value in data.items()}
@@ -86,26 +75,15 @@ def checked_record(data: TraceRecord) -> Record | Gap:
 
 def rendered_data(rendered: Rendered) -> dict[str, Any]:
     """Return a rendered value as plain data, without the fields that have their default values."""
-    data: dict[str, Any] = {"text": rendered.text}
-    if not rendered.json:
-        data["json"] = False
-    if rendered.cut:
-        data["cut"] = True
-    return data
-
-
-_FREQUENT: dict[Any, dict[str, Any]] = {
-    None: {"text": "null"},
-    True: {"text": "true"},
-    False: {"text": "false"},
-}
+    return (
+        {"text": rendered.text} | ({} if rendered.json else {"json": False}) | ({"cut": True} if rendered.cut else {})
+    )
 
 
 def _quickly(value: Any) -> dict[str, Any] | None:
     """Return the data of a frequent kind of value, as `render` would make it; None for any other value."""
-    if value is None or value is True or value is False:
-        return _FREQUENT[value]
-    if type(value) is str and len(value) < 60 and value.isascii():
+    frequent = value is None or value is True or value is False
+    if frequent or (type(value) is str and len(value) < 60 and value.isascii()):
         return {"text": json.dumps(value)}
     return None
 

@@ -89,11 +89,7 @@ class Access:
         )
 
     async def check_token(self, token: str | None) -> None:
-        """Refuse a wrong token, after a pause.
-
-        Raises:
-            ProtocolError: The token is wrong or missing.
-        """
+        """Refuse a wrong token with a `ProtocolError`, after a pause."""
         if not self.admits(token):
             if token:
                 await asyncio.sleep(PAUSE)

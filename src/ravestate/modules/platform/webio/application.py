@@ -85,11 +85,7 @@ class AccessMiddleware:
     """Middleware that refuses requests without access, and adds headers that restrict scripts and frames.
 
     The log names sites that try to embed the page without permission: such a site's visitors see only an empty frame.
-    One instance guards the whole application; a second instance guards the board, which no other site may reach.
-
-    Args:
-        app: The application to guard.
-        inside: Whether the application is the board, not the whole page.
+    One instance guards the whole application; a second one, `inside`, guards the board, which no other site may reach.
     """
 
     def __init__(self, app: ASGIApp, *, inside: bool = False) -> None:

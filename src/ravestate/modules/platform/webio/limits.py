@@ -41,12 +41,7 @@ log.addFilter(lambda record: record.msg not in FOREIGN)
 
 
 class LimitedHTTP(H11Protocol):
-    """HTTP with a limit on connections, in total and per address, and with time limits.
-
-    Args:
-        per_address: The maximum number of connections from one address, including WebSockets.
-        most: The maximum number of connections in total.
-    """
+    """HTTP with time limits, and with limits on connections, including WebSockets: `most` in total, and `per_address`."""
 
     def __init__(self, *args: Any, per_address: int, most: int, **kwargs: Any) -> None:
         super().__init__(*args, **kwargs)
@@ -68,7 +63,6 @@ class LimitedHTTP(H11Protocol):
             self.loop.call_later(TIMEOUT, self._check)
 
     def data_received(self, data: bytes) -> None:
-        """Receive bytes from the client."""
         self._received += len(data)
         super().data_received(data)
 

@@ -175,9 +175,8 @@ class Server:
         """
 
         def lines(address: Callable[[str], str]) -> str:
-            return (
-                "\n".join(f"The {name} is at {address(path)}" for name, path in pages.items()) + " (Ctrl-C ends it)\n"
-            )
+            told = "\n".join(f"The {name} is at {address(path)}" for name, path in pages.items())
+            return f"{told} (Ctrl-C ends it)\n"
 
         if self._settings.token is None or sys.stdout.isatty():
             sys.stdout.write(lines(self.link))

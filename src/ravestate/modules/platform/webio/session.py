@@ -39,15 +39,7 @@ CHARACTERS = 200_000  # the maximum number of characters that a history keeps
 
 
 class History:
-    """The last messages of a conversation, bounded in number and in size.
-
-    Example:
-        >>> history = History(messages=2)
-        >>> for text in ("one", "two", "three"):
-        ...     _ = history.add("user", text, 0)
-        >>> [message.n for message in history.since(0)]
-        [2, 3]
-    """
+    """The last messages of a conversation, bounded in number and in size."""
 
     def __init__(self, *, messages: int = MESSAGES, characters: int = CHARACTERS) -> None:
         self._messages: deque[Message] = deque()
@@ -113,10 +105,6 @@ class Session:
     """A visitor's conversation. It outlives its connections, and runs on one event loop.
 
     A session has no queue: it wakes each `Onlooker`, which reads all that it has not seen yet.
-
-    Args:
-        context: The visitor's context, not entered yet.
-        name: The visitor's name; None if it is unknown.
     """
 
     def __init__(self, context: Context, name: str | None = None) -> None:
@@ -156,7 +144,8 @@ class Session:
                 context.put(page, self)
                 context.put(interloc.users, {**context.read(interloc.users), self.visitor: self.name})
                 await self._until_left()
-                self._free_from_users()
+                users = self.context.read(interloc.users)
+                self.context.put(interloc.users, {key: user for key, user in users.items() if key != self.visitor})
                 async with asyncio.timeout(FAREWELL):
                     await context.quiet()
         except TimeoutError:
@@ -190,10 +179,6 @@ class Session:
             left.cancel()
             stopped.cancel()
 
-    def _free_from_users(self) -> None:
-        users = self.context.read(interloc.users)
-        self.context.put(interloc.users, {key: user for key, user in users.items() if key != self.visitor})
-
     # ------------------------------------------------------------------------------------ the visitor
 
     @property
@@ -202,11 +187,7 @@ class Session:
         return self._left.is_set()
 
     def hear(self, id: str, text: str) -> bool:
-        """Take the visitor's words. Words that came before under the same `id` are ignored.
-
-        Args:
-            id: The client's id for the words: 1 to 64 letters, digits, ``-`` or ``_``.
-            text: The words, checked by `heard_text`.
+        """Take the visitor's words, which `heard_text` has checked. Words that came before under the same `id` are ignored.
 
         Returns:
             Whether the session took the words, now or before; False if the session is `leaving`.

@@ -46,10 +46,7 @@ class Sessions:
         return self._sessions.get(id)
 
     async def open(self, name: str | None = None) -> Session:
-        """Begin a conversation, and return it.
-
-        Args:
-            name: The visitor's name; None if it is unknown.
+        """Begin a conversation with a visitor who may have told their name.
 
         Raises:
             ProtocolError: There are too many conversations already, or the agent is being switched off.
@@ -67,11 +64,7 @@ class Sessions:
         return session
 
     def enter(self, session: Session, onlooker: Onlooker) -> None:
-        """Add an onlooker, such as a window, to a conversation.
-
-        Raises:
-            ProtocolError: The conversation has too many onlookers already.
-        """
+        """Add an onlooker, such as a window, to a conversation, unless it has too many already."""
         if len(session.onlookers) >= ONLOOKERS:
             raise ProtocolError("full", f"{ONLOOKERS} windows show this conversation already: close one of them")
         session.onlookers.add(onlooker)
