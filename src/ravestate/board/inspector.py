@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from starlette.websockets import WebSocket
 
-from ravestate.board import picture, protocol
+from ravestate.board import protocol
 from ravestate.board.recorder import Gap, IdleShare, Recorders
 from ravestate.board.source import LiveSource, RecordedSource, Source
 from ravestate.board.trace_file import Recordings
@@ -23,6 +23,13 @@ if TYPE_CHECKING:
     from ravestate.modules.platform.webio.access import Access
     from ravestate.modules.platform.webio.session import Session
     from ravestate.modules.platform.webio.sessions import Sessions
+from collections.abc import Sequence
+from dataclasses import astuple
+
+from ravestate.draw.fold import fold
+from ravestate.draw.graph import Diagram
+from ravestate.draw.layout import lay_out
+from ravestate.draw.sizes import label_size, node_size
 
 FRAME = 0.05  # the least number of seconds between two frames of records
 
@@ -169,7 +176,7 @@ class Inspector:
                 self._reply(protocol.Answer(**protocol.fields_of(found)))
             case protocol.Unfold():
                 diagram = source.description.diagram
-                self._reply(await asyncio.to_thread(picture.draw, diagram, command.unfolded))
+                self._reply(await asyncio.to_thread(drawing, diagram, command.unfolded))
             case protocol.Explain():
                 self._reply(source.explain(command.rule))
             case protocol.Look():
@@ -258,3 +265,18 @@ class Inspector:
 
     async def _send(self, frame: protocol.ServerFrame) -> None:
         await self._channel.send(protocol.serialise(frame))
+
+
+def drawing(diagram: Diagram, unfolded: Sequence[str]) -> protocol.Drawing:
+    """Return the laid-out diagram, in which only the modules `unfolded` show their rules. 500 nodes take about 1 s."""
+    folded = fold(diagram, frozenset(unfolded))
+    sizes = {node.id: node_size(node) for node in folded.nodes}
+    layout = lay_out(folded, sizes, [label_size(edge.label) for edge in folded.edges])
+    nodes = [
+        protocol.DrawnNode(**protocol.fields_of(node), box=astuple(layout.boxes[node.id])) for node in folded.nodes
+    ]
+    edges = [
+        protocol.DrawnEdge(**protocol.fields_of(edge), points=list(points), box=None if box is None else astuple(box))
+        for edge, points, box in zip(folded.edges, layout.lines, layout.labels, strict=True)
+    ]
+    return protocol.Drawing(list(unfolded), layout.width, layout.height, nodes, edges)

@@ -16,10 +16,7 @@ TEXTS: dict[Any, Any] = {kind.__repr__: kind for kind in (str, bytes, bytearray)
 
 _ROWS: tuple[Any, ...] = (list, tuple, set, frozenset, deque)
 _TABLES: tuple[Any, ...] = (dict, OrderedDict, defaultdict, Counter, MappingProxyType)
-_WALKS: dict[Any, Any] = {
-    **{kind: kind.__iter__ for kind in _ROWS},
-    **{kind: kind.items for kind in _TABLES},
-}
+_WALKS: dict[Any, Any] = {**{kind: kind.__iter__ for kind in _ROWS}, **{kind: kind.items for kind in _TABLES}}
 """Built-in container → its own method of iteration, so that a subclass's method is never called."""
 
 BUILT_IN: dict[Any, Any] = {kind.__repr__: kind for kind in _WALKS}

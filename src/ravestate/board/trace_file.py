@@ -89,12 +89,7 @@ class _File(pydantic.BaseModel):
 
 
 def save_trace(
-    path: Path,
-    policy: Policy,
-    records: Iterable[Record | Gap],
-    *,
-    title: str = "Ravestate",
-    whole: bool = True,
+    path: Path, policy: Policy, records: Iterable[Record | Gap], *, title: str = "Ravestate", whole: bool = True
 ) -> None:
     """Write a trace to a file for the board, for example ``context.trace`` of a context with ``trace=True``.
 

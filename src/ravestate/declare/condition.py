@@ -134,9 +134,6 @@ def checked_predicate(predicate: object, what: str, of: str) -> Predicate:
     """Return `predicate` if it is a plain function; refuse any other value. `what` and `of` are for the message.
 
     A call of an asynchronous function or a generator only creates an object, and that object always counts as true.
-
-    Raises:
-        DeclarationError: The predicate is not a function, or it is an asynchronous function or a generator.
     """
     if not callable(predicate):
         raise DeclarationError(f"{what}({predicate!r}): expected a function of the {of}")

@@ -40,9 +40,7 @@ class Signal(Condition, Generic[T]):
         name: The qualified name, ``module:name``.
         payload: The payload's type. It is None if there is no payload; it is also None for a slot's signal, whose
             payload has the slot's type.
-        input: Whether code outside the rules may raise the signal even if a rule raises it too (L8).
-        keep: ``"all"`` or ``"latest"``, as for `SignalOptions`.
-        limit: The signal's maximum number of live spikes.
+        input, keep, limit: As for `SignalOptions`.
         origin: The place of the declaration, ``file:line``.
     """
 

@@ -105,10 +105,7 @@ def _note(rule: Rule[Any, Any]) -> str:
 def _label(term: Constraint | Holds) -> str:
     if isinstance(term, Holds):
         return _predicate("holds", term.predicate)
-    words = [
-        _ages(term.min_age_, term.max_age_),
-        *(_predicate("where", predicate) for predicate in term.predicates),
-    ]
+    words = [_ages(term.min_age_, term.max_age_), *(_predicate("where", predicate) for predicate in term.predicates)]
     return ", ".join(word for word in words if word)
 
 

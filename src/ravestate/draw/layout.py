@@ -19,9 +19,8 @@ from ravestate.draw.acyclic import STRONG, feedback_arcs
 from ravestate.draw.bounded import fit_to_screen
 from ravestate.draw.coordinates import assign_coordinates
 from ravestate.draw.crossings import minimise_crossings
-from ravestate.draw.graph import Diagram, Edge, EdgeKind, NodeKind
+from ravestate.draw.graph import JUNCTIONS, Diagram, Edge, EdgeKind, NodeKind
 from ravestate.draw.layered import LayeredGraph, Link, place_ports, proper_layering
-from ravestate.draw.notation import JUNCTIONS
 from ravestate.draw.routing import Point, route
 from ravestate.draw.simplex import network_simplex
 from ravestate.policy.components import components

@@ -6,9 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
 
-from ravestate.draw.graph import Diagram, EdgeKind, NodeKind
+from ravestate.draw.graph import EDGES, JUNCTIONS, NODES, Diagram, EdgeKind, NodeKind, used
 from ravestate.draw.layout import Box
-from ravestate.draw.notation import EDGES, JUNCTIONS, NODES, used
 from ravestate.draw.shapes import line, number, outline
 from ravestate.draw.sizes import SMALL
 from ravestate.draw.text import width

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from ravestate.draw.graph import Node
-from ravestate.draw.notation import JUNCTIONS
+from ravestate.draw.graph import JUNCTIONS, Node
 from ravestate.draw.text import clean, shorten, width
 
 NAME = 13.0  # the font size of a node's name, in pixels

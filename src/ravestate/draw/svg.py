@@ -6,10 +6,9 @@ import hashlib
 import html
 from collections import Counter
 
-from ravestate.draw.graph import Diagram, Edge, Node, NodeKind
+from ravestate.draw.graph import EDGES, JUNCTIONS, NODES, Diagram, Edge, Node, NodeKind, describe
 from ravestate.draw.layout import Box, lay_out
 from ravestate.draw.legend import NARROWEST, legend
-from ravestate.draw.notation import EDGES, JUNCTIONS, NODES, describe
 from ravestate.draw.shapes import heads, line, number, outline
 from ravestate.draw.sizes import LABEL, NAME, SMALL, label_size, node_size, shown
 from ravestate.draw.style import stylesheet

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from types import ModuleType
 from typing import Any
@@ -12,12 +13,14 @@ from ravestate.declare.rule import Rule
 from ravestate.declare.wording import few
 from ravestate.errors import DeclarationError, DeclarationErrors
 from ravestate.policy.causes import Causes
+from ravestate.policy.completion import UNIT, Completion
 from ravestate.policy.connect import connect, find_contests, find_kin
+from ravestate.policy.least import Least
+from ravestate.policy.model import RulePlan, SignalPlan
 from ravestate.policy.names import Names
 from ravestate.policy.numbers import Numbers
 from ravestate.policy.policy import Policy
 from ravestate.policy.rules import Rules
-from ravestate.policy.utility import assign_utilities
 
 
 def compile_policy(*modules: Module | ModuleType) -> Policy:
@@ -51,21 +54,12 @@ def compile_policy(*modules: Module | ModuleType) -> Policy:
 
 
 def build(
-    modules: Sequence[Module],
-    rules: Sequence[Rule[Any, Any]],
-    settings: Mapping[str, Any],
-    faults: Sequence[str] = (),
+    modules: Sequence[Module], rules: Sequence[Rule[Any, Any]], settings: Mapping[str, Any], faults: Sequence[str] = ()
 ) -> Policy:
     """Number all signals, slots and rules, and make the policy.
 
-    Args:
-        modules: All modules of the policy, in order.
-        rules: All rules of the policy, in order. A rule that a context added is in none of the modules.
-        settings: A module's name → its settings; a module that is missing here uses its default settings.
-        faults: The faults that the caller has found already.
-
-    Raises:
-        DeclarationErrors: There is a fault, found here or by the caller.
+    A rule that a context added is in none of the modules. Without an entry in `settings`, a module has its default
+    settings. If there are `faults`, found here or by the caller, they are raised together.
     """
     found = list(faults)
     names = Names(modules, found)
@@ -152,3 +146,35 @@ def in_order(given: Iterable[Module], faults: list[str]) -> list[Module]:
                     )
                 ordered[module] = None
     return list(ordered)
+
+
+PREDICATE = math.log(2)  # the nats that a ``where`` or ``holds`` predicate adds: it halves the prior (L9)
+
+NO_INFORMATION = 1e-9
+"""The nats with which a clause without information (U = 0) competes, so that its weight and cooldown still count."""
+
+
+def assign_utilities(signals: Sequence[SignalPlan], rules: Sequence[RulePlan], causes: Causes) -> Completion:
+    """Set the utility, the base utility and the least pathway of every clause, and mark the cyclic clauses.
+
+    Returns:
+        The graph in which clauses are completed; `Pathways` lists their other pathways with it.
+    """
+    completion = Completion(signals, rules, causes)
+    least = Least(completion)
+    of = causes.components.of
+    for rule in rules:
+        # A clause is cyclic if a signal that its rule raises leads to one of its needs.
+        raised = set[int]() if rule.detached else {of[signal] for signal in rule.raises}
+        for clause in rule.clauses:
+            firm = [need.signal.index for need in clause.needs if not need.detached]
+            looked_at = [need.signal.index for need in clause.needs if need.detached]
+            clause.cyclic = any(of[signal] in raised for signal in firm)
+            predicates = len(clause.guards) + sum(len(need.predicates) for need in clause.needs)
+            places = [completion.place[s] for s in firm]
+            looked_places = [completion.place[s] for s in looked_at]
+            cost, clause.least = least.pathway(places, looked_places)
+            # The sum is rounded because the information of a predicate is not a multiple of the unit.
+            clause.utility = round(cost / UNIT + predicates * PREDICATE, 12)
+            clause.base = (clause.utility or NO_INFORMATION) * rule.weight
+    return completion

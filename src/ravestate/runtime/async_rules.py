@@ -24,11 +24,9 @@ log = logging.getLogger("ravestate")
 class AsyncRules:
     """Starts, cancels and ends the async rules of one context.
 
-    Args:
-        loop: The context's event loop.
-        finish: Called with a run, its result and its exception when the run's function has ended.
-        give_up: Called with a run and the reason, if the run does not end within `GRACE` seconds of its cancellation.
-        proceed: Called when the tasks in `cleaning` have ended, or when their turns are over.
+    It calls `finish` with a run, its result and its exception when the run's function has ended; `give_up` with a run and
+    the reason, if the run does not end within `GRACE` seconds of its cancellation; and `proceed` when the tasks in
+    `cleaning` have ended, or when their turns are over.
     """
 
     def __init__(
@@ -83,9 +81,7 @@ class AsyncRules:
     async def close(self, reason: str, *, at_once: bool) -> None:
         """Cancel all runs and wait for them for at most `GRACE` seconds; then end the runs that have not ended.
 
-        Args:
-            reason: The reason for which the runs end, for messages.
-            at_once: Whether to return without waiting.
+        With `at_once`, do not wait.
         """
         for ctx, task in self._tasks.items():
             ctx.cancelled = reason

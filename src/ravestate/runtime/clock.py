@@ -6,11 +6,7 @@ import asyncio
 
 
 class Clock:
-    """A clock that counts the seconds since a context started, without the time in which the clock was halted.
-
-    Args:
-        loop: The loop whose time the clock follows.
-    """
+    """A clock that counts the seconds since a context started, without the time in which the clock was halted."""
 
     def __init__(self, loop: asyncio.AbstractEventLoop) -> None:
         self._loop = loop

@@ -45,16 +45,9 @@ log = logging.getLogger("ravestate")
 class Runner:
     """Gives events to an engine, and performs the effects that the engine returns.
 
-    `Context` acts through its public methods, and so does `RuleContext` (see `rule_context.Host`).
-
-    Args:
-        engine: The engine to run.
-        loop: The event loop on which everything happens.
-        settings: Module's name → the module's settings.
-        seed: The seed of the random numbers that rules use.
-        stop: Called when a rule asks the context to end, or when the engine fails.
-        hooks: Functions that observe the context.
-        journal: Called with each event before the engine takes it, and with `Taken` before effects are taken.
+    `Context` acts through its public methods, and so does `RuleContext` (see `rule_context.Host`). The runner calls `stop`
+    when a rule asks the context to end, or when the engine fails. It calls `journal` with each event before the engine
+    takes it, and with `Taken` before effects are taken.
     """
 
     def __init__(

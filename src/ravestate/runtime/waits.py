@@ -13,10 +13,8 @@ from ravestate.engine.engine import Engine
 class Waits:
     """The tasks that wait until one engine reaches a certain state.
 
-    Args:
-        engine: The engine.
-        is_busy: A function that returns whether some effects have not been performed yet.
-        schedule: A function that makes the loop perform effects, and call `check` afterwards.
+    While `is_busy` returns true, some effects have not been performed yet; `schedule` makes the loop perform effects, and
+    call `check` afterwards.
     """
 
     def __init__(self, engine: Engine, is_busy: Callable[[], bool], schedule: Callable[[], None]) -> None:

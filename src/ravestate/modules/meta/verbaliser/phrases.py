@@ -65,16 +65,12 @@ class PhraseBook:
     """
 
     def __init__(
-        self,
-        phrases: Mapping[str, Mapping[str, Sequence[str]]],
-        *,
-        language: str = "en",
-        default_language: str = "en",
+        self, phrases: Mapping[str, Mapping[str, Sequence[str]]], *, language: str = "en", default_language: str = "en"
     ) -> None:
-        """Make a book from texts.
+        """Make a book from texts: intent → language → texts.
 
         Args:
-            phrases: Intent → language → texts.
+            phrases: The texts.
             language: The language to speak. If ``de-AT`` has no phrase, ``de`` is next, then the default language.
             default_language: The language for intents without phrases in `language`.
 
@@ -89,19 +85,10 @@ class PhraseBook:
         }
 
     @classmethod
-    def load(
-        cls,
-        sources: Iterable[Source],
-        language: str = "en",
-        *,
-        default_language: str = "en",
-    ) -> PhraseBook:
+    def load(cls, sources: Iterable[Source], language: str = "en", *, default_language: str = "en") -> PhraseBook:
         """Return a book of the phrases in YAML files, read in the given order; for their format, see this file's start.
 
-        Args:
-            sources: Paths, or files in packages as ``importlib.resources`` gives them.
-            language: As for the class.
-            default_language: As for the class; also the language of phrases without a language in the files.
+        Phrases without a language in the files are in the default language.
 
         Raises:
             DeclarationError: A file is invalid; the message names file and line.
@@ -185,8 +172,6 @@ class PhraseBook:
         values = {name: str(given[name]) for name in chosen.parameters}
         return Phrase(_begun(chosen.text, chosen.text.format_map(values)), chosen.text)
 
-    # ------------------------------------------------------------------------------- internals
-
     def _merge(self, name: str, root: yaml.Node | None) -> None:
         if root is None:
             return
@@ -257,9 +242,6 @@ def _template(text: str) -> Template:
     return Template(text, frozenset(names))
 
 
-# ------------------------------------------------------------------------------------- YAML
-
-
 def _added(name: str, node: yaml.Node) -> bool:
     tag = str(node.tag)
     if tag.startswith("!") and tag != "!add":
@@ -283,9 +265,6 @@ def _entries(name: str, node: yaml.Node, meaning: str) -> Iterator[tuple[yaml.No
 
 def _text_of(name: str, node: yaml.Node, meaning: str) -> str:
     if kind_of(node) != "scalar":
-        raise fault(
-            name,
-            node,
-            f"{meaning}, and this is a {kind_of(node)}; put quotes around a text that has : or begins with braces",
-        )
+        hint = "put quotes around a text that has : or begins with braces"
+        raise fault(name, node, f"{meaning}, and this is a {kind_of(node)}; {hint}")
     return str(node.value)

@@ -9,7 +9,7 @@ import functools
 import socket
 import sys
 from collections.abc import Callable, Generator, Iterable, Mapping
-from types import MappingProxyType, TracebackType
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, cast
 from urllib.parse import quote
 
@@ -135,9 +135,7 @@ class Server:
         self._saved.enter_context(low_latency())
         return self
 
-    async def __aexit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    async def __aexit__(self, *_: object) -> None:
         """End the conversations in order, and stop the server."""
         assert self._uvicorn is not None and self._task is not None  # set by `__aenter__`
         with self._saved:
