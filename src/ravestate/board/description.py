@@ -139,17 +139,7 @@ class Description:
 
 
 def describe(policy: Policy) -> Description:
-    """Return the description of a policy. A hundred rules take milliseconds, so describe each policy once.
-
-    Example:
-        >>> import ravestate as rs
-        >>> lamp = rs.Module("lamp")
-        >>> lit = lamp.flag("lit")
-        >>> @lamp.rule(when=rs.startup, writes=lit)
-        ... def light(ctx): ...
-        >>> describe(rs.compile(lamp)).rules[0].raises
-        ('lamp:lit:changed', 'lamp:lit:true', 'lamp:lit:false')
-    """
+    """Return the description of a policy. A hundred rules take milliseconds, so describe each policy once."""
     readers: _Users = {}
     writers: _Users = {}
     for name, rule in policy.rules.items():

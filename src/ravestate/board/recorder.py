@@ -63,10 +63,6 @@ class IdleShare:
 
     The processor time of all threads counts as busy. Time in which this thread waited for a processor counts as busy,
     too, where the system measures it (Linux).
-
-    Example:
-        >>> 0.0 <= IdleShare().share() <= 1.0
-        True
     """
 
     def __init__(self) -> None:

@@ -57,13 +57,7 @@ else:
 
 
 def data_of(record: Record | Gap) -> TraceRecord:
-    """Return a record as plain data for JSON.
-
-    Example:
-        >>> from ravestate.engine.trace import Merged
-        >>> data_of(Merged(1.5, 3, 2))
-        {'kind': 'merged', 'time': 1.5, 'group': 3, 'into': 2}
-    """
+    """Return a record as plain data for JSON."""
     return _WRITERS[type(record)](record)
 
 

@@ -12,12 +12,7 @@ CORE = HERE + "core.py"  # the only file in this folder that declares signals
 
 
 def spelt(name: str, home: str = "") -> str:
-    """Return a qualified name as Python code in the file of the module `home`, whose own names are plain variables.
-
-    Example:
-        >>> spelt("rawio:input:changed", "guide"), spelt("guide:face", "guide"), spelt("core:error", "guide")
-        ('rawio.input.changed', 'face', 'rs.error')
-    """
+    """Return a qualified name as Python code in the file of the module `home`, whose own names are plain variables."""
     parts = name.split(":")
     if parts[0] == "core":
         parts[0] = "rs"
@@ -51,12 +46,7 @@ def said(exception: BaseException) -> str:
 
 
 def cut(text: str, length: int = LENGTH) -> str:
-    """Return the text, shortened to `length` characters if it is longer; a shortened text ends in three dots.
-
-    Example:
-        >>> cut("a long story", 9), cut("short", 9)
-        ('a long...', 'short')
-    """
+    """Return the text, shortened to `length` characters if it is longer; a shortened text ends in three dots."""
     return text if len(text) <= length else text[: length - 3] + "..."
 
 
@@ -69,12 +59,7 @@ SHOWN = 8  # the maximum number of names that a list shows
 
 
 def few(names: Iterable[str]) -> str:
-    """Join names with commas, each name once; after the first eight, add how many more there are.
-
-    Example:
-        >>> few(["m:a", "m:b", "m:a"]), few(f"m:r{number}" for number in range(100))
-        ('m:a, m:b', 'm:r0, m:r1, m:r2, m:r3, m:r4, m:r5, m:r6, m:r7 and 92 more')
-    """
+    """Join names with commas, each name once; after the first eight, add how many more there are."""
     found = list(dict.fromkeys(names))
     more = len(found) - SHOWN
     if more <= 1:  # one more name is as short as "and 1 more"

@@ -33,16 +33,6 @@ def draw(policy: Policy, format: str = "svg") -> str:
 
     Raises:
         ValueError: The format is unknown.
-
-    Example:
-        >>> from ravestate.declare.module import Module
-        >>> lamp = Module("lamp")
-        >>> lit = lamp.flag("lit")
-        >>> @lamp.rule(when=lit.true, emits=lamp.signal("bright"))
-        ... def shine(ctx): ...
-        >>> from ravestate.policy.compile import compile_policy
-        >>> print(draw(compile_policy(lamp), "mermaid").splitlines()[0])
-        flowchart LR
     """
     writer = FORMATS.get(format)
     if writer is None:

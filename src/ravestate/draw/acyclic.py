@@ -36,10 +36,6 @@ def topological(after: Sequence[Sequence[int]]) -> list[int]:
 
     Args:
         after: Vertex → the vertices to which its arcs lead.
-
-    Example:
-        >>> topological([[2], [0], []])
-        [1, 0, 2]
     """
     waiting = Counter(v for ahead in after for v in ahead)
     order = [v for v in range(len(after)) if not waiting[v]]

@@ -47,12 +47,7 @@ def fit_to_screen(ranks: Sequence[int], arcs: Sequence[Arc], extent: Callable[[S
 
 
 def bounded_layers(ranks: Sequence[int], arcs: Sequence[Arc], most: int) -> list[int]:
-    """Return layers of at most `most` vertices; no vertex moves to an earlier layer than in `ranks`.
-
-    Example:
-        >>> bounded_layers([0, 1, 1, 1, 2], [(0, 1, 1, 1), (0, 2, 1, 1), (0, 3, 1, 1), (3, 4, 1, 1)], most=2)
-        [0, 1, 2, 1, 2]
-    """
+    """Return layers of at most `most` vertices; no vertex moves to an earlier layer than in `ranks`."""
     count = len(ranks)
     after: list[list[tuple[int, int]]] = [[] for _ in range(count)]
     waiting = [0] * count

@@ -25,11 +25,6 @@ def fold(diagram: Diagram, unfolded: Collection[str] = ()) -> Diagram:
     Args:
         diagram: The diagram without folds.
         unfolded: Names of the modules that keep their own nodes.
-
-    Example:
-        >>> whole = Diagram((Node("s", "slot", "s", "m"), Node("r", "rule", "r", "n")), (Edge("s", "r", "reads"),))
-        >>> [node.id for node in fold(whole, {"n"}).nodes]
-        ['module m', 'r']
     """
     home = _modules(diagram)
     rules = Counter(home[node.id] for node in diagram.nodes if node.kind == "rule")

@@ -49,10 +49,6 @@ class Diagram:
 
     Raises:
         ValueError: Two nodes share an id, an edge has an unknown end, or an edge joins a node to itself.
-
-    Example:
-        >>> Diagram((Node("a", "slot", "a"), Node("b", "signal", "b")), (Edge("a", "b", "emits"),)).edges[0].kind
-        'emits'
     """
 
     nodes: tuple[Node, ...]

@@ -29,13 +29,6 @@ def normal_form(condition: Condition) -> tuple[Conjunction, ...]:
 
     Raises:
         DeclarationError: The condition has more than `MAX_CLAUSES` conjunctions, or a part that is not a condition.
-
-    Example:
-        >>> import ravestate as rs
-        >>> demo = rs.Module("demo")
-        >>> a, b, c = (demo.signal(name) for name in "abc")
-        >>> [conjunction.constraints for conjunction in normal_form(a & (b | c))]
-        [(demo:a, demo:b), (demo:a, demo:c)]
     """
     parts = list(_inner_first(condition))
     _check(condition, parts)
