@@ -53,13 +53,9 @@ def routes(
 ) -> list[BaseRoute]:
     """Return the routes below ``/board``, for ``webio.app(agent, routes(), inside=INSIDE)``.
 
-    The board is for the agent's developers: anybody with access to the page can inspect every conversation and act on it.
-    Sites that may embed the chat may neither embed the board nor connect to it.
-
-    Args:
-        recorders: The recorders of a `RecordedAgent`. Without them, recording starts when a board opens.
-        recording: The recording to show, unless a page asks for a conversation; None to show conversations only.
-        title: The agent's name on the page; None for the name that the agent gives itself.
+    The board is for the agent's developers: anybody with access to the page can inspect every conversation and act on
+    it. Sites that may embed the chat may neither embed the board nor connect to it. Without `recorders`, recording
+    starts when a board opens. Unless a page asks for a conversation, the board shows the `recording`, if there is one.
     """
     known = Recorders() if recorders is None else recorders
     recordings = Recordings(recording)

@@ -86,13 +86,6 @@ class Attempt:
 class History:
     """A trace, indexed for questions about the causal group of one spike.
 
-    Args:
-        records: The records of the trace, in order.
-        spike: The number of a spike in the trace.
-
-    Attributes:
-        raising: The pairs (run's number, signal) of all signals that runs raised.
-
     Raises:
         LookupError: The trace does not contain the spike, or not any more.
     """
@@ -154,9 +147,8 @@ class History:
     def answered(self, hears: Mapping[str, Sequence[Collection[str]]]) -> Attempt | None:
         """Return the first run that answered the cause of the group; None if no run of the given rules did.
 
-        Args:
-            hears: Rule to consider → for each of its clauses, the signals that the clause consumes. A detached
-                constraint consumes none (L19).
+        For each rule to consider, `hears` has the signals that its clauses consume. A detached constraint consumes none
+        (L19).
         """
 
         def is_taken(attempt: Attempt, signals: Collection[str]) -> bool:

@@ -30,19 +30,9 @@ _Items = Iterable[tuple[Iterable[str], object]]  # the items of a container, eac
 def repr_chunks(value: object, around: tuple[int, ...] = ()) -> Iterator[str]:
     """Yield a ``repr`` in chunks: built-in containers, records and texts bit by bit, other values at once.
 
-    Long and deep values are cut, and a value within itself is left out. Containers without brackets of their own read like
-    ``deque([1, 2])`` or ``Counter({'a': 1})``. A subclass of a built-in container shows its items; its own methods are not
-    called.
-
-    Args:
-        value: The value.
-        around: The `id` of each container around the value.
-
-    Example:
-        >>> "".join(repr_chunks(({1: {"Ada"}}, b"x")))
-        "({1: {'Ada'}}, b'x')"
-        >>> next(repr_chunks(set(range(1_000_000))))
-        '{'
+    Long and deep values are cut, and a value within itself is left out: `around` has the `id` of each container around
+    the value. Containers without brackets of their own read like ``deque([1, 2])`` or ``Counter({'a': 1})``. A subclass
+    of a built-in container shows its items; its own methods are not called.
     """
     made_by: Any = type(value).__repr__
     if made_by in TEXTS:
@@ -67,7 +57,7 @@ def repr_chunks(value: object, around: tuple[int, ...] = ()) -> Iterator[str]:
 
 
 def _parts(value: Any, made_by: Any, around: tuple[int, ...]) -> tuple[str, _Items, str] | None:
-    """Return the parts of a value's ``repr``, which `made_by` determines; None if it has no parts, or none are known."""
+    """Return the parts of a value's ``repr``, which `made_by` determines; None without parts, or if none are known."""
     own = cast("type[Any]", type(value))
     kind = BUILT_IN.get(made_by)
     if kind is not None:

@@ -43,12 +43,7 @@ SURROGATE = re.compile(r"\\u[dD][89a-fA-F]")  # a pattern for one half of a surr
 
 @dataclass(frozen=True, slots=True)
 class Recording:
-    """A recorded trace and its policy.
-
-    Attributes:
-        title: The agent's name.
-        whole: Whether the trace begins with the start of the context.
-    """
+    """A recorded trace and its policy; it is `whole` if the trace begins with the start of the context."""
 
     title: str
     description: Description
@@ -91,11 +86,7 @@ class _File(pydantic.BaseModel):
 def save_trace(
     path: Path, policy: Policy, records: Iterable[Record | Gap], *, title: str = "Ravestate", whole: bool = True
 ) -> None:
-    """Write a trace to a file for the board, for example ``context.trace`` of a context with ``trace=True``.
-
-    Raises:
-        OSError: The file cannot be written.
-    """
+    """Write a trace to a file for the board, for example ``context.trace`` of a context with ``trace=True``."""
     data = {
         "format": FORMAT,
         "v": VERSION,

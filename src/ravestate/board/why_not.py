@@ -36,13 +36,7 @@ def why_not(
 ) -> WhyNot:
     """Return an explanation of why a rule did not fire for the cause of a spike, or how it did.
 
-    Args:
-        records: The records of the trace.
-        description: The description of the policy.
-        rule: The rule's name.
-        spike: The number of a spike in the trace, for example one of an input.
-        opens: A function that evaluates the slot predicates of a live policy; None for a recording.
-        whole: Whether the trace reaches back to the start of the context.
+    For a live policy, `opens` evaluates its slot predicates. The answer may be incomplete unless the trace is `whole`.
 
     Raises:
         LookupError: The policy has no such rule, or the trace no such spike.

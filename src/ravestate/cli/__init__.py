@@ -32,14 +32,7 @@ COMMANDS = {
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run the command line.
-
-    Args:
-        argv: The arguments of the command; by default those of the process.
-
-    Returns:
-        The exit code.
-    """
+    """Run the command line (by default with the arguments of the process), and return the exit code."""
     from ravestate import __version__
 
     parser = argparse.ArgumentParser(

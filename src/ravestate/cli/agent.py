@@ -38,12 +38,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def load_agent(options: argparse.Namespace, first: Iterable[str] = (), *, announce: bool = False) -> AgentSpec:
-    """Return the agent that parsed arguments name.
+    """Return the agent that parsed arguments name, together with the modules `first`.
 
-    Args:
-        options: The parsed arguments.
-        first: The names of modules that the agent has in any case.
-        announce: Whether to print first which Python code the agent files run. Commands that only inspect it do so.
+    With `announce`, print which Python code the agent files run. Commands that only inspect the agent do so.
 
     Raises:
         UsageError: A module, file or setting is wrong. The message lists all mistakes of agent files and of ``--set``.

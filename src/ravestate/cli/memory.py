@@ -230,11 +230,7 @@ def _everything(memory: Memory) -> list[Node]:
 
 
 def _chosen(memory: Memory, which: str) -> Node:
-    """Return the only node with this id or this name; upper and lower case do not matter in names.
-
-    Raises:
-        UsageError: No node matches, or several nodes do.
-    """
+    """Return the only node with this id or this name; upper and lower case do not matter in names."""
     node = memory.get(which).result()
     if node is not None:
         return node

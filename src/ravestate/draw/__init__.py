@@ -25,15 +25,7 @@ FORMATS: dict[str, Callable[[Diagram], str]] = {"svg": svg, "dot": dot, "mermaid
 
 
 def draw(policy: Policy, format: str = "svg") -> str:
-    """Return the Signal-Rule-Slot diagram of a policy as text.
-
-    Args:
-        policy: The compiled policy.
-        format: ``"svg"``, ``"dot"`` or ``"mermaid"``.
-
-    Raises:
-        ValueError: The format is unknown.
-    """
+    """Return the diagram of a policy in one of `FORMATS`; for any other format, raise a ValueError."""
     writer = FORMATS.get(format)
     if writer is None:
         raise ValueError(f"diagram format {format!r} is unknown: write one of {', '.join(map(repr, FORMATS))}")

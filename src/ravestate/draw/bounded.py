@@ -25,10 +25,7 @@ _SPLITS = 16  # the maximum number of parts into which the largest layer is spli
 def fit_to_screen(ranks: Sequence[int], arcs: Sequence[Arc], extent: Callable[[Sequence[int]], Extent]) -> list[int]:
     """Return layers that suit a landscape screen: `ranks`, or bounded layers if the picture would be too tall.
 
-    Args:
-        ranks: The layer of each vertex, from 0.
-        arcs: The constraints on the layers: each arc spans at least its length.
-        extent: A function that estimates the size of the picture for given layers.
+    The function `extent` estimates the size of the picture for given layers.
     """
     best, (width, height) = list(ranks), extent(ranks)
     if height <= _SCREEN or width >= _TALLEST * height:

@@ -18,11 +18,7 @@ from ravestate.policy.clauses import normal_form
 
 
 def build(rules: Iterable[Rule[Any, Any]]) -> Diagram:
-    """Return the diagram of the given rules, with nodes in the order of the rules.
-
-    Raises:
-        DeclarationError: A condition has too many alternatives.
-    """
+    """Return the diagram of the given rules, with nodes in the order of the rules."""
     builder = _Builder()
     for rule in rules:
         builder.rule(rule)

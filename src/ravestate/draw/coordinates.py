@@ -19,11 +19,9 @@ _AHEAD = 0.15  # weight of neighbours ahead of a sweep, relative to those behind
 
 
 def assign_coordinates(graph: LayeredGraph, room: float | None = None) -> list[float]:
-    """Return the vertical middle of each vertex in pixels.
+    """Return the vertical middle of each vertex in pixels, for a graph with ordered layers and placed ports.
 
-    Args:
-        graph: A graph with ordered layers and placed ports.
-        room: The maximum height of the picture in pixels, unless its largest layer needs more; ``None`` for any height.
+    The picture is at most `room` pixels high, unless its largest layer needs more.
     """
     gaps: list[list[float]] = []
     middle = [0.0] * len(graph.layer)

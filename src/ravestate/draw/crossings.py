@@ -20,10 +20,8 @@ _PATIENCE = 4  # sweeps without improvement before the search ends
 def minimise_crossings(graph: LayeredGraph, *, centred: bool = False) -> None:
     """Reorder the layers of `graph` in place.
 
-    Args:
-        graph: Any layered graph.
-        centred: Whether the initial order puts dummies in the middle of a vertex's neighbours, instead of in order of creation.
-            A hyperedge through many layers then runs straight, with branches to both sides.
+    If `centred`, the initial order puts dummies in the middle of a vertex's neighbours, instead of in order of
+    creation. A hyperedge through many layers then runs straight, with branches to both sides.
     """
     before, after = graph.neighbours()
     if centred:
@@ -42,12 +40,7 @@ def minimise_crossings(graph: LayeredGraph, *, centred: bool = False) -> None:
 
 
 def count_crossings(order: Sequence[Sequence[int]], after: Sequence[Sequence[int]]) -> int:
-    """Return the number of crossing pairs of segments.
-
-    Args:
-        order: The vertices of each layer.
-        after: Vertex → its neighbours in the next layer.
-    """
+    """Return the number of crossing pairs of segments; `after` has each vertex's neighbours in the next layer."""
     total = 0
     for layer, following in pairwise(order):
         place = {v: i for i, v in enumerate(following)}

@@ -180,7 +180,7 @@ class _Builder:
 
 
 def place_ports(graph: LayeredGraph) -> None:
-    """Place the ports of each side in the order of the vertices to which their lines lead; the layers must be in order."""
+    """Place the ports of each side in the order of the vertices to which they lead. The layers must be in order."""
     place = places(graph.order)
     leads: list[list[int]] = [[] for _ in graph.ports]
     for low, high in graph.segments:

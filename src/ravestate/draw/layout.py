@@ -76,13 +76,7 @@ class Layout:
 
 
 def lay_out(diagram: Diagram, nodes: Mapping[str, Size], labels: Sequence[Size | None]) -> Layout:
-    """Return the layout of a diagram.
-
-    Args:
-        diagram: The diagram.
-        nodes: Node's id → the node's size.
-        labels: The size of each edge's label; None if the edge has no label.
-    """
+    """Return the layout of a diagram, given the sizes of the nodes by their ids, and of each edge's label if any."""
     boxes: dict[str, Box] = {}
     lines: list[tuple[Point, ...]] = [()] * len(diagram.edges)
     places: list[Box | None] = [None] * len(diagram.edges)

@@ -67,7 +67,7 @@ def _longest_paths(count: int, arcs: Sequence[Arc]) -> list[int]:
 
 
 def _tight_tree(rank: list[int], arcs: Sequence[Arc]) -> list[int]:
-    """Return a spanning tree of tight arcs. For each new arc, the whole tree shifts in `rank` until the arc is tight."""
+    """Return a spanning tree of tight arcs. For each new arc, the tree shifts in `rank` until the arc is tight."""
     tree: list[int] = []
     inside = {0}
     while len(inside) < len(rank):
@@ -110,7 +110,7 @@ def _worst_cut(arcs: Sequence[Arc], tree: Sequence[int], surplus: Sequence[int])
 
 
 def _balanced(rank: list[int], arcs: Sequence[Arc], surplus: Sequence[int]) -> list[int]:
-    """Return the ranks from 0 on, after each vertex with several equally good ranks moved to the smallest of these layers."""
+    """Return the ranks from 0 on; a vertex with several equally good ranks moves to the smallest of these layers."""
     least = min(rank)
     rank = [r - least for r in rank]
     size = [rank.count(r) for r in range(max(rank) + 1)]

@@ -19,11 +19,9 @@ _SENTENCES = 60  # the maximum number of edges in the description
 
 
 def svg(diagram: Diagram) -> str:
-    """Return a diagram as SVG. The same diagram gives the same bytes.
+    """Return a diagram as SVG, to be encoded as UTF-8. The same diagram gives the same bytes.
 
-    Returns:
-        An XML document, to be encoded as UTF-8. It has a title and a description for screen readers, and a title for each
-        node and edge.
+    The document has a title and a description for screen readers, and a title for each node and edge.
     """
     layout = lay_out(diagram, {n.id: node_size(n) for n in diagram.nodes}, [label_size(e.label) for e in diagram.edges])
     prefix = "srs-" + hashlib.sha256(repr(diagram).encode("utf-8", "backslashreplace")).hexdigest()[:8]

@@ -27,8 +27,7 @@ class Conjunction:
 def normal_form(condition: Condition) -> tuple[Conjunction, ...]:
     """Bring a condition of any depth into disjunctive normal form, in declaration order, without duplicates.
 
-    Raises:
-        DeclarationError: The condition has more than `MAX_CLAUSES` conjunctions, or a part that is not a condition.
+    If it has more than `MAX_CLAUSES` conjunctions, or a part that is not a condition, raise a `DeclarationError`.
     """
     parts = list(_inner_first(condition))
     _check(condition, parts)

@@ -114,9 +114,7 @@ def check_reachable(causes: Causes, faults: list[str]) -> None:
 def in_order(given: Iterable[Module], faults: list[str]) -> list[Module]:
     """Return the given modules and all that they require, in order.
 
-    Args:
-        given: The modules in the user's order.
-        faults: The list to which this function adds faults: cycles of `requires`, and names that two modules share.
+    Cycles of `requires`, and names that two modules share, go to `faults`.
     """
     ordered: dict[Module, None] = {core: None}
     names = {core.name: core}
@@ -157,8 +155,7 @@ NO_INFORMATION = 1e-9
 def assign_utilities(signals: Sequence[SignalPlan], rules: Sequence[RulePlan], causes: Causes) -> Completion:
     """Set the utility, the base utility and the least pathway of every clause, and mark the cyclic clauses.
 
-    Returns:
-        The graph in which clauses are completed; `Pathways` lists their other pathways with it.
+    Return the graph in which clauses are completed; `Pathways` lists their other pathways with it.
     """
     completion = Completion(signals, rules, causes)
     least = Least(completion)

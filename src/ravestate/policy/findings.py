@@ -48,10 +48,7 @@ class Finding:
 def find_all(policy: Policy, source: Source | None = None) -> tuple[Finding, ...]:
     """Return all findings, those that make a rule fail at run time first. A rule has at most one finding of each kind.
 
-    Args:
-        policy: The policy.
-        source: A function that returns the source of a rule's function, such as ``inspect.getsource``. Without it, the
-            findings that need source code are left out.
+    Without `source`, which returns the source of a function, the findings that need source code are left out.
     """
     return (
         *(_in_source(policy, source) if source else ()),

@@ -24,9 +24,9 @@ log = logging.getLogger("ravestate")
 class AsyncRules:
     """Starts, cancels and ends the async rules of one context.
 
-    It calls `finish` with a run, its result and its exception when the run's function has ended; `give_up` with a run and
-    the reason, if the run does not end within `GRACE` seconds of its cancellation; and `proceed` when the tasks in
-    `cleaning` have ended, or when their turns are over.
+    It calls `finish` with a run, its result and its exception when the run's function has ended. If the run does not end
+    within `GRACE` seconds of its cancellation, it calls `give_up` with the run and the reason. It calls `proceed` when the
+    tasks in `cleaning` have ended, or when their turns are over.
     """
 
     def __init__(

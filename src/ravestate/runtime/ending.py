@@ -14,7 +14,7 @@ from ravestate.errors import RuleError
 
 
 def ending(run: int, rule: Rule[Any, Any], outcome: Any, raised: bool) -> Finish:
-    """Return the event that reports the end of a run to the engine: its function returned, or `raised`, the `outcome`."""
+    """Return the event that reports the end of a run: its function returned, or `raised`, the `outcome`."""
     if outcome is None:
         return Finish(run, "done")
     if isinstance(outcome, Resign):

@@ -45,9 +45,9 @@ log = logging.getLogger("ravestate")
 class Runner:
     """Gives events to an engine, and performs the effects that the engine returns.
 
-    `Context` acts through its public methods, and so does `RuleContext` (see `rule_context.Host`). The runner calls `stop`
-    when a rule asks the context to end, or when the engine fails. It calls `journal` with each event before the engine
-    takes it, and with `Taken` before effects are taken.
+    `Context` acts through its public methods, and so does `RuleContext` (see `rule_context.Host`). The runner calls
+    `stop` when a rule asks the context to end, or when the engine fails. It calls `journal` with each event before the
+    engine takes it, and with `Taken` before effects are taken.
     """
 
     def __init__(
@@ -126,12 +126,7 @@ class Runner:
                 log.exception("refused a request from another thread: %s", short(event))
 
     def add_rule(self, rule: Rule[Any, Any]) -> None:
-        """Add a rule to the engine's policy. Any thread may call this; the loop makes the new policy.
-
-        Raises:
-            DeclarationErrors: The rule does not fit the policy.
-            RunEnded: The context has ended.
-        """
+        """Add a rule to the engine's policy. Any thread may call this; the loop makes the new policy."""
         if threading.get_ident() == self._thread:
             self.receive(AddRule(self.policy.with_rule(rule, self.settings)))
             return

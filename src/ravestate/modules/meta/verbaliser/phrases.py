@@ -111,11 +111,7 @@ class PhraseBook:
         return tuple(sorted({tag for languages in self._phrases.values() for tag in languages}))
 
     def templates(self, intent: str, language: str | None = None) -> tuple[Template, ...]:
-        """Return the phrases for `intent` in `language` (the book's by default), or in the first fallback that has any.
-
-        Raises:
-            RuleError: There is no such intent, or it has no phrases in these languages.
-        """
+        """Return the phrases for `intent` in `language` (the book's by default), or in the first fallback with phrases."""
         languages = self._phrases.get(intent)
         if languages is None:
             known = ", ".join(self._phrases) or "none"
@@ -145,14 +141,8 @@ class PhraseBook:
     ) -> Phrase:
         """Choose a phrase at random, and fill in its parameters.
 
-        A phrase is eligible if all its parameters have values. If it begins with a parameter, it gets a capital letter.
-
-        Args:
-            intent: The intent's name.
-            parameters: Name of a parameter → its value; None counts as missing.
-            rng: A random number generator; with the same state, it gives the same phrase.
-            last: The text of the intent's last template; it is not chosen again if another is eligible.
-            language: The language to speak, instead of the book's.
+        A phrase is eligible if all its parameters have values; None counts as missing. If it begins with a parameter,
+        it gets a capital letter. The template `last` is not chosen again if another is eligible.
 
         Raises:
             RuleError: There is no such intent or language, or each phrase lacks a parameter.

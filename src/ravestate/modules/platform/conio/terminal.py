@@ -51,8 +51,8 @@ class Terminal:
     ) -> None:
         """Make a console that has not read or written anything yet.
 
-        The file `history` keeps typed lines; without a writable file, they are kept for this session only. Each key that
-        changes the line calls `on_key`, unless the line is empty afterwards.
+        The file `history` keeps typed lines; without a writable file, they are kept for this session only. Each key
+        that changes the line calls `on_key`, unless the line is empty afterwards.
         """
         self._prompt = prompt
         self._streamed = ""

@@ -34,9 +34,6 @@ class Access:
     A page that only this machine can reach needs no token, so any site in this machine's browser could talk to it. Two
     checks prevent that. Against DNS rebinding, the server answers only to names of this machine. It accepts only its
     own origin and those in the settings. All methods expect the names of headers in lower case.
-
-    Args:
-        settings: The settings of ``webio``.
     """
 
     def __init__(self, settings: Settings) -> None:

@@ -41,11 +41,7 @@ log = logging.getLogger("ravestate.webio")
 
 
 def make_app(agent: Agent, routes: Iterable[BaseRoute] = (), inside: str | None = None) -> Starlette:
-    """Return the application of `webio.app`, with ``app.state.sessions`` and ``app.state.access``.
-
-    Raises:
-        PlatformError: The agent lacks ``webio``, or has a platform for a single user.
-    """
+    """Return the application of `webio.app`, with ``app.state.sessions`` and ``app.state.access``."""
     settings = _settings_of(agent)
     access = Access(settings)
     sessions = Sessions(agent, limit=settings.sessions, keep=settings.keep)

@@ -76,11 +76,7 @@ def low_latency() -> Generator[None]:
 
 
 class Server:
-    """Serves the page of an agent: ``async with Server(agent) as server``.
-
-    Args:
-        agent: An agent with ``webio`` among its modules; its settings say where to listen.
-        routes, inside: As for `webio.app`.
+    """Serves the page of an agent, as its settings say: ``async with Server(agent) as server``. See also `webio.app`.
 
     Raises:
         PlatformError: Other machines can reach the address, and there is no token; or as for `make_app`.
@@ -100,11 +96,7 @@ class Server:
         self._saved = contextlib.ExitStack()
 
     async def __aenter__(self) -> Server:
-        """Start to listen.
-
-        Raises:
-            PlatformError: The port is in use, or the address is not one of this machine.
-        """
+        """Start to listen, or raise a `PlatformError`."""
         settings = self._settings
         self._socket = _listen(settings.host, settings.port)
         limits = functools.partial(LimitedHTTP, per_address=settings.per_address, most=_most(2 * settings.sessions))
@@ -164,12 +156,9 @@ class Server:
         return f"{self.address}{path}{secret}"
 
     def announce(self, pages: Mapping[str, str] = MappingProxyType({"agent": ""})) -> None:
-        """Print the address of each page.
+        """Print the address of each page, given its path by its name.
 
         The token appears only on a terminal: other outputs are often kept in files that others can read.
-
-        Args:
-            pages: Name of a page → its path.
         """
 
         def lines(address: Callable[[str], str]) -> str:

@@ -187,7 +187,7 @@ class Session:
         return self._left.is_set()
 
     def hear(self, id: str, text: str) -> bool:
-        """Take the visitor's words, which `heard_text` has checked. Words that came before under the same `id` are ignored.
+        """Take the visitor's words, checked by `heard_text`. Words that came before under the same `id` are ignored.
 
         Returns:
             Whether the session took the words, now or before; False if the session is `leaving`.

@@ -16,13 +16,10 @@ ONLOOKERS = 8  # the maximum number of windows that may show one conversation at
 
 
 class Sessions:
-    """All conversations with one agent.
+    """All conversations with one agent, which makes a context for each.
 
-    Args:
-        agent: The agent; it makes a context for each conversation.
-        limit: The maximum number of conversations. Beyond it, a new conversation ends one that has no window. If all
-            have windows, the server refuses the new one.
-        keep: The seconds for which a conversation without a window is kept.
+    Beyond `limit`, a new conversation ends one that has no window. If all have windows, the server refuses the new one.
+    A conversation without a window is kept for `keep` seconds.
     """
 
     def __init__(self, agent: Agent, *, limit: int, keep: float) -> None:
@@ -46,11 +43,7 @@ class Sessions:
         return self._sessions.get(id)
 
     async def open(self, name: str | None = None) -> Session:
-        """Begin a conversation with a visitor who may have told their name.
-
-        Raises:
-            ProtocolError: There are too many conversations already, or the agent is being switched off.
-        """
+        """Begin a conversation with a visitor. If there are too many, or the agent is switched off, raise a `ProtocolError`."""
         if len(self._tasks) >= self._limit:
             await self._make_room()
         if self._closed:
