@@ -118,11 +118,3 @@ def test_the_last_user_ends_it(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) 
     other = llama_process.take(key)
     assert other is not first
     llama_process.drop(other)
-
-
-def test_leaving_python_ends_it(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    process = llama_process.take(child(monkeypatch, tmp_path, READY).key)
-    process.start()
-    llama_process._close_all()
-    assert not process.alive
-    assert not llama_process._processes

@@ -1,9 +1,8 @@
 """The process of a model: llama.cpp's server on the loopback interface.
 
-`llama_process` runs it as a separate file, so it imports nothing from Ravestate. It reads its configuration as one
-line of JSON from standard input, and writes lines of JSON: ``{"progress": 0.5}``,
-``{"ready": "http://127.0.0.1:40123"}`` or ``{"error": "..."}``. It ends when standard input ends, and so with its
-parent.
+`llama_process` runs this file by itself, so it imports nothing from Ravestate. It reads its configuration as one line of
+JSON, and writes lines of JSON: ``{"progress": 0.5}``, ``{"ready": "http://127.0.0.1:40123"}`` or ``{"error": "..."}``.
+It ends when standard input ends, and so with its parent.
 """
 
 from __future__ import annotations
@@ -15,8 +14,6 @@ import signal
 import sys
 import time
 from typing import Any
-
-_STEP = 4 << 20  # bytes
 
 
 def _main() -> None:
@@ -32,8 +29,11 @@ def _main() -> None:
     try:
         server = _load(config, say)
     except BaseException as error:
-        if isinstance(error, RuntimeError):
-            _await_reason()
+        for _ in range(100 if isinstance(error, RuntimeError) else 0):  # llama.cpp's logging thread would be cut off
+            before = os.fstat(2).st_size
+            time.sleep(0.02)
+            if before and os.fstat(2).st_size == before:
+                break
         say(error=f"{type(error).__name__}: {error}")
         os._exit(1)
     say(ready=server.listening_address)
@@ -42,22 +42,12 @@ def _main() -> None:
     os._exit(0)
 
 
-def _await_reason() -> None:
-    """Give llama.cpp time to log the reason: its logging thread would be cut off."""
-    for _ in range(100):
-        before = os.fstat(2).st_size
-        time.sleep(0.02)
-        if before and os.fstat(2).st_size == before:
-            return
-
-
 def _load(config: dict[str, Any], say: Any) -> Any:
-    path: str = config["path"]
     # The slow part of loading is the disk. Reading the file first shows the progress; llama.cpp then maps what is
     # in memory already.
-    size, done, shown = os.path.getsize(path), 0, 0.0
-    with open(path, "rb", buffering=0) as file:
-        while block := file.read(_STEP):
+    size, done, shown = os.path.getsize(config["path"]), 0, 0.0
+    with open(config["path"], "rb", buffering=0) as file:
+        while block := file.read(4 << 20):
             done += len(block)
             if done / size - shown >= 0.02:
                 shown = done / size
@@ -65,7 +55,7 @@ def _load(config: dict[str, Any], say: Any) -> Any:
 
     llama: Any = importlib.import_module("xllamacpp")  # it has no types
     parameters = llama.CommonParams()
-    parameters.model.path = path
+    parameters.model.path = config["path"]
     parameters.n_ctx = config["context_tokens"]
     parameters.n_parallel = config["parallel"]
     parameters.kv_unified = True
