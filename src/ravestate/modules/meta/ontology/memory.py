@@ -52,11 +52,7 @@ class Memory:
 
     @property
     def types(self) -> Types:
-        """The declared types of nodes and relations.
-
-        Raises:
-            RuleError: Memory is not open: ``await memory.opened()`` first.
-        """
+        """The declared types of nodes and relations."""
         if self._types is None:
             raise RuleError(f"memory ({self.place}) is not open: write await memory.opened() first")
         return self._types
@@ -106,11 +102,7 @@ class Memory:
         return self._do("get", lambda graph: graph.get(id))
 
     def update(self, node: Node, /, **properties: Value) -> Reply[Node]:
-        """Set properties of a node that memory has, and remove those that are None.
-
-        Raises:
-            RuleError: Memory does not have the node. For other causes, see the class.
-        """
+        """Set properties of a node that memory has, and remove those that are None."""
         return self._do("update", lambda graph: graph.update(node, properties))
 
     def relate(self, node: Node, relation: str, other: Node, /, **properties: Value) -> Reply[None]:
@@ -197,11 +189,7 @@ class Memory:
         return self._do("export", lambda graph: graph.export())
 
     def load(self, document: Mapping[str, Any], /) -> Reply[int]:
-        """Save all nodes and relations of a document from `export`, or none; return the number of nodes.
-
-        Raises:
-            RuleError: The document is invalid. For other causes, see the class.
-        """
+        """Save all nodes and relations of a document from `export`, or none; return the number of nodes."""
         return self._do("load", lambda graph: graph.load(document))
 
     def undeclared(self) -> Reply[list[str]]:

@@ -68,11 +68,7 @@ class Node:
         return default if value is None else value
 
     def __getitem__(self, name: str) -> Any:
-        """Return the value of a property.
-
-        Raises:
-            KeyError: The property has no value.
-        """
+        """Return the value of a property."""
         value = self.properties.get(name)
         if value is None:
             raise KeyError(f"{self.id} has no {name}; it has {', '.join(self.properties) or 'nothing'}")

@@ -29,13 +29,7 @@ _EXAMPLES: dict[Kind, str] = {
 
 @dataclass(frozen=True, slots=True)
 class Type:
-    """A type of nodes, with its own properties; `Types` has the inherited properties.
-
-    Args:
-        name: Letters, digits and ``_``.
-        parent: The name of its supertype; None if it has none.
-        properties: Name of one of its own properties → the property's kind.
-    """
+    """A type of nodes: its supertype, and the kinds of its own properties; `Types` has the inherited properties."""
 
     name: str
     parent: str | None = None
@@ -44,13 +38,7 @@ class Type:
 
 @dataclass(frozen=True, slots=True)
 class Relating:
-    """A kind of relation between nodes of certain types and their subtypes.
-
-    Args:
-        name: Letters, digits and ``_``.
-        ends: Pairs of a source type and a target type.
-        properties: Name of one of its properties → the property's kind.
-    """
+    """A kind of relation: its pairs of a source type and a target type, and the kinds of its properties."""
 
     name: str
     ends: frozenset[tuple[str, str]]
@@ -58,7 +46,10 @@ class Relating:
 
 
 class Types:
-    """All declared types and relations, with checks of values. ``read_types`` reads them from files."""
+    """All declared types and relations, with checks of values. ``read_types`` reads them from files.
+
+    Every method raises `RuleError` for an undeclared type, relation or property, and for a value of another kind.
+    """
 
     def __init__(self, types: Mapping[str, Type], relations: Mapping[str, Relating]) -> None:
         """Take valid types and relations: all parents and ends exist, and no type is its own ancestor."""
@@ -81,29 +72,17 @@ class Types:
         return self._relations
 
     def properties(self, type: str) -> Mapping[str, Kind]:
-        """Return name → kind for all properties of a type, inherited properties first.
-
-        Raises:
-            RuleError: There is no such type.
-        """
+        """Return name → kind for all properties of a type, inherited properties first."""
         self._check(type)
         return self._properties[type]
 
     def subtypes(self, type: str) -> tuple[str, ...]:
-        """Return the names of a type and of all its subtypes.
-
-        Raises:
-            RuleError: There is no such type.
-        """
+        """Return the names of a type and of all its subtypes."""
         self._check(type)
         return tuple(name for name in self if type in self._lines[name])
 
     def is_a(self, type: str, other: str) -> bool:
-        """Return whether a type is `other` or a subtype of it.
-
-        Raises:
-            RuleError: There is no such type.
-        """
+        """Return whether a type is `other` or a subtype of it."""
         self._check(type)
         self._check(other)
         return other in self._lines[type]
@@ -120,11 +99,7 @@ class Types:
         )
 
     def stored(self, type: str, values: Mapping[str, Value]) -> dict[str, Any]:
-        """Return a node's properties as memory stores them: dates and times become texts that sort by time.
-
-        Raises:
-            RuleError: There is no such type or property, or a value is not of its kind.
-        """
+        """Return a node's properties as memory stores them: dates and times become texts that sort by time."""
         return _stored(type, self.properties(type), values)
 
     def loaded(self, type: str, values: Mapping[str, Any]) -> dict[str, Value]:
@@ -132,11 +107,7 @@ class Types:
         return _loaded(type, self._properties[type], values)
 
     def check_relation(self, source: str, relation: str, target: str) -> None:
-        """Check that a relation may join nodes of two types.
-
-        Raises:
-            RuleError: There is no such relation between these types.
-        """
+        """Check that a relation may join nodes of two types."""
         self._check(source)
         self._check(target)
         ends = self.relating(relation).ends
@@ -145,11 +116,7 @@ class Types:
             raise RuleError(f"{relation} does not go from {source} to {target}, but {known}")
 
     def check_end(self, type: str, relation: str, *, back: bool = False) -> None:
-        """Check that nodes of a type may be the source of a relation; with `back`, its target.
-
-        Raises:
-            RuleError: There is no such type or relation, or the type has no such relation.
-        """
+        """Check that nodes of a type may be the source of a relation; with `back`, its target."""
         self._check(type)
         ends = {pair[1 if back else 0] for pair in self.relating(relation).ends}
         if not any(self.is_a(type, end) for end in ends):
@@ -158,11 +125,7 @@ class Types:
             )
 
     def relating(self, relation: str) -> Relating:
-        """Return the relation with this name.
-
-        Raises:
-            RuleError: There is no such relation.
-        """
+        """Return the relation with this name."""
         found = self._relations.get(relation)
         if found is None:
             raise RuleError(
