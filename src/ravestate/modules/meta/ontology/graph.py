@@ -148,11 +148,9 @@ class Graph:
         if keep.id == duplicate.id:
             raise RuleError(f"{keep.id} cannot be merged with itself")
         if not self._types.is_a(keep.type, duplicate.type):
-            hint = " the other way round" if self._types.is_a(duplicate.type, keep.type) else ""
-            raise RuleError(
-                f"{keep.id} cannot take over what {duplicate.id} has: a {keep.type} is not a {duplicate.type}"
-                + (f"; merge them{hint}" if hint else "")
-            )
+            hint = "; merge them the other way round" if self._types.is_a(duplicate.type, keep.type) else ""
+            problem = f"a {keep.type} is not a {duplicate.type}{hint}"
+            raise RuleError(f"{keep.id} cannot take over what {duplicate.id} has: {problem}")
         with self._store.transaction():
             kept, other = self._must_know(keep), self._must_know(duplicate)
             self._must_declare(other)
@@ -168,10 +166,8 @@ class Graph:
 
     def _take_over(self, source: Node, name: str, target: Node, values: Mapping[str, Value]) -> None:
         """Copy a relation to other nodes. If these have the relation already, its properties have priority."""
-        present: Mapping[str, Value] = {}
-        for known, had, end in self._ends(source, back=False):
-            if known == name and end.id == target.id:
-                present = had
+        ends = self._ends(source, back=False)
+        present = next((had for known, had, end in ends if (known, end.id) == (name, target.id)), dict[str, Value]())
         self._relate(source, name, target, self._types.stored_of(name, {**values, **present}))
 
     def only_about(self, node: Node) -> list[Node]:
@@ -235,10 +231,8 @@ class Graph:
 
     def export(self) -> dict[str, Any]:
         """Return all declared nodes and relations as a document."""
-        nodes = sorted(
-            (node for type in self._types for node in self._nodes(f"MATCH (n:`{type}`) RETURN n", {})),
-            key=_age,
-        )
+        every = (node for type in self._types for node in self._nodes(f"MATCH (n:`{type}`) RETURN n", {}))
+        nodes = sorted(every, key=_age)
         known = {node.id for node in nodes}
         relations = [
             Relation(node, name, other, values)
@@ -254,12 +248,8 @@ class Graph:
         with self._store.transaction():
             for node in nodes:
                 self.save(node)
-            for relation in relations:
-                self._types.check_relation(relation.source.type, relation.name, relation.target.type)
-                self._must_know(relation.source)
-                self._must_know(relation.target)
-                values = self._types.stored_of(relation.name, relation.properties)
-                self._relate(relation.source, relation.name, relation.target, values)
+            for one in relations:
+                self.relate(one.source, one.name, one.target, one.properties)
         return len(nodes)
 
     def undeclared(self) -> list[str]:

@@ -41,9 +41,14 @@ class Memory:
         self._worker = worker
         self._lock = threading.Lock()  # so that no job is queued after the release
         self._closed: Reply[None] | None = None
-        self._types: Types | None = None
-        self._failure: BaseException | None = None
-        self._opened = Reply(worker.submit(lambda store: self._open(store, read_types)), "Memory.open")
+
+        def prepared(store: Store) -> Types:
+            types = read_types()
+            Graph(store, types).prepare()
+            return types
+
+        self._prepared = worker.submit(prepared)
+        self._opened = Reply(self._prepared, "Memory.open")
 
     @property
     def place(self) -> str:
@@ -53,12 +58,12 @@ class Memory:
     @property
     def types(self) -> Types:
         """The declared types of nodes and relations."""
-        if self._types is None:
+        if not self._prepared.done() or self._prepared.exception() is not None:
             raise RuleError(f"memory ({self.place}) is not open: write await memory.opened() first")
-        return self._types
+        return self._prepared.result()
 
-    def opened(self) -> Reply[None]:
-        """Wait until memory is open.
+    def opened(self) -> Reply[Types]:
+        """Wait until memory is open; return its types.
 
         Raises:
             PlatformError: A package is missing; the file is in use, damaged or of a newer version; or the server
@@ -210,23 +215,9 @@ class Memory:
     def __repr__(self) -> str:
         return f"<memory {self.place}>"
 
-    def _open(self, store: Store, read_types: Callable[[], Types]) -> None:
-        """Read the types, and create the tables that they need. This runs in the store's thread."""
-        try:
-            types = read_types()
-            Graph(store, types).prepare()
-            self._types = types
-        except BaseException as error:
-            self._failure = error
-            raise
-
     def _do(self, name: str, operation: Callable[[Graph], T]) -> Reply[T]:
-        def job(store: Store) -> T:
-            if self._failure is not None:
-                raise self._failure
-            return operation(Graph(store, self.types))
-
         with self._lock:
             if self._closed is not None:
                 raise RuleError(f"memory ({self.place}) is closed: {name} comes too late")
-            return Reply(self._worker.submit(job), f"Memory.{name}")
+            job = self._worker.submit(lambda store: operation(Graph(store, self._prepared.result())))
+            return Reply(job, f"Memory.{name}")
