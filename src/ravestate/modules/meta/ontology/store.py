@@ -16,18 +16,10 @@ FORMAT = 1
 
 
 @dataclass(frozen=True, slots=True)
-class RawNode:
-    """A node as a database returns it: its label and its properties, including ``id``."""
+class Raw:
+    """A node or a relation as a database returns it: its label, and its properties, including a node's ``id``."""
 
     label: str
-    values: Mapping[str, Any]
-
-
-@dataclass(frozen=True, slots=True)
-class RawRelation:
-    """A relation as a database returns it: its type and its properties."""
-
-    name: str
     values: Mapping[str, Any]
 
 
@@ -44,7 +36,7 @@ class Store(Protocol):
         ...
 
     def read(self, statement: str, parameters: Mapping[str, Any]) -> list[Sequence[Any]]:
-        """Run a statement that writes nothing, and return its rows of `RawNode`, `RawRelation` and plain values."""
+        """Run a statement that writes nothing, and return its rows of `Raw` and plain values."""
         ...
 
     def write(self, statement: str, parameters: Mapping[str, Any]) -> list[Sequence[Any]]:

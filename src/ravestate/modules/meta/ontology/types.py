@@ -98,13 +98,27 @@ class Types:
             }
         )
 
-    def stored(self, type: str, values: Mapping[str, Value]) -> dict[str, Any]:
-        """Return a node's properties as memory stores them: dates and times become texts that sort by time."""
-        return _stored(type, self.properties(type), values)
+    def stored(self, owner: str, values: Mapping[str, Value]) -> dict[str, Any]:
+        """Return properties of a type or relation as memory stores them: dates and times are texts that sort by time."""
+        kinds = self._kinds(owner)
+        for name in values:
+            if name not in kinds:
+                raise RuleError(
+                    f"{owner} has no {name!r}{nearest(name, kinds)} (it has {', '.join(kinds) or 'nothing'}; to add it, write "
+                    f"in a file of your own, setting ontology.types: {owner}: {{has: {{{name}: text}}}})"
+                )
+        return {
+            name: None if value is None else _as_stored(f"{owner}.{name}", kinds[name], value)
+            for name, value in values.items()
+        }
 
-    def loaded(self, type: str, values: Mapping[str, Any]) -> dict[str, Value]:
-        """Return a node's stored properties as rules see them, without missing and undeclared ones."""
-        return _loaded(type, self._properties[type], values)
+    def loaded(self, owner: str, values: Mapping[str, Any]) -> dict[str, Value]:
+        """Return stored properties of a type or relation as rules see them, without missing and undeclared ones."""
+        return {
+            name: _as_loaded(f"{owner}.{name}", kind, values[name])
+            for name, kind in self._kinds(owner).items()
+            if values.get(name) is not None
+        }
 
     def check_relation(self, source: str, relation: str, target: str) -> None:
         """Check that a relation may join nodes of two types."""
@@ -120,9 +134,8 @@ class Types:
         self._check(type)
         ends = {pair[1 if back else 0] for pair in self.relating(relation).ends}
         if not any(self.is_a(type, end) for end in ends):
-            raise RuleError(
-                f"{relation} goes {'to' if back else 'from'} {' or '.join(sorted(ends))}, not {'to' if back else 'from'} {type}"
-            )
+            way = "to" if back else "from"
+            raise RuleError(f"{relation} goes {way} {' or '.join(sorted(ends))}, not {way} {type}")
 
     def relating(self, relation: str) -> Relating:
         """Return the relation with this name."""
@@ -134,14 +147,6 @@ class Types:
             )
         return found
 
-    def stored_of(self, relation: str, values: Mapping[str, Value]) -> dict[str, Any]:
-        """Return a relation's properties as memory stores them."""
-        return _stored(relation, self.relating(relation).properties, values)
-
-    def loaded_of(self, relation: str, values: Mapping[str, Any]) -> dict[str, Value]:
-        """Return a relation's stored properties as rules see them."""
-        return _loaded(relation, self.relating(relation).properties, values)
-
     # ------------------------------------------------------------------------------- internals
 
     def _line(self, name: str | None) -> Iterator[str]:
@@ -150,10 +155,11 @@ class Types:
             name = self._types[name].parent
 
     def _inherited(self, name: str) -> dict[str, Kind]:
-        found: dict[str, Kind] = {}
-        for ancestor in reversed(self._lines[name]):
-            found.update(self._types[ancestor].properties)
-        return found
+        return {key: kind for one in reversed(self._lines[name]) for key, kind in self._types[one].properties.items()}
+
+    def _kinds(self, owner: str) -> Mapping[str, Kind]:
+        relation = self._relations.get(owner)  # a type and a relation never have the same name
+        return self.properties(owner) if relation is None else relation.properties
 
     def _check(self, type: str) -> None:
         if type not in self._types:
@@ -161,18 +167,6 @@ class Types:
                 f"there is no type {type!r}{nearest(type, self._types)} (to add it, write in a file of your own, setting "
                 f"ontology.types: {type}: {{is: Thing}})"
             )
-
-
-def _stored(owner: str, kinds: Mapping[str, Kind], values: Mapping[str, Value]) -> dict[str, Any]:
-    found: dict[str, Any] = {}
-    for name, value in values.items():
-        if name not in kinds:
-            raise RuleError(
-                f"{owner} has no {name!r}{nearest(name, kinds)} (it has {', '.join(kinds) or 'nothing'}; to add it, write "
-                f"in a file of your own, setting ontology.types: {owner}: {{has: {{{name}: text}}}})"
-            )
-        found[name] = None if value is None else _as_stored(f"{owner}.{name}", kinds[name], value)
-    return found
 
 
 def _as_stored(what: str, kind: Kind, value: Value) -> Any:
@@ -199,14 +193,6 @@ def _as_stored(what: str, kind: Kind, value: Value) -> Any:
     shown = repr(value)
     shown = shown if len(shown) <= 60 else shown[:57] + "..."
     raise RuleError(f"{what} is of kind {kind}, not {shown}: write for example {_EXAMPLES[kind]}")
-
-
-def _loaded(owner: str, kinds: Mapping[str, Kind], values: Mapping[str, Any]) -> dict[str, Value]:
-    return {
-        name: _as_loaded(f"{owner}.{name}", kind, values[name])
-        for name, kind in kinds.items()
-        if values.get(name) is not None
-    }
 
 
 def _as_loaded(what: str, kind: Kind, value: Any) -> Value:
