@@ -324,8 +324,8 @@ def test_secrets_are_not_told(converse: Conversation) -> None:
     with pytest.raises(PlatformError, match=r"no such key: \*\*\*\): check wildtalk.api_key") as failure:
         converse(refusal, api_key=SecretStr("s3cret"))
     assert "s3cret" not in str(failure.value)
-    backend = OpenAIBackend("https://me:s3cret@example.org/v1", "tiny", api_key=SecretStr("s3cret"))
-    assert repr(backend) == "OpenAIBackend('https://example.org/v1', 'tiny')"
+    with pytest.raises(PlatformError, match=r"no server answers at http://127\.0\.0\.1:1/v1"):
+        converse(refusal, base_url="http://me:s3cret@127.0.0.1:1/v1")
 
 
 def test_a_key_that_is_none(converse: Conversation) -> None:

@@ -147,12 +147,12 @@ def checked_model(path: Path | str) -> Path:
     file = Path(path).expanduser().absolute()
     named = f"wildtalk: the model {str(path)!r}"
     try:
-        if file.is_dir():
-            inside = [entry.name for entry in sorted(file.glob("*.gguf"))[:3]]
-            hint = f"name the file in it: {' or '.join(inside)}" if inside else "no GGUF file is in it"
-            raise PlatformError(f"{named} is a folder: {hint}")
         with file.open("rb") as opened:
             magic = opened.read(4)
+    except IsADirectoryError:
+        inside = [entry.name for entry in sorted(file.glob("*.gguf"))[:3]]
+        hint = f"name the file in it: {' or '.join(inside)}" if inside else "no GGUF file is in it"
+        raise PlatformError(f"{named} is a folder: {hint}") from None
     except FileNotFoundError:
         near = nearest(str(file), map(str, file.parent.glob("*.gguf")))
         raise PlatformError(f"{named} does not exist{near}: {_OWN_MODEL}") from None

@@ -6,8 +6,10 @@ Also, if a model file crashes llama.cpp, the agent survives.
 
 from __future__ import annotations
 
+import atexit
 import contextlib
 import json
+import os
 import secrets
 import subprocess
 import sys
@@ -16,7 +18,7 @@ import threading
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import IO, Any
+from typing import IO
 
 from ravestate.errors import PlatformError
 
@@ -56,7 +58,8 @@ class LlamaProcess:
         with self._starting:  # a second caller waits for the first
             if not self.alive:
                 self._end()
-                self._address = self._wait(self._spawn(), progress or (lambda _: None))
+                self._warm(progress or (lambda _: None))
+                self._address = self._wait(self._spawn())
             if progress is not None:
                 progress(1.0)
             return self._address
@@ -98,6 +101,16 @@ class LlamaProcess:
 
     # ------------------------------------------------------------------------------- internals
 
+    def _warm(self, progress: Callable[[float], None]) -> None:
+        """Read the file, which is the slow part of loading. Llama.cpp then maps what is in memory already."""
+        with contextlib.suppress(OSError), self.key.path.open("rb", buffering=0) as file:
+            size, done, shown = os.fstat(file.fileno()).st_size, 0, 0.0
+            while not self._closed and (block := file.read(4 << 20)):
+                done += len(block)
+                if done / size - shown >= 0.02:
+                    shown = done / size
+                    progress(0.95 * min(shown, 1.0))
+
     def _spawn(self) -> subprocess.Popen[str]:
         self._refuse_closed()
         self._errors = tempfile.TemporaryFile()  # noqa: SIM115  # `_end` closes it
@@ -115,23 +128,17 @@ class LlamaProcess:
             raise PlatformError(f"wildtalk: cannot start Python for the model ({sys.executable!r}): {error}") from error
         return self._process
 
-    def _wait(self, process: subprocess.Popen[str], progress: Callable[[float], None]) -> str:
+    def _wait(self, process: subprocess.Popen[str]) -> str:
         assert process.stdin is not None and process.stdout is not None
         with contextlib.suppress(OSError):  # it died at once; its exit explains why
             config = {**asdict(self.key), "path": str(self.key.path), "key": self.secret}
             process.stdin.write(json.dumps(config) + "\n")
             process.stdin.flush()
-        error = ""
-        for line in process.stdout:
-            message: dict[str, Any] = json.loads(line)
-            if "ready" in message:
-                return message["ready"]
-            if "progress" in message:
-                progress(message["progress"])
-            error = message.get("error", "")
+        if address := process.stdout.readline().strip():
+            return address
         process.wait()
         self._refuse_closed()
-        reason = (self._reason() or error or self.obituary()).rstrip(".")
+        reason = (self._reason() or self.obituary()).rstrip(".")
         self._end()
         raise PlatformError(
             f"wildtalk: cannot load the model {str(self.key.path)!r}: {reason}. {_remedy(reason, self.key)}"
@@ -198,3 +205,9 @@ def drop(process: LlamaProcess) -> None:
             return
         del _processes[process.key]
     process.close()
+
+
+@atexit.register
+def _close_all() -> None:
+    for process in list(_processes.values()):
+        process.close()

@@ -8,7 +8,7 @@ from collections.abc import AsyncGenerator, Mapping, Sequence
 from contextlib import aclosing
 from typing import TYPE_CHECKING, Any, cast
 
-from pydantic import BaseModel, SecretStr, ValidationError
+from pydantic import AliasChoices, BaseModel, Field, SecretStr, ValidationError
 
 from ravestate.errors import PlatformError
 
@@ -62,9 +62,6 @@ class OpenAIBackend:
         self._extra = dict(extra or {})
         self._unsupported: set[str] = set()
         self._client: httpx2.AsyncClient | None = None
-
-    def __repr__(self) -> str:
-        return f"OpenAIBackend({self._place!r}, {self._model!r})"
 
     async def load(self, progress: Progress | None = None) -> None:
         """Import the web client and its certificates, off the loop. The server is not contacted yet."""
@@ -146,7 +143,7 @@ class OpenAIBackend:
         from httpx2 import EventSource
 
         if answer.headers.get("content-type", "").startswith("application/json"):  # a server that cannot stream
-            yield self._parsed(await read(answer)).text
+            yield self._parsed(await read(answer))[0]
             return
         finished = False
         events = aiter(EventSource(answer, max_event_size=LIMIT))
@@ -155,16 +152,17 @@ class OpenAIBackend:
                 event = await anext(events, None)
             if event is None or event.data == "[DONE]":
                 break
-            part = self._parsed(event.data.encode())
-            finished = finished or part.finished
-            if part.text:
-                yield part.text
+            text, ended = self._parsed(event.data.encode())
+            finished = finished or ended
+            if text:
+                yield text
         if event is None and not finished:
             raise PlatformError(
                 f"wildtalk: the answer from {self._place} broke off before its end: look into the server's log"
             )
 
-    def _parsed(self, payload: bytes) -> _Answer:
+    def _parsed(self, payload: bytes) -> tuple[str, bool]:
+        """Return the text in a document, and whether it is the last one."""
         try:
             document = _Answer.model_validate_json(payload)
         except ValidationError:
@@ -174,7 +172,8 @@ class OpenAIBackend:
             ) from None
         if document.error:
             raise PlatformError(f"wildtalk: the server at {self._place} failed: {self._reason(payload)}")
-        return document
+        first = document.choices[0] if document.choices else _Choice()
+        return (first.text.content if first.text else None) or "", first.finish_reason is not None
 
     def _safe(self, text: str, length: int = 300) -> str:
         """Return the beginning of a server's `text`, on one line and without the key."""
@@ -236,8 +235,7 @@ class _Text(BaseModel):
 
 
 class _Choice(BaseModel):
-    delta: _Text | None = None
-    message: _Text | None = None
+    text: _Text | None = Field(default=None, validation_alias=AliasChoices("delta", "message"))
     finish_reason: str | None = None
 
 
@@ -246,15 +244,6 @@ class _Answer(BaseModel):
 
     choices: list[_Choice] | None = None
     error: Any = None
-
-    @property
-    def text(self) -> str:
-        first = self.choices[0] if self.choices else _Choice()
-        return (first.delta or first.message or _Text()).content or ""
-
-    @property
-    def finished(self) -> bool:
-        return bool(self.choices and self.choices[0].finish_reason)
 
 
 def make_client(base_url: str, key: str, timeout: Any) -> httpx2.AsyncClient:
