@@ -89,15 +89,6 @@ def test_it_does_not_come_back_to_what_another_module_answered(sim: Simulation) 
     assert sim.said[1:] == ["Sunny. Do you like the sun?"]
 
 
-def test_it_asks_about_an_unfinished_matter_after_a_while(sim: Simulation) -> None:
-    sim.say("my mother is ill")
-    sim.say("what about the weather")
-    sim.advance(20.0)
-    assert len(sim.said) == 2
-    sim.advance(700.0)
-    assert sim.said[2:] == ["How is your mother today?"]
-
-
 def test_a_move_in_a_game_is_no_matter_for_other_modules(sim: Simulation) -> None:
     sim.say("word chain")
     word = sim.said[0].rstrip(".").split()[-1]

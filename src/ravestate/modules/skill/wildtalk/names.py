@@ -71,8 +71,6 @@ class Settings(rs.Settings):
     """The longest answer, in sentences."""
     temperature: Annotated[float, Field(ge=0, le=2)] = 0.5
     """The randomness: 0 always takes the likeliest word, 1 is the model's own distribution."""
-    come_back_after: Annotated[float, Field(ge=0)] = 600.0
-    """Seconds after which the agent asks, in a silence, about unfinished matters (*How is your mother?*)."""
     history_turns: Annotated[int, Field(ge=1)] = 6
     """The number of turns in the prompt."""
     history_characters: Annotated[int, Field(ge=100)] = 4000
@@ -94,7 +92,7 @@ trouble: rs.Slot[str] = module.slot("trouble", "")
 """The reason why the model does not answer; empty while it does. The log has it once."""
 
 listening: rs.Slot[State] = module.slot("listening", State(), type=State)
-"""The memory of the listening skill: the last phrases, the tone, unfinished matters, opinions, a game."""
+"""The memory of the listening skill: the last phrases, the tone, opinions, a game."""
 
 overheard: rs.Slot[tuple[Overheard, ...]] = module.slot("overheard", ())
 """The tone and the persons of the last utterances, whichever module answered them."""

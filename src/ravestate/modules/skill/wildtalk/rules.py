@@ -224,7 +224,7 @@ async def go_on(ctx: rs.RuleContext) -> rs.Resign | None:
     return None
 
 
-@module.rule(when=idle.bored, reads=history, writes=(rawio.output, listening), weight=1.5, cooldown=30.0)
+@module.rule(when=idle.bored, reads=history, writes=(rawio.output, listening), weight=1.5, cooldown=150.0)
 async def come_back(ctx: rs.RuleContext) -> rs.Resign | None:
     """Come back to what was said, in a silence, before other modules begin something new."""
     said = remark(ctx)

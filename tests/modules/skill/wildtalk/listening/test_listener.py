@@ -159,11 +159,6 @@ def test_in_a_silence_it_comes_back_once_to_what_was_said(talk: Any) -> None:
     assert Listener().pick_up(State(), random.Random(1)) is None
 
 
-def test_illness_becomes_a_matter_to_ask_about_later(talk: Any) -> None:
-    talk.say("my mother is ill")
-    assert [matter.text for matter in talk.state.matters] == ["How is your mother today?"]
-
-
 def test_the_material_is_large_and_each_role_is_known() -> None:
     lines = all_lines()
     assert len({line.text for line in lines}) >= 400

@@ -21,6 +21,7 @@ LONGEST = 48
 _THEY = {"f": ("she", "her", "her"), "m": ("he", "him", "his")}
 _IT, _PLURAL = ("it", "it", "its"), ("they", "them", "their")
 _PRONOUNS = {"she": "f", "her": "f", "hers": "f", "he": "m", "him": "m", "his": "m"}
+_POINTING = frozenset(("it", "that", "this", "there"))
 _SINGULAR = {"are": "is", "were": "was", "have": "has", "do": "does"}
 _ASIDES = frozenset(("think", "guess", "suppose", "believe"))
 _REPEATABLE = re.compile(r"[\w' ,.’-]+")
@@ -77,22 +78,18 @@ def roles_of(seen: Analysis, sentence: str, focus: Being | None, material: Mater
     pronouns = {word.low for word in seen.tree.words}
     genders = {_PRONOUNS[word] for word in pronouns if word in _PRONOUNS}
     if being is None and focus is not None and (genders or pronouns & {"they", "them", "it", "its", "their"}):
-        being = focus
+        being = focus if {focus.gender} | genders != {"f", "m"} else None
+    words = _THEY[next(iter(genders))] if genders else _IT if pronouns & {"it", "its"} else None
     if being is not None:
         if len(genders) == 1 and being.gender == "n" and not being.plural:
             being = replace(being, gender=next(iter(genders)))
-        they, them, their = (
-            _PLURAL if being.plural else _THEY.get(being.gender, _IT if being.kind == "pet" else _PLURAL)
-        )
-        if statement is not None and statement.subject.text.lower() == "they":
-            they, them, their = _PLURAL
-        roles = replace(roles, being=being).having(who=being.text, they=they, them=them, their=their)
-        roles = roles.having(**dict.fromkeys(AGREEING, "yes"))
-    elif genders or pronouns & {"it", "its"}:
-        they, them, their = _THEY[next(iter(genders))] if genders else _IT
-        roles = roles.having(they=they, them=them, their=their)
-        if genders:
-            roles = roles.having(**dict.fromkeys(AGREEING, "yes"))
+        words = _PLURAL if being.plural else _THEY.get(being.gender, _IT if being.kind == "pet" else _PLURAL)
+        roles = replace(roles, being=being).having(who=being.text)
+    if statement is not None and statement.subject.text.lower() == "they":
+        words = _PLURAL
+    if words is not None:
+        roles = roles.having(they=words[0], them=words[1], their=words[2])
+        roles = roles.having(**dict.fromkeys(AGREEING, "yes")) if being is not None or genders else roles
     if statement is not None and not statement.question:
         root = _root(seen.tree, statement)
         mood = root is not None and statement.subject_person == "I" and bool(seen.tree.children(root, "acomp"))
@@ -112,7 +109,7 @@ def fragment(seen: Analysis) -> str:
     words = [
         word for word in tree.words if word.index not in asides and word.pos not in ("PUNCT", "INTJ", "SPACE", "SYM")
     ]
-    while words and words[0].low in ("and", "but", "so", "or", "just", "well"):
+    while words and words[0].low in ("and", "but", "so", "or", "just", "well", "because"):
         words = words[1:]
     text = turned(seen.tree, words)
     return text if words and len(text) <= LONGEST and len(words) <= 6 and _REPEATABLE.fullmatch(text) else ""
@@ -141,9 +138,11 @@ def _statement(seen: Analysis, sentence: str) -> Statement | None:
     told = [
         one for one in seen.statements if isinstance(one.triple.subject, str) and isinstance(one.triple.object, str)
     ]
+    sentence = sentence or (seen.sentences[-1] if seen.sentences else "")
     inside = [one for one in told if one.verb and _mentions(sentence, one)] or told
     first = [one for one in inside if not one.hearsay and not one.conditional] or inside
-    return first[0] if first else None
+    telling = [one for one in first if one.subject.head or one.subject.text.lower() not in _POINTING] or first
+    return telling[0] if telling else None
 
 
 def _mentions(sentence: str, statement: Statement) -> bool:
@@ -152,7 +151,7 @@ def _mentions(sentence: str, statement: Statement) -> bool:
 
 
 def _root(tree: Tree, statement: Statement) -> Word | None:
-    """Return the first verb of the statement's clause."""
+    """Return the first verb of the statement's clause; for *I said that he left*, that of what was said."""
     subject = statement.subject.text.lower()
     for word in tree.words:
         if word.pos not in ("VERB", "AUX"):
@@ -164,7 +163,8 @@ def _root(tree: Tree, statement: Statement) -> Word | None:
                     *(part.lemma for part in tree.subtree(word) if part.dep in ("xcomp", "attr", "acomp")),
                 }
                 if statement.verb in chain or statement.verb == word.lemma:
-                    return word
+                    said = tree.children(word, "ccomp") if word.lemma in ("say", "mean") and child.low == "i" else []
+                    return said[0] if said else word
     return None
 
 

@@ -17,6 +17,7 @@ _TURNED = {
 }  # fmt: skip
 _SUBJECTS = ("nsubj", "nsubjpass")
 _LEFT_OUT = frozenset(("advcl", "conj", "cc", "punct", "intj", "parataxis", "preconj", "mark", "dep", "meta"))
+_ASIDE = frozenset(("relcl", "appos", "punct", "advcl"))
 _PHRASES = ("prep", "npadvmod", "advmod")
 _SHORT = re.compile(r"\b(do|does|did|is|are|was|were|have|has|had|would|could|should) not\b")
 _PARTICLES = frozenset(
@@ -30,16 +31,16 @@ def turned_text(words: Iterable[str]) -> str:
 
 
 def clause(tree: Tree, root: Word) -> str:
-    """Return the clause of a verb from the agent's view; empty if it has no subject, or is long."""
-    words = _kept(tree, root)
-    if not any(child.dep in (*_SUBJECTS, "expl") for child in tree.children(root)):
+    """Return the clause of a verb from the agent's view; empty if it has no subject, is long, or has a slip."""
+    subjects = tree.children(root, *_SUBJECTS, "expl")
+    if not subjects or _slips(tree, root, subjects[-1]):
         return ""
+    words = _kept(tree, root)
     while len(words) > LONGEST:  # a shorter form: without the last phrase
         last = next((word for word in reversed(words) if word.dep in _PHRASES and word.index > root.index), None)
         if last is None:
             return ""
-        gone = {part.index for part in tree.subtree(last)}
-        words = [word for word in words if word.index not in gone]
+        words = [word for word in words if word not in tree.subtree(last)]
     return turned(tree, words) if 2 <= len(words) <= LONGEST else ""
 
 
@@ -53,26 +54,30 @@ def turned(tree: Tree, words: Sequence[Word]) -> str:
     return _shortened(found)
 
 
+def _slips(tree: Tree, root: Word, subject: Word) -> bool:
+    """Return whether the verb does not agree with its subject, as in *my brother stay*: this is not worth repeating."""
+    singular = subject.low in ("he", "she", "it") or (subject.tag in ("NN", "NNP") and not tree.children(subject, "conj"))
+    verbs = [root, *tree.children(root, "aux", "auxpass")]
+    bare = all(word.tag in ("VB", "VBP") for word in verbs) and len(verbs) == 1
+    return (singular and bare) or (root.tag in ("VBG", "NN") and len(verbs) == 1)
+
+
 def _kept(tree: Tree, root: Word) -> list[Word]:
-    left_out: set[int] = set()
+    left_out: set[Word] = set()
     for child in tree.children(root):
         long = child.dep == "ccomp" and len(tree.subtree(child)) > 5
-        particle = child.dep == "advmod" and child.low in _PARTICLES
-        if child.dep in _LEFT_OUT or long or particle:
-            left_out.update(word.index for word in tree.subtree(child))
-    kept = [word for word in tree.subtree(root) if word.index not in left_out]
-    if kept and kept[0].low in ("yes", "no", "yeah"):
-        kept = kept[1:]
-    subjects = [word for word in kept if word.dep in _SUBJECTS and word.head == root.index]
+        if child.dep in _LEFT_OUT or long or (child.dep == "advmod" and child.low in _PARTICLES):
+            left_out.update(tree.subtree(child))
+    subjects = tree.children(root, *_SUBJECTS)
     if subjects and subjects[-1].low in ("he", "she", "it", "they"):  # "my mother she is ill"
         before = tree.before(subjects[-1])
         if before is not None and (before.tag == "NNP" or tree.children(before, "poss")) and before.head == root.index:
-            return [word for word in kept if word is not subjects[-1]]
-    for word in list(kept):  # relative clauses, and what is in brackets
-        if word.dep in ("relcl", "appos", "punct", "advcl"):
-            gone = {part.index for part in tree.subtree(word)}
-            kept = [other for other in kept if other.index not in gone]
-    return kept
+            return [word for word in tree.subtree(root) if word not in left_out and word is not subjects[-1]]
+    for word in tree.subtree(root):  # relative clauses, and what is in brackets
+        if word.dep in _ASIDE and word is not root:
+            left_out.update(tree.subtree(word))
+    kept = [word for word in tree.subtree(root) if word not in left_out]
+    return kept[1:] if kept and kept[0].low in ("yes", "no", "yeah") else kept
 
 
 def _turned(tree: Tree, word: Word) -> str:
@@ -86,8 +91,9 @@ def _turned(tree: Tree, word: Word) -> str:
             return "were"
         if "you" in subjects:
             return "was" if low == "were" else "am"
-        return "are" if low == "'re" else word.text
-    return _TURNED.get(low, word.text)
+        return "are" if low == "'re" else low
+    first = word.index == 0 or (tree.words[word.index - 1].pos == "PUNCT" and word.text.istitle())
+    return _TURNED.get(low, low if first and word.pos != "PROPN" else word.text)
 
 
 def _shortened(text: str) -> str:
