@@ -142,6 +142,7 @@ class Listener:
             after = replace(after, being=roles.being or state.being, moment="" if moment is None else moment.name)
             if {"mine", "verb"} <= hearing.tags and not {"negated", "plan", "imagined"} & hearing.tags:
                 after = replace(after, clause=roles.values.get("clause", ""))
+            after = replace(after, asks=after.asks and after.moment != "no_questions")
             if source.stance:
                 after = replace(after, stances={**state.stances, roles.values["thing"].lower(): source.stance})
             return _said(line, roles, after)
@@ -222,11 +223,11 @@ def _leaves(seen: Analysis) -> bool:
 
 
 def _with_fewer_questions(sources: Iterator[_Source], state: State) -> Iterator[_Source]:
-    """Yield the sources; after two questions the weak ones come without theirs first."""
+    """Yield the sources; after two questions the weak ones come without theirs first, and all if the user wants none."""
     asked = len(state.said) > 1 and all(text.endswith("?") for text in state.said[-2:])
     later: list[_Source] = []
     for source in sources:
-        if asked and source.weak:
+        if not state.asks or (asked and source.weak):
             later.append(source)
             source = replace(source, groups=[[line for line in lines if not line.asks] for lines in source.groups])
         yield source

@@ -91,6 +91,8 @@ class State:
     """The jokes, songs, stories and riddles of this talk."""
     show: str = ""
     """The kind of the last of them."""
+    asks: bool = True
+    """Whether it may ask; not once the user wants no questions."""
 
     def toned(self, tone: str, lasts: int = LASTING) -> State:
         """Return the state after an utterance with this tone, or one without. Anger and tiredness do not end sadness."""
