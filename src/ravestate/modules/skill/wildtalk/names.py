@@ -10,7 +10,7 @@ from typing import Annotated, Literal
 from pydantic import ConfigDict, Field, SecretStr
 
 import ravestate as rs
-from ravestate.modules import idle, interloc, nlp, rawio
+from ravestate.modules import interloc, nlp, rawio
 
 from .backend import Backend, Message
 from .history import EXAMPLES, PERSONA
@@ -77,7 +77,7 @@ class Settings(rs.Settings):
     """The number of characters of these turns; four make about a token."""
 
 
-module = rs.Module("wildtalk", requires=[rawio, idle, interloc, nlp], settings=Settings)
+module = rs.Module("wildtalk", requires=[rawio, interloc, nlp], settings=Settings)
 
 history: rs.Collection[Message] = module.collection("history")
 """The last messages of all speakers, oldest first; the keys begin with the time."""

@@ -95,19 +95,6 @@ def traces(ctx: rs.RuleContext, seen: nlp.Analysis) -> tuple[Overheard, ...]:
     return (*ctx[overheard][-1:], listener().overhear(seen, ctx[listening].being))
 
 
-def remark(ctx: rs.RuleContext) -> str | None:
-    """Return a remark about what was said last; None if there is nothing, or another module has answered since."""
-    state = ctx[listening]
-    answers = [message.text for message in ctx[history].values() if message.role == "assistant"]
-    if not state.said or answers[-1:] != [state.said[-1]]:
-        return None
-    answer = listener().pick_up(state, ctx.random)
-    if answer is None:
-        return None
-    ctx[listening] = answer.state
-    return answer.text
-
-
 def gate_for(ctx: rs.RuleContext, name: str, heard: str) -> Gate:
     """Return the check of a generated answer."""
     messages = list(ctx[history].values())

@@ -12,10 +12,9 @@ from ravestate.modules.meta.nlp.statement import Statement
 from ravestate.modules.skill.wildtalk.facts import facts_matcher
 
 from .material import Material, Moment
-from .roles import Roles, fragment, has_verb, is_request, roles_of
+from .roles import Roles, has_verb, is_request, roles_of, turned
 from .state import State
 from .tongue import is_nonsense, is_number, tongue_of
-from .turning import turned
 
 SUBJECT, SURE, MEANT = 0.45, 0.6, 0.6
 """The confidence in a subject, a moment and an act from which they decide."""
@@ -54,7 +53,8 @@ class Hearing:
     The tags are: number, foreign, nonsense, signs, unparsed, asking (it ends with a question mark); pending (the agent has
     asked), closed (with yes or no), answering; yes, no, unsure, few, short and single (words), verb, acting (an act),
     felt (a feeling), sure (a moment), topical, others (it tells of others), fragment; question, polar, why, fact, choice,
-    opinion, hypothetical, agent (it has *you*), to_agent and of_user (by its subject); request, called (somebody has a
+    opinion, hypothetical, may (*can I*), should (*what must I*), agree (*isn't it*), you_think, told (of what the user told),
+    agent (it has *you*), to_agent and of_user (by its subject); request, called (somebody has a
     name), correcting, age; of the statement: mine, living, about_me, thing_told, described, past, used, plan, negated,
     imagined, asserting (more than yes or no); the tone; and coin, which one half of the utterances have.
     """
@@ -90,7 +90,7 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
     moment, sentence, score = moment_of(phrases, seen, asking)
     feeling, sentence = feeling_of(phrases, seen, sentence, state.tone)
     roles = roles_of(seen, asking or sentence, state.being, phrases)
-    roles = roles.having(user=heard.user, before=state.before.strip().rstrip(".!?")[:80], answer=fragment(seen))
+    roles = roles.having(user=heard.user, before=state.before.strip().rstrip(".!?")[:80])
     statement = roles.statement
     found.moment = "" if moment is None else moment.name
     found.meanings = _ranked(phrases, seen, state, asking, moment, score, feeling)
@@ -119,11 +119,11 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
         "topical": moment is not None and size > 2,
         "others": others,
         "asserting": verb and others,
-        "fragment": "answer" in roles.values and size <= SHORT + 2,
+        "fragment": size <= SHORT + 2,
         "called": called != "",
         "request": is_request(seen) and seen.question is None,
         "correcting": starts_no and verb and size > SHORT and bool(state.said) and seen.question is None
-        and not (pending is not None and pending.closed) and "clause" in roles.values,
+        and not (pending is not None and pending.closed),
     }  # fmt: skip
     if seen.question is not None:
         tags |= _question_tags(found, phrases, seen, low) | {"choice": choice[0] != ""}
@@ -145,9 +145,15 @@ def _question_tags(found: Hearing, phrases: Material, seen: Analysis, low: set[s
     found.thing = about or roles_of(seen, "", None, phrases).values.get("thing", "")
     owned = asked is not None and asked.subject.of("you") and about != ""
     opining = asked is not None and subject == "you" and asked.verb in phrases.plain["opinion"].words
+    polar, modal = seen.question is QuestionWord.YES_NO, {word.low for word in seen.tree.words if word.tag == "MD"}
     return {
         "question": True,
-        "polar": seen.question is QuestionWord.YES_NO,
+        "polar": polar,
+        "may": polar and subject == "I" and bool(modal & {"can", "may", "could"}),
+        "should": not polar and subject == "I" and bool(modal),
+        "agree": polar and subject != "you" and asked is not None and asked.negated,
+        "you_think": polar and subject == "you" and any(word.dep == "ccomp" for word in seen.tree.words),
+        "told": not polar and "my" in low and subject != "I" or bool(low & {"remember", "my"} and low & {"remember", "know"}),
         "why": seen.question is QuestionWord.REASON,
         "fact": facts_matcher().loaded and any(facts_matcher().match_all(seen.sentences)),
         "hypothetical": bool(low & {"would", "could", "if", "imagine"}),
@@ -192,13 +198,15 @@ def _ranked(
         score = score if score >= TURNED else 0.0  # no light talk in grief
     if moment is not None and moment.name in phrases.moments and score >= SURE:
         ranked.append((score + FINER, moment))
-    if feeling is not None:
+    if feeling is not None and (not asking or feeling.tone == "sad"):
         ranked.append((seen.feelings[feeling.name].score, feeling))
     for act in seen.acts.values():
-        least = ASKED if act.name in ENDINGS else FEW if len(act.text.split()) <= FEW_WORDS else MEANT
-        beside = asking and (act.name == "greeting" or act.text != asking)
+        leaves = act.name == "farewell" and act.text == seen.sentences[-1]
+        few = len(act.text.split()) <= FEW_WORDS
+        least = SURE if leaves else ASKED if act.name in ENDINGS else FEW if few else MEANT
+        beside = act.text != asking or act.name == "greeting" if asking else few and len(seen.sentences) > 1 and not leaves
         if act.name in phrases.acts and act.score >= least and not beside:
-            ranked.append((act.score, phrases.acts[act.name]))
+            ranked.append((act.score + leaves, phrases.acts[act.name]))
     return [one for _, one in sorted(ranked, key=lambda pair: -pair[0])]
 
 
@@ -210,16 +218,18 @@ def asking_sentence(seen: Analysis) -> str:
     return marked[-1] if marked else seen.sentences[-1]
 
 
-def moment_of(phrases: Material, seen: Analysis | None, asking: str = "") -> tuple[Moment | None, str, float]:
+def moment_of(phrases: Material, seen: Analysis, asking: str = "") -> tuple[Moment | None, str, float]:
     """Return the moment or topic that a sentence resembles most, with the sentence and the confidence.
 
     If the user asks something, only the question and sad moments count.
     """
     best, sentence, score = None, "", 0.0
-    for match in phrases.matcher.match_all(seen.sentences[:4]) if seen is not None else ():
+    for match in phrases.matcher.match_all(seen.sentences[:4]):
         if match is None:
             continue
         found, few = phrases.moments.get(match.name), len(match.text.split()) <= 2
+        if few and len(seen.sentences) > 1:
+            continue
         if match.score < (SUBJECT if found is None else SURE_OF_FEW if few else 0.0):
             continue
         if asking and match.text != asking and (found is None or found.tone != "sad"):

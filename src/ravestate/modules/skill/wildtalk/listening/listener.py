@@ -19,8 +19,6 @@ from .state import LASTING, Being, Overheard, Pending, State
 
 SHOWS = ("joke", "song", "story", "play")
 """The acts that request a performance."""
-SILENCE = "silence"
-"""The moment of a remark that ends a silence."""
 STANCES = ("like", "curious", "cool")
 
 Groups = Sequence[Sequence[Line]]
@@ -98,15 +96,6 @@ class Listener:
         tone, lasts = (feeling.tone, feeling.lasts) if feeling is not None else ("", LASTING)
         return Overheard(seen.text, roles_of(seen, sentence, focus, self._phrases).being, tone, lasts)
 
-    def pick_up(self, state: State, chance: random.Random) -> Answer | None:
-        """Return a remark about what was said last, to end a silence; None if there is nothing to come back to."""
-        if state.moment == SILENCE or not (state.clause or state.tone == "sad"):
-            return None
-        roles = Roles().having(clause=state.clause)
-        lines = self._phrases.plain[SILENCE].lines(state.tone, "say")
-        line = self._choose(lines, roles, replace(state, said=()), chance)
-        return None if line is None else _said(line, roles, replace(state, clause="", moment=SILENCE))
-
     # ---------------------------------------------------------------------------------- performances
 
     def _request(self, heard: Heard) -> str:
@@ -140,8 +129,6 @@ class Listener:
             moment = source.moment
             after = state.toned(moment.tone, moment.lasts) if moment is not None else state.toned("")
             after = replace(after, being=roles.being or state.being, moment="" if moment is None else moment.name)
-            if {"mine", "verb"} <= hearing.tags and not {"negated", "plan", "imagined"} & hearing.tags:
-                after = replace(after, clause=roles.values.get("clause", ""))
             after = replace(after, asks=after.asks and after.moment != "no_questions")
             if source.stance:
                 after = replace(after, stances={**state.stances, roles.values["thing"].lower(): source.stance})
@@ -150,11 +137,9 @@ class Listener:
 
     def _choose(self, groups: Groups, roles: Roles, state: State, chance: random.Random) -> Line | None:
         """Return a line of the first group that has one: with known roles, and not said lately."""
-        echoed = any(roles.values.get("clause", "\n").lower() in text.lower() for text in state.said[-1:])
         for lines in groups:
             fit = [line for line in lines if line.roles <= roles.values.keys() and line.text not in state.recent]
             fit = [line for line in fit if roles.fill(line.text) not in state.said]
-            fit = [line for line in fit if not (echoed and "clause" in line.roles)]
             if fit:
                 most = max(min(len(line.roles), 1) for line in fit)
                 return chance.choice([line for line in fit if min(len(line.roles), 1) == most])

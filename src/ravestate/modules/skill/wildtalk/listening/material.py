@@ -18,6 +18,8 @@ from .state import LASTING
 
 ROLE = re.compile(r"\{(\w+)\}")
 AGREEING = frozenset(("are", "were", "have", "do"))
+MOMENTS = ("about_the_talk", "advice", "everyday", "life", "moments")
+"""The files of situations in a talk."""
 _NOT_GROUPS = frozenset(("examples", "nouns", "verbs", "tone", "lasts"))
 
 
@@ -74,10 +76,10 @@ class Material:
     def __init__(self) -> None:
         self.feelings = _moments("feelings")
         self.acts = {**self.feelings, **_moments("acts")}
-        self.moments = {**_moments("moments"), **_moments("life")}
+        self.moments = {name: one for file in MOMENTS for name, one in _moments(file).items()}
         self.none = self.moments.pop("none").examples
         """Sentences that belong to none of the moments and topics."""
-        self.topics = _moments("topics")
+        self.topics = {**_moments("subjects"), **_moments("topics")}
         self.verbs = _moments("verbs")
         self.plain = _moments("plain")
         self.order = [_row(row) for row in _read("order")]
@@ -93,7 +95,7 @@ class Material:
     @cached_property
     def matcher(self) -> Matcher:
         """The matcher of moments and topics."""
-        examples = {one.name: one.examples for one in (*self.moments.values(), *self.topics.values())}
+        examples = {one.name: one.examples for one in (*self.moments.values(), *self.topics.values()) if one.examples}
         return Matcher(examples, (*self.none, *bundled("none").none), least=0.45)
 
 

@@ -82,8 +82,6 @@ class State:
     tone: str = ""
     turns: int = 0
     """The number of turns for which the tone still lasts."""
-    clause: str = ""
-    """The last thing that the user told, to come back to in a silence."""
     stances: Mapping[str, str] = field(default_factory=dict[str, str])
     """The agent's opinions, each chosen once."""
     game: Game | None = None
