@@ -107,3 +107,17 @@ def test_another_subject_ends_a_game(talk: Any) -> None:
 def test_play_offers_a_choice(talk: Any) -> None:
     assert talk.say("let us play a game") in SHOWS["play"]["start"]
     assert "chain" in talk.say("the word game").lower()
+
+
+def test_a_story_about_something_unknown_is_announced_as_another_one(talk: Any) -> None:
+    assert "a unicorn" in talk.say("can you tell me a story with a unicorn").split(".")[0]
+    assert talk.say("and then?") in [line.text for line in material().plain["after_show"].groups["say"]]
+
+
+def test_a_story_about_something_known_is_told(talk: Any) -> None:
+    assert "snail" in talk.say("tell me a story about a snail").split(".")[0].lower()
+
+
+def test_a_farewell_in_a_game_is_answered_as_such(talk: Any) -> None:
+    talk.say("riddle")
+    assert talk.say("goodbye") not in SHOWS["play"]["over"]

@@ -45,7 +45,7 @@ class Turn:
     def start(self, kind: str) -> Played:
         """Begin a joke, a song, a story or a game; ``play`` offers a choice."""
         if kind in self._shows["told"]:
-            return self._new(kind, self._shows["told"][kind])
+            return self._tell(kind, self._shows["told"][kind])
         if kind == "riddle":
             text, state = self._new(kind, [one["ask"] for one in self._shows["riddles"]])
             return text, replace(state, game=Game("riddle", text))
@@ -143,9 +143,19 @@ class Turn:
     def _say(self, kind: str, group: str, game: Game | None, **roles: str) -> Played:
         """Return a phrase of the performance `kind`, and the state with the game after it."""
         show = self._state.show if kind in ("play", "knock") else kind
-        return self._chance.choice(self._shows[kind][group]).format(**roles), replace(
-            self._state, game=game, show=show
-        )
+        return self._chance.choice(self._shows[kind][group]).format(**roles), replace(self._state, game=game, show=show)
+
+    def _tell(self, kind: str, listed: Sequence[str]) -> Played:
+        """Tell one about what the user wants: *a story with a snail*."""
+        tree = None if self._seen is None else self._seen.tree
+        about = [word for word in tree.words if word.low in ("about", "with", "of")] if tree else []
+        wanted = tree.children_of(about, "pobj")[:1] if tree else []
+        fit = [one for one in listed if any(word.lemma.lower() in one.lower() for word in wanted)]
+        text, state = self._new(kind, fit or listed)
+        if tree and wanted and not fit:
+            thing = tree.phrase(tree.subtree(wanted[0]))
+            text = f"{self._chance.choice(self._shows['without']).format(thing=thing)} {text}"
+        return text, state
 
     def _new(self, kind: str, listed: Sequence[str]) -> Played:
         """Return one that was not shown yet, as long as there is one."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import random
 from dataclasses import dataclass, field
 
+from ravestate.language.feelings import clauses
 from ravestate.language.matcher import Match
 from ravestate.modules.meta.nlp.analysis import Analysis
 from ravestate.modules.meta.nlp.question_word import QuestionWord
@@ -16,7 +17,7 @@ from .roles import Roles, has_verb, is_request, roles_of, turned
 from .state import State
 from .tongue import is_nonsense, is_number, tongue_of
 
-SUBJECT, SURE, MEANT = 0.45, 0.6, 0.6
+SUBJECT, SURE, MEANT = 0.45, 0.52, 0.6
 """The confidence in a subject, a moment and an act from which they decide."""
 FINER = 0.1
 """The advantage of a moment over a feeling or an act, which are broader."""
@@ -51,9 +52,9 @@ class Hearing:
     """An utterance as the table of answers sees it.
 
     The tags are: number, foreign, nonsense, signs, unparsed, asking (it ends with a question mark); pending (the agent has
-    asked), closed (with yes or no), answering; yes, no, unsure, few, short and single (words), verb, acting (an act),
+    asked), closed (with yes or no), answering; shown (the agent has just told a joke...), more (the user wants more); yes, no, unsure, few, short and single (words), verb, acting (an act),
     felt (a feeling), sure (a moment), topical, others (it tells of others), fragment; question, polar, why, fact, choice,
-    opinion, hypothetical, may (*can I*), should (*what must I*), agree (*isn't it*), you_think, told (of what the user told),
+    opinion, hypothetical, may (*can I*), should (*what must I*), agree (*isn't it*), you_think, are_you, told (of what the user told),
     agent (it has *you*), to_agent and of_user (by its subject); request, called (somebody has a
     name), correcting, age; of the statement: mine, living, about_me, thing_told, described, past, used, plan, negated,
     imagined, asserting (more than yes or no); the tone; and coin, which one half of the utterances have.
@@ -109,6 +110,8 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
         "pending": pending is not None,
         "closed": pending is not None and pending.closed,
         "answering": answering,
+        "shown": bool(state.said and state.shown) and state.said[-1].endswith(state.shown[-1]),
+        "more": "tell_more" in seen.acts or "then" in low,
         "few": size <= FEW_WORDS,
         "short": size <= SHORT,
         "single": size <= 1,
@@ -149,16 +152,18 @@ def _question_tags(found: Hearing, phrases: Material, seen: Analysis, low: set[s
     return {
         "question": True,
         "polar": polar,
+        "are_you": polar and subject == "you" and asked is not None and asked.verb == "be",
         "may": polar and subject == "I" and bool(modal & {"can", "may", "could"}),
         "should": not polar and subject == "I" and bool(modal),
         "agree": polar and subject != "you" and asked is not None and asked.negated,
         "you_think": polar and subject == "you" and any(word.dep == "ccomp" for word in seen.tree.words),
-        "told": not polar and "my" in low and subject != "I" or bool(low & {"remember", "my"} and low & {"remember", "know"}),
+        "told": (not polar and "my" in low and subject != "I")
+        or bool(low & {"remember", "my"} and low & {"remember", "know"}),
         "why": seen.question is QuestionWord.REASON,
         "fact": facts_matcher().loaded and any(facts_matcher().match_all(seen.sentences)),
         "hypothetical": bool(low & {"would", "could", "if", "imagine"}),
         "agent": seen.about_agent,
-        "to_agent": seen.about_agent and subject in ("you", ""),
+        "to_agent": seen.about_agent and (asked is None or subject == "you" or asked.subject.of("you")),
         "of_user": subject == "I",
         "opinion": found.thing != "" and (owned or opining),
     }
@@ -204,7 +209,9 @@ def _ranked(
         leaves = act.name == "farewell" and act.text == seen.sentences[-1]
         few = len(act.text.split()) <= FEW_WORDS
         least = SURE if leaves else ASKED if act.name in ENDINGS else FEW if few else MEANT
-        beside = act.text != asking or act.name == "greeting" if asking else few and len(seen.sentences) > 1 and not leaves
+        beside = (
+            act.text != asking or act.name == "greeting" if asking else few and len(seen.sentences) > 1 and not leaves
+        )
         if act.name in phrases.acts and act.score >= least and not beside:
             ranked.append((act.score + leaves, phrases.acts[act.name]))
     return [one for _, one in sorted(ranked, key=lambda pair: -pair[0])]
@@ -224,7 +231,8 @@ def moment_of(phrases: Material, seen: Analysis, asking: str = "") -> tuple[Mome
     If the user asks something, only the question and sad moments count.
     """
     best, sentence, score = None, "", 0.0
-    for match in phrases.matcher.match_all(seen.sentences[:4]):
+    whole = seen.sentences[:4]
+    for match in phrases.matcher.match_all([*whole, *clauses(whole, ())]):
         if match is None:
             continue
         found, few = phrases.moments.get(match.name), len(match.text.split()) <= 2
@@ -232,7 +240,7 @@ def moment_of(phrases: Material, seen: Analysis, asking: str = "") -> tuple[Mome
             continue
         if match.score < (SUBJECT if found is None else SURE_OF_FEW if few else 0.0):
             continue
-        if asking and match.text != asking and (found is None or found.tone != "sad"):
+        if asking and match.text not in asking and (found is None or found.tone != "sad"):
             continue
         weight = match.score if found is not None else match.score / 2  # a topic is less telling
         if weight > score:
@@ -251,7 +259,15 @@ def feeling_of(phrases: Material, seen: Analysis, sentence: str, tone: str) -> t
 
 def _least(match: Match, tone: str) -> float:
     """Return the confidence from which a feeling decides."""
-    least = FELT if match.name in _SAD else TURNED if tone == "sad" else AMAZED if match.name == "astonishing" else GLAD
+    least = (
+        FELT
+        if match.name in _SAD
+        else TURNED
+        if tone in ("sad", "angry")
+        else AMAZED
+        if match.name == "astonishing"
+        else GLAD
+    )
     return max(least, FEW) if len(match.text.split()) <= FEW_WORDS else least
 
 
@@ -274,7 +290,7 @@ def is_past(verb: str, seen: Analysis) -> bool:
 
 def _called_in(seen: Analysis, statement: Statement | None) -> str:
     """Return the name in *his name is Rex* and *the boat was called Rex*."""
-    if statement is None or statement.question or statement.subject.of("I") and statement.subject.head == "name":
+    if statement is None or statement.question or (statement.subject.of("I") and statement.subject.head == "name"):
         return ""
     if statement.subject.head == "name":
         return statement.object.text

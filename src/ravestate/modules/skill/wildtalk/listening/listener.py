@@ -12,13 +12,15 @@ from dataclasses import dataclass, replace
 from ravestate.modules.meta.nlp.analysis import Analysis
 
 from .games import Played, Turn, named
-from .hearing import ASKED, SHORT, Heard, Hearing, feeling_of, hear, is_living, is_past
+from .hearing import ASKED, Heard, Hearing, feeling_of, hear, is_living
 from .material import Line, Material, Moment, material
-from .roles import Roles, has_verb, roles_of
+from .roles import Roles, has_verb, is_request, roles_of
 from .state import LASTING, Being, Overheard, Pending, State
 
 SHOWS = ("joke", "song", "story", "play")
 """The acts that request a performance."""
+LONG, SHORT = 9, 3
+"""The words of a request with a verb, and of one without, that names a performance."""
 STANCES = ("like", "curious", "cool")
 
 Groups = Sequence[Sequence[Line]]
@@ -72,12 +74,13 @@ class Listener:
         if seen is None or not heard.text.strip():
             return False
         if state.game is not None:
-            return _leaves(seen) or Turn(self._phrases.shows, heard.text, seen, state, random.Random(0)).move() is not None
+            turn = Turn(self._phrases.shows, heard.text, seen, state, random.Random(0))
+            return "stop" in seen.acts or ("farewell" not in seen.acts and turn.move() is not None)
         if pending is None or not (pending.then or pending.start) or seen.question is not None:
             return False
         size = len(heard.text.split())
-        short = size < SHORT and not has_verb(seen) and not (seen.acts.keys() - {"contradiction"})
-        return short or bool((seen.yesno.yes or seen.yesno.no) and size <= SHORT and pending.closed)
+        short = size < 4 and not has_verb(seen) and not (seen.acts.keys() - {"contradiction"})
+        return short or bool((seen.yesno.yes or seen.yesno.no) and size <= 4 and pending.closed)
 
     def answer(self, heard: Heard, state: State, chance: random.Random) -> Answer:
         """Return the answer. Takes about a millisecond if the utterance has been encoded before."""
@@ -102,15 +105,17 @@ class Listener:
         """Return the performance that the user asks for."""
         if heard.seen is None or heard.seen.yesno.no:
             return ""
-        found = named(self._phrases.shows, heard.text, most=6 if heard.seen.question is not None else 3)
+        wants = heard.seen.question is not None or is_request(heard.seen)
+        found = named(self._phrases.shows, heard.text, most=LONG if wants else SHORT)
         acts = [act for act in heard.seen.acts.values() if act.name in SHOWS and act.score >= ASKED]
         return found or (max(acts, key=lambda act: act.score).name if acts else "")
 
     def _play(self, heard: Heard, state: State, chance: random.Random, moment: str) -> Played | None:
         seen = heard.seen
         turn = Turn(self._phrases.shows, heard.text, seen, state, chance)
-        if state.game is not None:
-            played = turn.stop() if seen is not None and _leaves(seen) else turn.move()
+        acts = frozenset[str]() if seen is None else seen.acts.keys()
+        if state.game is not None and "farewell" not in acts:
+            played = turn.stop() if "stop" in acts else turn.move()
             if played is not None:
                 return played
         if seen is not None and state.pending is not None and state.pending.start and seen.yesno.yes:
@@ -201,10 +206,6 @@ class Listener:
             if "living" in hearing.tags:
                 lines = [[line for line in group if line.roles & {"who", "they", "them"}] for group in lines]
             yield _Source(lines, hearing.topic)
-
-
-def _leaves(seen: Analysis) -> bool:
-    return "stop" in seen.acts or "farewell" in seen.acts
 
 
 def _with_fewer_questions(sources: Iterator[_Source], state: State) -> Iterator[_Source]:

@@ -24,7 +24,17 @@ _POINTING = frozenset(("it", "that", "this", "there"))
 _SINGULAR = {"are": "is", "were": "was", "have": "has", "do": "does"}
 _ASIDES = frozenset(("think", "guess", "suppose", "believe"))
 _BESIDE = frozenset(("relcl", "prep", "pobj", "cc", "conj", "appos", "punct", "advcl", "acl"))
-_TURNED = {"my": "your", "our": "your", "mine": "yours", "ours": "yours", "me": "you", "us": "you", "your": "my", "you": "me"}
+_NOMINAL = frozenset(("NOUN", "PROPN", "ADJ", "NUM", "DET", "PRON", "PART"))
+_TURNED = {
+    "my": "your",
+    "our": "your",
+    "mine": "yours",
+    "ours": "yours",
+    "me": "you",
+    "us": "you",
+    "your": "my",
+    "you": "me",
+}
 _REPEATABLE = re.compile(r"[\w' ,.’-]+")
 
 
@@ -73,7 +83,8 @@ def roles_of(seen: Analysis, sentence: str, focus: Being | None, material: Mater
     being = _being(seen, material)
     pronouns = {word.low for word in seen.tree.words}
     genders = {_PRONOUNS[word] for word in pronouns if word in _PRONOUNS}
-    if being is None and focus is not None and (genders or pronouns & {"they", "them", "it", "its", "their"}):
+    others = {"they", "them", "their"} | ({"it", "its"} if focus is not None and focus.kind == "pet" else set())
+    if being is None and focus is not None and (genders or pronouns & others):
         being = focus if {focus.gender} | genders != {"f", "m"} else None
     words = _THEY[next(iter(genders))] if genders else _IT if pronouns & {"it", "its"} else None
     if being is not None:
@@ -108,8 +119,7 @@ def has_verb(seen: Analysis) -> bool:
 def is_request(seen: Analysis) -> bool:
     """Return whether the user demands something: *prove it*."""
     first = next((word for word in seen.tree.words if word.pos not in ("PUNCT", "INTJ")), None)
-    bare = first is not None and first.pos == "VERB" and first.dep == "ROOT" and first.tag in ("VB", "VBP")
-    return bare or any(statement.request for statement in seen.statements)
+    return first is not None and first.pos == "VERB" and first.dep == "ROOT" and first.tag in ("VB", "VBP")
 
 
 def _is_aside(tree: Tree, verb: Word) -> bool:
@@ -123,7 +133,9 @@ def _statement(seen: Analysis, sentence: str) -> Statement | None:
         one for one in seen.statements if isinstance(one.triple.subject, str) and isinstance(one.triple.object, str)
     ]
     low = (sentence or (seen.sentences[-1] if seen.sentences else "")).lower()
-    inside = [one for one in told if one.verb and one.subject.text.lower() in low and one.object.text.lower() in low] or told
+    inside = [
+        one for one in told if one.verb and one.subject.text.lower() in low and one.object.text.lower() in low
+    ] or told
     first = [one for one in inside if not one.hearsay and not one.conditional] or inside
     telling = [one for one in first if one.subject.head or one.subject.text.lower() not in _POINTING] or first
     return telling[0] if telling else None
@@ -136,7 +148,9 @@ def _thing(tree: Tree, statement: Statement) -> str:
         last = phrase.text.split()[-1].lower()
         for word in tree.words:
             if word.low == last and word.pos in ("NOUN", "PROPN"):
-                return turned(tree, [part for part in tree.subtree(word) if part.dep not in _BESIDE])
+                words = [part for part in tree.subtree(word) if part.dep not in _BESIDE]
+                odd = words[-1:] != [word] or any(part.pos not in _NOMINAL for part in words)
+                return "" if odd else turned(tree, words)
     return ""
 
 
@@ -171,5 +185,11 @@ def _as_being(tree: Tree, phrase: Phrase, kind: str, gender: str, *, mine: bool)
     noun = next((word.low for word in tree.words if word.lemma.lower() == phrase.head), phrase.head)
     words = [_TURNED.get(word.lower(), word) for word in phrase.text.split()]
     owned = phrase.owner is not None and len(words) <= 3
-    text = " ".join(words) if owned else f"your {noun}" if phrase.owner is not None or (mine and kind == "pet") else f"the {noun}"
+    text = (
+        " ".join(words)
+        if owned
+        else f"your {noun}"
+        if phrase.owner is not None or (mine and kind == "pet")
+        else f"the {noun}"
+    )
     return Being(text, kind, gender, plural or (phrase.amount or 1) > 1)
