@@ -15,10 +15,11 @@ FITTING = {
     "work": ("job",),
     "organisation": ("workplace", "group"),
     "club": ("group",),
+    "university": ("school",),
     "subject": ("studies",),
     "activity": ("activity",),
 }
-"""The classes of `nouns.yaml` that are values of each kind of topic."""
+"""The classes of `nouns.yaml` that are values of each kind of topic, or of one topic."""
 _FOLDER = files(__name__.rpartition(".")[0])
 
 

@@ -23,6 +23,8 @@ _ANY = re.compile(r"(?:any|there$|here$)", re.IGNORECASE)
 _LEISURE = re.compile(r"\b(?:free|spare|leisure) time\b|\bfor fun\b|\bas a hobby\b", re.IGNORECASE)
 _NAMING = frozenset(["'s", "'", "s", "name", "names", "is", "are", "called", "named", ",", "who", "that"])
 """Words between a relative and their name: *my mother's name is Anna*."""
+_TURN = re.compile(r", (?:and )?(not) |,? but (?!i\b)", re.IGNORECASE)
+_NOT = re.compile(r"n['’]t\b|\b(?:not?|never)\b", re.IGNORECASE)
 _NOMINAL = frozenset(["PROPN", "NOUN", "X", "ADJ"])
 
 
@@ -55,14 +57,19 @@ class Reader:
         """Return the facts that the user states, one for each topic; `known` are those of before."""
         told: dict[str, tuple[str, ...]] = {}
         gone: dict[str, tuple[str, ...]] = {}
+        denied = ""  # the topic of the last denial: my name isn't Ada, it's Ida
         for said in filter(self._asserted, self.seen.statements):
             if topic := self.ended(said):
                 gone.setdefault(topic, ())
                 continue
-            for link in self.links(said):
+            instead = denied and said.verb == "be" and said.subject.text.lower() == "it"
+            for link in [Link(denied, said.object)] if instead else self.links(said):
+                denied = link.topic if said.negated else ""
                 values = self._values(link)
                 over = said.past and link.topic not in LASTING
-                if said.negated or (over and values and among(values[0], (known or {}).get(link.topic, ()))):
+                if self._denies(said, link.phrase) or (
+                    over and values and among(values[0], (known or {}).get(link.topic, ()))
+                ):
                     if values or link.phrase is None or _ANY.match(link.phrase.text):
                         gone.setdefault(link.topic, values)
                 elif not over:
@@ -72,8 +79,21 @@ class Reader:
                 _add(told, topic, values)
         if self.asked == "home" and "origin" in told and "home" not in told:
             told["home"] = told.pop("origin")
-        denied = [Fact(topic, values, gone=True) for topic, values in gone.items() if topic not in told]
-        return [*(Fact(topic, values) for topic, values in told.items()), *denied]
+        struck = [Fact(topic, values, gone=True) for topic, values in gone.items() if values or topic not in told]
+        return [*(Fact(topic, values) for topic, values in told.items()), *struck]
+
+    def _denies(self, said: nlp.Statement, phrase: Phrase | None) -> bool:
+        """Return whether a negation covers a phrase: *Bonn* in *I live in Ulm, not in Bonn* and *I don't live in Bonn, but
+        in Ulm*, but not *Ulm*."""
+        turn = _TURN.search(self.tree.text)
+        if (
+            turn is None
+            or not said.negated
+            or phrase is None
+            or (turn[1] and _NOT.search(self.tree.text[: turn.start()]))
+        ):
+            return said.negated
+        return (phrase.text in self.tree.text[turn.end() :]) == bool(turn[1])
 
     def asks(self) -> Fact | None:
         """Return the fact that the user asks for; it has values if they want them confirmed."""
@@ -134,8 +154,8 @@ class Reader:
         subject, object, predicate = said.subject, said.object, _predicate(said)
         if subject.person == "I":
             yield from self._of_user(said)
-        elif object.person == "I" and (topic := SAYS.get(f"{predicate} me")):
-            yield Link(topic, subject)
+        elif object.person == "I" and (found := SAYS.get(f"{predicate} me")):
+            yield Link(found[0], subject, found[1])
         elif topic := self.noun(subject):
             if predicate in _CALLED and not object.preposition:
                 sure = bool(object.names) or subject.head == "name" or TOPICS[topic].kind != "people"
@@ -148,7 +168,7 @@ class Reader:
     def noun(self, phrase: Phrase) -> str:
         """Return the topic of *my job*, *my sister's name*, *my favourite food*; empty for other phrases."""
         owner = phrase.owner
-        if owner is None or not phrase.of("I"):
+        if owner is None or not phrase.of("I") or _is_former(phrase.text):
             return ""
         if (phrase.head == "name" and owner.person != "I") or (phrase.head == "one" and owner.owner is not None):
             return self.noun(owner)  # my sister's name, one of my hobbies
@@ -172,9 +192,9 @@ class Reader:
             nominal = predicate == "be" and not object.preposition and phrase.preposition not in ("", "from")
             key = f"{predicate} {object.head if nominal else ''} {phrase.preposition}"
             verb = f"{self._word_before(phrase)} {phrase.preposition}"
-            if phrase.text and (topic := SAYS.get(" ".join(key.split())) or SAYS.get(verb, "")):
-                yield Link(topic, phrase, predicate != "be" and (phrase.preposition != "in" or topic == "subject"))
-                if topic == "childhood" and "born" in self.tree.text:
+            if phrase.text and (found := SAYS.get(" ".join(key.split())) or SAYS.get(verb)):
+                yield Link(found[0], phrase, found[1])
+                if found[0] == "childhood" and "born" in self.tree.text:
                     yield Link("birthplace", phrase)  # I was born and raised in Dresden
 
     def _pursuit(self, said: nlp.Statement) -> Link | None:
@@ -186,10 +206,12 @@ class Reader:
         chained, direct = len(verbs) > 1, object.text and not object.preposition
         free = object.head in ("time", "weekend", "fun")
         written = self._span(verb.low, Phrase("") if free else object)
+        if verb.tag in ("VBN", "VBZ"):
+            written = re.sub(r"^\w+", verb.lemma, written)
         if verbs[0] in WORDS["likes"]:
             wanted = chained
         elif verbs[0] in WORDS["pastimes"]:
-            wanted = chained or direct
+            wanted = verb.tag != "VBD" and (chained or object.text.endswith("ing") if verbs[0] == "go" else direct)
         elif verb.tag == "VBG" and verb.dep == "conj":  # I love climbing and baking bread
             wanted = any(other.verb in WORDS["likes"] and other.holds for other in self.seen.statements)
         elif verbs[0] != "be" and _LEISURE.search(self.tree.text):
@@ -202,15 +224,15 @@ class Reader:
     def _has(self, said: nlp.Statement) -> bool:
         """Return whether the user says what they have: *I have*, *I've got*."""
         got = said.verb == "get" and any(word.low == "got" for word in self.tree.words)
-        return said.subject.person == "I" and (said.verb == "have" or got)
+        return said.subject.person == "I" and (said.verb in ("have", "own") or got)
 
     def _being(self, said: nlp.Statement) -> Iterator[Link]:
         """Yield what *I am ...* tells: an age, an occupation, studies, or a name."""
         object, text = said.object, said.object.text
         if number := re.fullmatch(r"(\d+)(?: years?(?: old)?| old)?", text):
             yield Link("age", object, value=number[1])
-        elif object.head in ("member", "fan") and object.owner is not None:
-            yield Link("club" if object.head == "member" else "liking", object.owner)
+        elif object.owner is not None and (found := SAYS.get(f"be {object.head} of")):
+            yield Link(found[0], object.owner)
         elif object.head == "student":
             yield Link("occupation", object, value="student")
             yield Link("subject", object.owner or object, sure=False, value=text.rpartition(" ")[0])
@@ -221,7 +243,7 @@ class Reader:
             yield Link("occupation", object, sure=self.asked == "occupation")
             yield Link(NAME, object, sure=False)
             places = (phrase for phrase in said.phrases if phrase.preposition in ("at", "for", "with"))
-            yield from (Link("employer", phrase) for phrase in places)
+            yield from (Link("employer", phrase, sure=False) for phrase in places)
 
     def ended(self, said: nlp.Statement) -> str:
         """Return the topic that *I quit my job*, *I moved away* ends; empty if there is none."""
@@ -234,13 +256,15 @@ class Reader:
         *a son named Ben*, *call me Tom*.
 
         The parser often misses the second of two, so the words decide here."""
+        unsaid: set[str] = set()
         for said in self.seen.statements:
-            if said.question or said.conditional or said.hearsay or (said.negated and said.verb == "call"):
-                return
-        for said in self.seen.statements:
-            for phrase in (said.subject, said.object, *said.phrases):
+            phrases = (said.subject, said.object, *said.phrases)
+            open = said.question or said.conditional or said.hearsay or said.past or said.plan
+            if open or (said.negated and said.verb == "call"):
+                unsaid |= {said.verb, *(phrase.head for phrase in phrases)}
+            for phrase in phrases if not open else ():
                 mine = phrase.of("I") or (self._has(said) and not said.negated)
-                if phrase.names and mine and (topic := self.relative(phrase.head)):
+                if phrase.names and mine and not _is_former(phrase.text) and (topic := self.relative(phrase.head)):
                     yield topic, self._fitting(topic, phrase.names)
         words = self.tree.words
         for before, word in itertools.pairwise(words):
@@ -249,11 +273,12 @@ class Reader:
             topic = NAME if own or me else self.relative(word.lemma)
             passed = [one.low for one in itertools.takewhile(lambda one: one.low in _NAMING, words[word.index + 1 :])]
             first = words[word.index + 1 + len(passed) :][:1]
-            if (
-                topic
-                and first
-                and (me or {"'s"} & set(passed[:own]) or {"name", "names", "called", "named"} & set(passed))
-            ):
+            named = me or {"'s"} & set(passed[:own]) or {"name", "names", "called", "named"} & set(passed)
+            named = named or (passed == [","] and word.tag == "NNS" and {one.pos for one in first} == {"PROPN"})
+            said = not unsaid & {word.lemma, before.lemma} and not _is_former(
+                f"{words[max(0, before.index - 1)].low} {before.low} {passed[:1]}"
+            )
+            if topic and first and named and said:
                 yield topic, self._fitting(topic, map(self._run, (*first, *self._joined(first[0]))))
 
     def relative(self, noun: str) -> str:
@@ -317,6 +342,10 @@ class Reader:
             run.append(after)
             word = after
         return " ".join(one.text for one in run)
+
+
+def _is_former(words: str) -> bool:
+    return bool(WORDS["former"] & set(re.split(r"\W", words.lower())))
 
 
 def _predicate(said: nlp.Statement) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 from datetime import datetime
@@ -9,6 +10,7 @@ from datetime import datetime
 from ravestate.modules import nlp
 from ravestate.modules.meta.verbaliser.intents import Intent
 
+from .answers import spelled_out
 from .reading import Reader
 from .topics import NAME, TOPICS, WORDS
 from .values import value_of
@@ -76,7 +78,12 @@ def answers_in(reader: Reader, told: Iterable[Told], known: Facts) -> list[Told]
 
 
 def _is_worth_keeping(reader: Reader, said: nlp.Statement) -> bool:
-    if said.verb in WORDS["passing"] or " to " in said.triple.predicate or said.object.person != "other":
+    called = said.triple.predicate in ("be called", "be named")
+    if (
+        (said.verb in WORDS["passing"] and not called)
+        or " to " in said.triple.predicate
+        or said.object.person != "other"
+    ):
         return False
     return isinstance(said.triple.object, str) and not reader.ended(said) and (said.holds or _happened(reader, said))
 
@@ -85,7 +92,7 @@ def _happened(reader: Reader, said: nlp.Statement) -> bool:
     """Return whether it is an event of the past: *I painted a dragon*, but not *I lived in Rome*."""
     verb = reader.verb(said)
     flags = said.negated or said.hearsay or said.conditional or said.plan or said.question or said.request
-    return not flags and verb is not None and verb.tag == "VBD" and said.verb not in WORDS["states"]
+    return not flags and verb is not None and verb.tag == "VBD" and said.verb not in WORDS["states"] | WORDS["pastimes"]
 
 
 def _about(reader: Reader, said: nlp.Statement) -> str:
@@ -93,7 +100,7 @@ def _about(reader: Reader, said: nlp.Statement) -> str:
     subject, object = said.subject, said.object
     if subject.person == "I":
         mine = "my" in object.text.lower().split() and not _happened(reader, said)
-        deictic = reader.written(object).lower().startswith(("this ", "that ", "these ", "those "))
+        deictic = re.match(r"(?:this|that|these|those|it|here|there)\b", reader.written(object), re.IGNORECASE)
         fits = object.text and not object.preposition and said.verb not in ("be", "have") and not mine and not deictic
         return "I" if fits and not list(reader.links(said)) else ""
     words = subject.text.split() if subject.of("I") else []
@@ -114,8 +121,10 @@ def _retold(reader: Reader, said: nlp.Statement) -> str:
     while top.dep == "xcomp":
         top = tree.head(top)
     words = [top, *(word for child in tree.children(top) if child.dep not in _ASIDE for word in tree.subtree(child))]
-    text = tree.phrase(words)
-    if said.subject.text.split()[-1:] and said.subject.text.split()[-1].lower() not in text.lower().split():
+    text = spelled_out(tree.phrase(words))
+    if said.subject.text.lower().split()[-1:] and said.subject.text.lower().split()[-1] not in re.findall(
+        r"\w+", text.lower()
+    ):
         text = f"{said.subject.text} {text}"
     return " ".join(_SAID_BACK.get(word.lower(), word) for word in text.split())
 

@@ -73,7 +73,7 @@ ASKED = tuple(topic.name for topic in _ROWS if topic.asked)
 WORDS = {name: frozenset(words) for name, words in cast("dict[str, list[str]]", _TABLE).items()}
 """The lists of words."""
 NOUNS = {noun: topic.name for topic in _ROWS for noun in topic.nouns}
-SAYS = {phrase: topic.name for topic in _ROWS for phrase in topic.says}
+SAYS = {phrase.rstrip("~"): (topic.name, not phrase.endswith("~")) for topic in _ROWS for phrase in topic.says}
 ENDS = {phrase: topic.name for topic in _ROWS for phrase in topic.ends}
 ASKS = {phrase: topic.name for topic in _ROWS for phrase in topic.asks}
 

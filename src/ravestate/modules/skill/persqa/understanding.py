@@ -96,7 +96,9 @@ class _Hearing:
             return vouched
         if (asks or "ask_everything" in self.acts) and (inquiry := self.inquiry()):
             return inquiry
-        facts = [fact for fact in self.reader.facts(self.known) if not fact.gone or self.matters(fact)]
+        facts = self.reader.facts(self.known)
+        told = {fact.topic for fact in facts if not fact.gone}
+        facts = [fact for fact in facts if fact.topic in told or self.matters(fact)]
         free = tuple(told_in(self.reader))
         aside = self.leave or asks
         if facts or free:

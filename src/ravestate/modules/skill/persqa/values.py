@@ -7,7 +7,7 @@ import unicodedata
 
 from ravestate.modules import nlp
 
-from .kinds import likeness
+from .kinds import FITTING, likeness
 from .topics import WORDS, Topic
 from .wording import tidy
 
@@ -85,7 +85,7 @@ def _fits(text: str, determined: bool, topic: Topic, seen: nlp.Analysis, sure: b
             return False
         case _:
             pass
-    return likeness(text, "club" if topic.name == "club" else kind) > least
+    return likeness(text, topic.name if topic.name in FITTING else kind) > least
 
 
 def _trimmed(text: str) -> str:
