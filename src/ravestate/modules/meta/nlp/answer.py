@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 from ravestate.language.matcher import bundled_matcher
 from ravestate.language.normal import plain
+from ravestate.language.shape import shape
 
 from .word_set import word_set
 
@@ -37,12 +38,8 @@ class YesNo:
         return self.yes is not None
 
 
-NEITHER = YesNo()
-UNSURE = YesNo(0, 0, True)
-YES = (YesNo(1, 0, False), YesNo(2, 0, False))
-"""Weakly, surely."""
-NO = (YesNo(0, 1, False), YesNo(0, 2, False))
-_CLASSES = {"yes_1": YES[0], "yes_2": YES[1], "no_1": NO[0], "no_2": NO[1], "unsure": UNSURE}
+_CLASSES = {"yes_2": 2, "yes_1": 1, "unsure": 0, "no_1": -1, "no_2": -2}
+"""The classes of examples as scores."""
 
 _PART = re.compile(r"([^.,;:!?…\n]*)([.,;:!?…\n]*)")
 _STRETCHED = re.compile(r"([a-z])\1{2,}")
@@ -70,48 +67,38 @@ def yesno_of(text: str) -> YesNo:
         (YesNo(yes=0, no=1, unsure=False), YesNo(yes=None, no=None, unsure=None))
     """
     if emoji := re.match(r"\W*([👍👎])", text):
-        return YES[1] if emoji[1] == "👍" else NO[1]
-    first, *others = _TURN.split(_plain(text), maxsplit=1)
-    answer = _answer(first)
-    other = _answer(others[0]) if others else NEITHER
-    if not any(word not in _FILLERS for word in first.replace(",", " ").split()):
-        return other  # thanks, but no
-    if not answer or not other or other == UNSURE or (answer.yes and other.yes) or (answer.no and other.no):
-        return answer
-    return YES[0] if other.yes else NO[0]
+        return YesNo(2, 0, False) if emoji[1] == "👍" else YesNo(0, 2, False)
+    spoken = _PART.findall(_STRETCHED.sub(r"\1", text[:_LONGEST].lower()))
+    first, *others = _TURN.split("".join(plain(words) + marks for words, marks in spoken), maxsplit=1)
+    score, other = _score(first), _score(others[0]) if others else None
+    if not any(_parts(first)):  # thanks, but no
+        score = other
+    elif score is not None and other and score * other <= 0:
+        score = 1 if other > 0 else -1
+    return YesNo() if score is None else YesNo(max(score, 0), max(-score, 0), score == 0)
 
 
-def _plain(text: str) -> str:
-    """Return the beginning of a text in plain form, with its punctuation."""
-    parts = _PART.findall(_STRETCHED.sub(r"\1", text[:_LONGEST].lower()))
-    return "".join(plain(words) + marks for words, marks in parts)
-
-
-def _answer(text: str) -> YesNo:
-    """Return the answer of the first part that is more than a filler, with the parts up to the end of its sentence."""
-    found = NEITHER
+def _score(text: str) -> int | None:
+    """Return the score of the first part that is more than a filler, with the parts up to the end of its sentence."""
+    found: int | None = None
     hedged = False
     for words, marks in _parts(text):
-        answer = _of_part(words)
-        if "?" in marks and words[:2] != ["why", "not"]:
-            break
+        score = _score_of_part(words, asks="?" in marks)
         if hedge := _HEDGE.search(" ".join(words)):
             hedged = True
-            if found and hedge[0] == " ".join(words):
+            if found is not None and hedge[0] == " ".join(words):
                 continue
-        if found in (NEITHER, UNSURE):
-            if not answer:
+        if not found:
+            if score is None:
                 break
-            found = answer
-        elif answer in (*YES, *NO):
-            if bool(answer.yes) != bool(found.yes):
-                return UNSURE if hedged or 1 in (found.yes, found.no) else found
-            found = max(found, answer, key=lambda side: (side.yes or 0) + (side.no or 0))
+            found = score
+        elif score:
+            if score * found < 0:
+                return 0 if hedged or abs(found) == 1 else found
+            found = max(found, score, key=abs)
         if any(mark in ".!?…\n" for mark in marks):
             break
-    if hedged and found in (YES[1], NO[1]):
-        return YES[0] if found.yes else NO[0]
-    return found
+    return found and (found // abs(found) if hedged else found)
 
 
 def _parts(text: str) -> Iterator[tuple[list[str], str]]:
@@ -124,32 +111,22 @@ def _parts(text: str) -> Iterator[tuple[list[str], str]]:
             yield words, marks
 
 
-def _of_part(words: Sequence[str]) -> YesNo:
-    """Return the meaning of a part as an answer."""
-    part = " ".join(words)
-    match = bundled_matcher("answers").match(part)
-    if match is not None and match.example == part:
-        return _CLASSES[match.name]
-    if hedge := re.match(_HEDGE, part):
-        answer = _of_part(part[hedge.end() :].split()) if hedge[0] != part else UNSURE
-        if answer in (YES[1], NO[1]):
-            return YES[0] if answer.yes else NO[0]
+def _score_of_part(words: Sequence[str], asks: bool) -> int | None:
+    """Return the score of a part; a question is an answer only if it resembles an example that asks."""
+    match = bundled_matcher("answers").match(" ".join(words))
+    score = _CLASSES[match.name] if match is not None else None
+    if match is not None and match.example == " ".join(words):
+        return score if not asks or shape(match.example)[3] else None
+    if asks:
+        return score if match is not None and shape(match.example)[3] else None
     first, *rest = words
     if first in _YES and not (first == "sure" and rest and rest[0] in _AUXILIARIES):
-        return YES[1]
+        return 2
     if first in _NO and (first != "no" or not rest or rest[0] in _NO_NOUN):
-        return NO[1]
-    if (short := _short_answer(words)) is not None:
-        return short
-    return NEITHER if match is None else _CLASSES[match.name]
-
-
-def _short_answer(words: Sequence[str]) -> YesNo | None:
-    """Return the meaning of a pronoun with an auxiliary alone: *I do*, *she really is not*."""
-    if not (len(words) > 1 and words[0] in _PRONOUNS):
-        return None
-    adverb = words[1].endswith("ly") or words[1] in ("sure", "just", "still", "always")
-    rest = [word for word in words[1 + adverb :] if word != "really"]
-    if rest and rest[0] in _AUXILIARIES and rest[1:] in ([], ["not"]):
-        return NO[1] if rest[1:] else YES[1]
-    return None
+        return -2
+    if first in _PRONOUNS and rest:  # a short answer: *I do*, *she really is not*
+        adverb = rest[0].endswith("ly") or rest[0] in ("sure", "just", "still", "always")
+        verb = [word for word in rest[adverb:] if word != "really"]
+        if verb and verb[0] in _AUXILIARIES and verb[1:] in ([], ["not"]):
+            return -2 if verb[1:] else 2
+    return score
