@@ -112,13 +112,13 @@ def _parts(text: str) -> Iterator[tuple[list[str], str]]:
 
 
 def _score_of_part(words: Sequence[str], asks: bool) -> int | None:
-    """Return the score of a part; a question is an answer only if it resembles an example that asks."""
+    """Return the score of a part. A question is an answer if it is a weak one, or if it resembles an example that asks."""
     match = bundled_matcher("answers").match(" ".join(words))
     score = _CLASSES[match.name] if match is not None else None
-    if match is not None and match.example == " ".join(words):
-        return score if not asks or shape(match.example)[3] else None
-    if asks:
-        return score if match is not None and shape(match.example)[3] else None
+    if match is not None and asks:
+        return score if abs(score or 0) < 2 or shape(match.example)[3] else None
+    if asks or (match is not None and match.example == " ".join(words)):
+        return score
     first, *rest = words
     if first in _YES and not (first == "sure" and rest and rest[0] in _AUXILIARIES):
         return 2
