@@ -7,7 +7,7 @@ answers resemble an example in ``answers.yaml``. Each part between commas is rea
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 from ravestate.language.matcher import bundled_matcher
@@ -38,23 +38,27 @@ class YesNo:
         return self.yes is not None
 
 
-_CLASSES = {"yes_2": 2, "yes_1": 1, "unsure": 0, "no_1": -1, "no_2": -2}
+_SCORES = {"yes_2": 2, "yes_1": 1, "unsure": 0, "no_1": -1, "no_2": -2}
 """The classes of examples as scores."""
-
 _PART = re.compile(r"([^.,;:!?…\n]*)([.,;:!?…\n]*)")
 _STRETCHED = re.compile(r"([a-z])\1{2,}")
 _TURN = re.compile(r"\b(?:but|although|though|however)\b")
 _HEDGE = re.compile(r"\b(?:probably|maybe|perhaps|possibly|i guess|i suppose)\b(?! (?!yes|no|so|not)\w)")
 """A hedge before an answer or at the end of a part; *maybe he is at home* hedges a statement."""
 _FILLERS = word_set("well oh ah uh um er hm hmm mm honestly actually so and then please sorry thanks frankly ha haha")
-_YES = word_set("yes yeah yep yup yea ya yah yay yess aye ok okay okey sure")
-_NO = word_set("no nope nah nay naw")
-_AUXILIARIES = word_set("am is are was were do does did have has had can could will would shall should may might must")
-_PRONOUNS = word_set("i you he she it we they that this there")
-_NO_NOUN = (
-    _PRONOUNS | _FILLERS | _NO | word_set("my your the a because not never thank thanks but if let sir ma'am maam way")
+_VERB = "am|is|are|was|were|do|does|did|have|has|had|can|could|will|would|shall|should|may|might|must"
+_YES = re.compile(rf"(?:yes|yeah|yep|yup|yea|ya|yah|yay|yess|aye|ok|okay|okey|sure(?! (?:{_VERB})\b))\b")
+_NO = re.compile(
+    r"(?:nope|nah|nay|naw|no(?! (?!(?:i|you|he|she|it|we|they|that|this|there|my|your|the|a|well|oh|please|sorry|thanks?|"
+    r"no|nope|because|not|never|but|if|let|sir|ma'am|maam|way)\b)))\b"
 )
-"""Words that do not continue a *no* before a noun: *no brothers*."""
+"""No, unless a noun follows: *no brothers*."""
+_SHORT = re.compile(
+    rf"(?:i|you|he|she|it|we|they|that|this|there) (?:\w+ly |sure |just |still |always )?(?:{_VERB})(?: really)?( not)?$"
+)
+"""A short answer: *I do*, *she certainly is not*."""
+_LEAD = 2
+"""The words before a comma that may lead to an answer: *I mean, sure*."""
 _LONGEST = 400
 """Answers are short: the rest of a long text is not read."""
 
@@ -82,51 +86,43 @@ def _score(text: str) -> int | None:
     """Return the score of the first part that is more than a filler, with the parts up to the end of its sentence."""
     found: int | None = None
     hedged = False
-    for words, marks in _parts(text):
-        score = _score_of_part(words, asks="?" in marks)
-        if hedge := _HEDGE.search(" ".join(words)):
+    for part, marks in _parts(text):
+        score = _score_of_part(part, asks="?" in marks)
+        if (hedge := _HEDGE.search(part)) is not None:
             hedged = True
-            if found is not None and hedge[0] == " ".join(words):
+            if found is not None and hedge[0] == part:
                 continue
         if not found:
-            if score is None:
+            if score is None and len(part.split()) > _LEAD:
                 break
-            found = score
+            found = found if score is None else score
+        elif score and score * found < 0:
+            return 0 if hedged or abs(found) == 1 else found
         elif score:
-            if score * found < 0:
-                return 0 if hedged or abs(found) == 1 else found
             found = max(found, score, key=abs)
-        if any(mark in ".!?…\n" for mark in marks):
+        if not {*".!?…\n"}.isdisjoint(marks):
             break
-    return found and (found // abs(found) if hedged else found)
+    return found // abs(found) if found and hedged else found
 
 
-def _parts(text: str) -> Iterator[tuple[list[str], str]]:
-    """Yield the parts of a text without fillers before them: their words, and the punctuation after them."""
+def _parts(text: str) -> Iterator[tuple[str, str]]:
+    """Yield the parts of a text without fillers before them, and the punctuation after them."""
     for part, marks in _PART.findall(text):
         words = part.split()
         while words and words[0] in _FILLERS:
             del words[0]
         if words:
-            yield words, marks
+            yield " ".join(words), marks
 
 
-def _score_of_part(words: Sequence[str], asks: bool) -> int | None:
+def _score_of_part(part: str, asks: bool) -> int | None:
     """Return the score of a part. A question is an answer if it is a weak one, or if it resembles an example that asks."""
-    match = bundled_matcher("answers").match(" ".join(words))
-    score = _CLASSES[match.name] if match is not None else None
+    match = bundled_matcher("answers").match(part)
+    score = _SCORES[match.name] if match is not None else None
     if match is not None and asks:
-        return score if abs(score or 0) < 2 or shape(match.example)[3] else None
-    if asks or (match is not None and match.example == " ".join(words)):
+        return score if match.name[-1] != "2" or shape(match.example)[3] else None
+    if asks or (match is not None and match.example == part):
         return score
-    first, *rest = words
-    if first in _YES and not (first == "sure" and rest and rest[0] in _AUXILIARIES):
-        return 2
-    if first in _NO and (first != "no" or not rest or rest[0] in _NO_NOUN):
-        return -2
-    if first in _PRONOUNS and rest:  # a short answer: *I do*, *she really is not*
-        adverb = rest[0].endswith("ly") or rest[0] in ("sure", "just", "still", "always")
-        verb = [word for word in rest[adverb:] if word != "really"]
-        if verb and verb[0] in _AUXILIARIES and verb[1:] in ([], ["not"]):
-            return -2 if verb[1:] else 2
-    return score
+    if short := _SHORT.match(part):
+        return -2 if short[1] else 2
+    return 2 if _YES.match(part) else -2 if _NO.match(part) else score
