@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from ravestate.language.contractions import word_set
+
 from .question_word import QuestionWord
 from .tree import Word
-from .word_set import word_set
 
 QUESTION_WORDS = {
     "who": QuestionWord.PERSON,
@@ -22,13 +23,13 @@ QUESTION_WORDS = {
 }
 
 AUXILIARIES = word_set(
-    "do does did am is are was were 's 're s re have has had 've can could will would shall should may might must 'll 'd ca wo ",
+    "do does did am is are was were 's 're s re have has had 've can could will would shall should may might must 'll 'd ca wo "
     "ai",
 )
 """Verbs that precede the subject in a question."""
 
 _MEASURES = word_set(
-    "many much old long far tall big large high deep heavy fast hot cold cool warm expensive often wide small short ",
+    "many much old long far tall big large high deep heavy fast hot cold cool warm expensive often wide small short "
     "young late soon close near thick strong loud rich quickly regularly frequently little few costly",
 )
 _CLASSES = {

@@ -5,19 +5,18 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from functools import cached_property
 
+from ravestate.language.contractions import word_set
 from ravestate.language.entity import Entity
 
 from .clause import NOTHING, Clause, Part
-from .noun_phrase import noun_phrase
 from .phrase import Phrase, person_of, phrase_of
 from .statement import Statement
 from .tree import Tree, Word
 from .triple import Triple
 from .verbs import SUBJECTS, lemma_of, makes_future
-from .word_set import word_set
 
 _LASTING = word_set(
-    "be live work study have own like love hate enjoy prefer want need know believe play speak belong stay go teach smoke drink",
+    "be live work study have own like love hate enjoy prefer want need know believe play speak belong stay go teach smoke drink "
     "train run attend keep collect date share feel hope think sing dance paint cook swim ride eat",
 )
 """Verbs of states and habits. In the past they say what is so no more; with others, something happened and still holds."""
@@ -218,7 +217,7 @@ class Assertion:
                 above.dep in SUBJECTS or above.low == "of" for above in self._above_in_clause(word)
             )
             if beside:
-                yield phrase_of(tree, word, noun_phrase(tree, word))
+                yield phrase_of(tree, word)
 
     def _above_in_clause(self, word: Word) -> Iterator[Word]:
         for above in self._tree.ancestors(word):

@@ -6,9 +6,10 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 
+from ravestate.language.contractions import word_set
+
 from .asking import AUXILIARIES, QUESTION_WORDS, kind_at
-from .noun_phrase import adjective_phrase, conjuncts, gerund_phrase, noun_phrase
-from .phrase import Phrase, phrase_of
+from .phrase import Phrase, adjective_phrase, conjuncts, gerund_phrase, noun_phrase, phrase_of
 from .question_word import QuestionWord
 from .tree import Tree, Word
 from .triple import Triple
@@ -24,13 +25,12 @@ from .verbs import (
     lemma_of,
     with_particles,
 )
-from .word_set import word_set
 
 _DIRECT = ("dobj", "attr", "acomp", "oprd", "pobj", "punct")  # the parser sometimes labels an object as the last two
 _ADVERBIAL = (QuestionWord.PLACE, QuestionWord.TIME, QuestionWord.REASON, QuestionWord.FORM)
 _RELATIVE = ("who", "that", "which", "whom")
 _FEELINGS = word_set(
-    "interested tired bored married divorced scared excited worried surprised pleased disappointed confused retired ",
+    "interested tired bored married divorced scared excited worried surprised pleased disappointed confused retired "
     "annoyed satisfied",
 )
 _PURSUITS = word_set("hobby job passion dream goal plan interest pastime task habit")
@@ -315,7 +315,7 @@ class Clause:
     def _antecedent(self) -> list[Part]:
         """The noun before a relative clause."""
         noun = self.tree.head(self.verb)
-        return [phrase_of(self.tree, noun, noun_phrase(self.tree, noun))]
+        return [phrase_of(self.tree, noun)]
 
     def _objects(self) -> list[tuple[Part, bool]]:
         """Return the first of the kinds of objects that the clause has."""

@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from ravestate.language.contractions import word_set
+
 from .asking import QUESTION_WORDS, kind_at
 from .clause import Clause
 from .question_word import QuestionWord
 from .tree import Tree, Word
 from .verbs import VERBAL, lemma_of
-from .word_set import word_set
 
 _OPENERS = word_set(
-    "well so oh ok okay hi hello hey hallo good morning evening afternoon um uh hmm ah and but or then now please sorry excuse",
+    "well so oh ok okay hi hello hey hallo good morning evening afternoon um uh hmm ah and but or then now please sorry excuse "
     "me thanks great fine yes no yeah nice cool right alright also actually just by the way anyway sure wow haha",
 )
 """Words without meaning before a question."""

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from ravestate.language.contractions import word_set
+
 from .asking import QUESTION_WORDS
 from .tree import Tree, Word
-from .word_set import word_set
 
 SUBJECTS = ("nsubj", "nsubjpass", "csubj", "csubjpass")
 VERBAL = ("VERB", "AUX")
