@@ -51,6 +51,8 @@ def kind_at(words: Sequence[Word], index: int) -> QuestionWord | None:
     """
     word = words[index]
     kind = QUESTION_WORDS.get(word.low)
+    if word.low == "y" and words[index + 1 :] and words[index + 1].low in AUXILIARIES | {"not"}:
+        return QuestionWord.REASON
     if kind is None:
         return None
     rest = words[index + 1 :]

@@ -10,10 +10,11 @@ from ravestate.language.entity import Entity
 
 from .clause import NOTHING, Clause, Part
 from .phrase import Phrase, person_of, phrase_of
+from .repair import is_tag
 from .statement import Statement
-from .tree import Tree, Word
+from .tree import SUBJECTS, Tree, Word
 from .triple import Triple
-from .verbs import SUBJECTS, lemma_of, makes_future
+from .verbs import lemma_of, makes_future
 
 _LASTING = word_set(
     "be live work study have own like love hate enjoy prefer want need know believe play speak belong stay go teach smoke drink "
@@ -77,8 +78,9 @@ class Assertion:
             return True
         if self._above is not None:
             return self._dependent and self._above.question and not self._given
-        end = self._tree.subtree(self._clause.verb)[-1]
-        return "?" in end.low and not self._ends_otherwise
+        words = self._tree.subtree(self._clause.verb)
+        after = self._tree.words[words[-1].index + 1 :][:1]
+        return ("?" in words[-1].low and not self._ends_otherwise) or any(is_tag(word) for word in [*words, *after])
 
     @cached_property
     def hearsay(self) -> bool:

@@ -11,12 +11,12 @@ from ravestate.language.contractions import word_set
 from .asking import AUXILIARIES, QUESTION_WORDS, kind_at
 from .phrase import Phrase, adjective_phrase, conjuncts, gerund_phrase, noun_phrase, phrase_of
 from .question_word import QuestionWord
-from .tree import Tree, Word
+from .repair import repaired
+from .tree import SUBJECTS, Tree, Word
 from .triple import Triple
 from .verbs import (
     NEGATIONS,
     PLACES,
-    SUBJECTS,
     VERBAL,
     chain_of,
     heads_clause,
@@ -75,6 +75,7 @@ class Clause:
     @classmethod
     def all_in(cls, tree: Tree) -> list[Clause]:
         """Return the clauses that make triples, in order of their verbs."""
+        tree = repaired(tree)
         clauses: dict[int, Clause] = {}
         for word in tree.words:
             if heads_clause(tree, word):
@@ -85,7 +86,7 @@ class Clause:
 
     def readings(self) -> Iterator[tuple[Triple, Part, Part]]:
         """Yield a triple for each pair of subject and object, with its phrases."""
-        subjects, objects = self._parts() if not self.is_tag and not self._is_lets else ([], [])
+        subjects, objects = self._parts() if not self._is_lets else ([], [])
         for subject in subjects:
             for object, contrasted in objects or [(NOTHING, False)]:
                 predicate = ("not " if self.negated != contrasted else "") + self.predicate
@@ -218,19 +219,6 @@ class Clause:
         if self._is_copula and self.unknown is None and first.low in ("a", "an") and not self._objects():
             return False  # was a nice day
         return heads[0].index < first.index and heads[0].low in AUXILIARIES
-
-    @cached_property
-    def is_tag(self) -> bool:
-        """Whether it is a question tag: *don't you?*."""
-        before = self.tree.before(self.verb)
-        rest = [word for word in self.tree.words[self.verb.index + 1 :] if word.low not in NEGATIONS]
-        if before is None or self.verb.low not in AUXILIARIES or not rest or rest[0].pos != "PRON":
-            return False
-        if any(word.low in QUESTION_WORDS for word in self.own) or before.pos in ("PRON", "CCONJ", "SCONJ", "INTJ"):
-            return False
-        after = self.tree.after(self.verb)
-        denied = after is not None and after.low in NEGATIONS
-        return all(word.pos == "PUNCT" for word in rest[1:2]) and (min(self._clauses) < self.verb.index or denied)
 
     @cached_property
     def _is_lets(self) -> bool:

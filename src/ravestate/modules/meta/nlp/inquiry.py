@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import zip_longest
 
 from ravestate.language.contractions import word_set
 
 from .asking import AUXILIARIES, QUESTION_WORDS, kind_at
 from .clause import Clause
 from .question_word import QuestionWord
+from .repair import tag_at
 from .tree import Tree, Word
 from .verbs import VERBAL, lemma_of
 
@@ -30,8 +32,12 @@ _TAGS = word_set("right correct huh eh yes no ok okay")
 def question_of(tree: Tree, clauses: Sequence[Clause] | None = None) -> QuestionWord | None:
     """Return the kind of the first question in the text; None without one."""
     clauses = Clause.all_in(tree) if clauses is None else clauses
-    kinds = (_kind(tree, words, [c for c in clauses if c.verb in words]) for words in _sentences(tree))
+    kinds = (_kind(tree, words, _inside(words, clauses)) for words in _sentences(tree))
     return next((kind for kind in kinds if kind is not None), None)
+
+
+def _inside(words: Sequence[Word], clauses: Sequence[Clause]) -> list[Clause]:
+    return [clause for clause in clauses if words[0].index <= clause.verb.index <= words[-1].index]
 
 
 def _sentences(tree: Tree) -> list[list[Word]]:
@@ -52,7 +58,7 @@ def _kind(tree: Tree, words: Sequence[Word], clauses: Sequence[Clause]) -> Quest
     likely = "?" in tree.text[words[0].start : words[-1].end + 1]  # the normal form has added it
     parts = _parts(words)
     for part in parts:
-        inside = [clause for clause in clauses if clause.verb in part]
+        inside = _inside(part, clauses)
         beside = len(part) > 1 and part[0].pos in ("ADP", "SCONJ") and part[0].low not in ("like", *QUESTION_WORDS)
         rest = part[beside:]
         kind = kind_at(rest, 0)
@@ -66,17 +72,14 @@ def _kind(tree: Tree, words: Sequence[Word], clauses: Sequence[Clause]) -> Quest
             if (found := _of_clause(clause, asked)) is not None:
                 return found
     low = [word.low for word in words if word.pos != "PUNCT"]
-    if low and low[-1] in QUESTION_WORDS and (asked or "you" in low[:2]):  # you live where
+    if low and low[-1] in QUESTION_WORDS and (asked or (low[0] == "you" and low[1] not in _KNOWING)):  # you live where
         return QUESTION_WORDS[low[-1]]
-    tagged = (
-        len(low) > 2
-        and low[-1] in _TAGS
-        and (
-            any(word.low == "," for word in words[-4:])
-            or (low[-1] in ("right", "huh") and words[-2].pos in ("NOUN", "PROPN", "NUM", "ADJ"))
-        )
+    tagged = len(low) > 2 and low[-1] in _TAGS and any(word.low == "," for word in words[-4:])
+    tagged = tagged or (
+        low[-1:] in (["right"], ["huh"]) and len(words) > 1 and words[-2].pos in ("NOUN", "PROPN", "NUM", "ADJ")
     )
-    if asked or tagged or low[-2:] in (["and", "you"], ["and", "yours"]) or low[:1] in _OPEN:
+    tagged = tagged or any(tag_at(tree.words, word.index) for word in words)
+    if asked or tagged or low[-2:] in (["and", "you"], ["and", "yours"]) or low[:1] in _OPEN or low[1:2] == ["any"]:
         return QuestionWord.YES_NO
     return None
 
@@ -97,11 +100,13 @@ def _opens_question(part: Sequence[Word], clauses: Sequence[Clause], asked: bool
     first, second = part[0], part[1].low if len(part) > 1 else ""
     if (first.low, second) in (("what", "about"), ("how", "about"), ("how", "come"), ("what", "if")):
         return True
-    clause = next((clause for clause in clauses if first in clause.own), None)
+    clause = next((clause for clause in clauses if first.index in [word.index for word in clause.own]), None)
     if clause is not None and not clause.inverted and clause.verb.dep in ("advcl", "csubj", "relcl"):
         return False
     if any(clause.inverted for clause in clauses) or second in AUXILIARIES:
         return True
+    if second == "you" and (clause is None or clause.verb.dep == "ROOT") and not (part[2:] and part[2].pos == "AUX"):
+        return True  # where you live
     nice = (
         len(part) > 1 and part[1].pos in ("ADJ", "ADV") and kind_at(part, 0) in (QuestionWord.FORM, QuestionWord.OBJECT)
     )
@@ -124,9 +129,10 @@ def _of_clause(clause: Clause, asked: bool) -> QuestionWord | None:
     demands = clause.inverted or clause.requests or (wishes and len(clause.chain) > 1) or (asked and own[0] == "you")
     let = clause.head_clause is not None and clause.head_clause.requests and lemma == "know"
     if (demands and lemma in _TELLING | _KNOWING) or wonders or let:
-        for word in tree.words[verb.index + 1 : tree.subtree(clause.verb)[-1].index + 1]:
+        words = [word for word in tree.subtree(clause.verb) if word.index > verb.index]
+        for word, after in zip_longest(words, words[1:]):
             kind = QuestionWord.YES_NO if word.low in ("if", "whether") else kind_at(tree.words, word.index)
-            if kind is not None and not (verb.low == "guess" and word.dep == "dobj"):
+            if kind is not None and not (verb.low == "guess" and (after is None or after.pos == "PUNCT")):
                 return kind
             if word.pos in ("PROPN", "VERB", "AUX") or (
                 word.pos in ("NOUN", "PRON") and lemma not in _TELLING and not wonders
@@ -136,4 +142,4 @@ def _of_clause(clause: Clause, asked: bool) -> QuestionWord | None:
         asker = "i" in own
         if told - {"i", "we"} and not told & _PERFORMED and lemma == ("know" if asker else "tell"):
             return QuestionWord.OBJECT if asker or "me" in own or "us" in own else None
-    return QuestionWord.YES_NO if clause.inverted or clause.is_tag else None
+    return QuestionWord.YES_NO if clause.inverted else None

@@ -5,9 +5,8 @@ from __future__ import annotations
 from ravestate.language.contractions import word_set
 
 from .asking import QUESTION_WORDS
-from .tree import Tree, Word
+from .tree import SUBJECTS, Tree, Word
 
-SUBJECTS = ("nsubj", "nsubjpass", "csubj", "csubjpass")
 VERBAL = ("VERB", "AUX")
 NEGATIONS = frozenset(["not", "n't", "nt", "never"])
 PLACES = word_set("here there home abroad outside inside upstairs downstairs away everywhere nowhere somewhere")
