@@ -69,6 +69,8 @@ class Clause:
         self.verb = verb
         self.chain = chain_of(tree, verb)
         """The verb with the verbs that it governs: *want to become*."""
+        self.verbs = list(dict.fromkeys([*self.chain[::-1], verb]))
+        """All of its verbs, the last one first."""
         self._clauses = clauses
         """All clauses of the tree by the index of each of their verbs."""
 
@@ -98,10 +100,10 @@ class Clause:
     def predicate(self) -> str:
         """The lemma; in a chain the first verb's lemma, then the others as written."""
         first, *others = self._inherited + self.chain
-        if self._names_pursuit or lacks_copula(self.tree, self.verb) or (self.passive is not None and self._feels):
+        if self._is_state:
             return self.lemma
         lemma = lemma_of(first)
-        if self.passive is not None and not self._agents and first == self.verb:
+        if self.passive is not None and not self._by:
             lemma = f"{lemma_of(self.passive)} {first.low}"
         words = [with_particles(self.tree, first, lemma)]
         for verb in others:
@@ -115,37 +117,41 @@ class Clause:
     @cached_property
     def lemma(self) -> str:
         """The lemma of the last verb of the predicate."""
-        if self._names_pursuit or lacks_copula(self.tree, self.verb):
-            return "be"
-        return lemma_of(self.passive) if self.passive is not None and self._feels else lemma_of(self.chain[-1])
+        if self._is_state:
+            return "be" if self.passive is None else lemma_of(self.passive)
+        return lemma_of(self.chain[-1])
+
+    @cached_property
+    def _is_state(self) -> bool:
+        """Whether the verb is an adjective or a name of the subject: *she very nice*, *I am interested*."""
+        feels = self.passive is not None and self.chain[0].low in _FEELINGS
+        return feels or self._names_pursuit or lacks_copula(self.tree, self.verb)
 
     @cached_property
     def negated(self) -> bool:
         """Whether the clause is negated."""
         for word in self.own:
-            if self.tree.head(word) in self.chain[1:] or word.dep == "ROOT":
-                continue  # "decide not to go" denies the going alone
             before, after = self.tree.before(word), self.tree.after(word)
-            if word.low in NEGATIONS and not self._denies_conjunct(word):
+            if word.low in NEGATIONS and not self._denies_conjunct(word) and self.tree.head(word) not in self.chain[1:]:
+                return True  # but "decide not to go" denies the going alone
+            if before is not None and (before.low, word.low) == ("no", "longer"):
                 return True
-            if word.low == "longer" and before is not None and before.low == "no":
-                return True
-            if word.low == "no" and word.dep == "det" and not (after is not None and after.low == "one"):
-                return True
-            if word.low == "neither" and word.dep in ("cc", "preconj", "det"):
+            if word.low == "neither" or (word.low == "no" and word.dep == "det" and after and after.low != "one"):
                 return True
         head = self.head_clause  # I don't smoke or drink
-        if self.verb.dep != "conj" or head is None or self.own_subjects or not head.negated:
-            return False
-        return any(word.low in ("or", "nor") for word in self.tree.children(head.verb, "cc"))
+        joined = self.verb.dep == "conj" and head is not None and not self.own_subjects
+        return joined and head.negated and any(word.low in ("or", "nor") for word in self.tree.children(head.verb, "cc"))
 
     @cached_property
     def passive(self) -> Word | None:
-        """The auxiliary of a passive."""
-        for child in self.tree.children(self.chain[0], "auxpass"):
-            return child if lemma_of(self.chain[0]) != "be" else None
-        head = self.head_clause  # born and raised
-        joined = self.verb.dep == "conj" and self.verb.tag == "VBN" and not self.own_subjects
+        """The auxiliary of a passive, also of an adjective that is a participle: *are they married*."""
+        first, head = self.chain[0], self.head_clause
+        auxiliaries = self.tree.children(first, "auxpass") if lemma_of(first) != "be" else []
+        if first.low in _FEELINGS:
+            auxiliaries += [word for word in self.tree.children(first, "aux") if lemma_of(word) == "be"]
+        if auxiliaries:
+            return auxiliaries[0]
+        joined = self.verb.dep == "conj" and self.verb.tag == "VBN" and not self.own_subjects  # born and raised
         return head.passive if joined and head is not None and not self.tree.children(self.verb, "aux") else None
 
     @property
@@ -166,22 +172,20 @@ class Clause:
     @cached_property
     def _agents(self) -> list[Word]:
         """The agents of a passive, after *by*."""
-        by = [] if self.passive is None or self._feels else self.tree.children(self.chain[0], "agent")
-        return self.tree.children_of(by, "pobj")
+        return [word for word in self.tree.children_of(self._by, "pobj") if not self._asks_at(word)]
 
-    @property
-    def _feels(self) -> bool:
-        """Whether the participle is an adjective: *interested in music*."""
-        return self.chain[0].low in _FEELINGS
+    @cached_property
+    def _by(self) -> list[Word]:
+        return [] if self.passive is None or self._is_state else self.tree.children(self.chain[0], "agent")
 
     @cached_property
     def _names_pursuit(self) -> bool:
         """Whether the gerund names the subject: *my hobby is reading books*."""
-        pursuit = any(word.lemma.lower() in _PURSUITS for word in self.own_subjects)
+        if self.verb.tag != "VBG":
+            return False
         if self.verb.dep == "conj" and self.head_clause is not None and not self.own_subjects:
-            return self.verb.tag == "VBG" and self.head_clause._names_pursuit
-        being = any(lemma_of(word) == "be" for word in self.tree.children(self.verb, "aux"))
-        return pursuit and being and self.verb.tag == "VBG"
+            return self.head_clause._names_pursuit
+        return any(word.lemma.lower() in _PURSUITS for word in self.own_subjects)
 
     # ---------------------------------------------------------------------------------- its neighbours
 
@@ -194,9 +198,9 @@ class Clause:
     @cached_property
     def own(self) -> list[Word]:
         """The words of this clause, without those of clauses inside it."""
-        found = list(dict.fromkeys([self.verb, *self.chain]))
+        found = list(self.verbs)
         for word in found:  # the list grows in the loop
-            found += [child for child in self.tree.children(word) if self._clauses.get(child.index) is None]
+            found += [child for child in self.tree.children(word) if child.index not in self._clauses]
         return sorted(found, key=lambda word: word.index)
 
     @cached_property
@@ -208,15 +212,13 @@ class Clause:
     @cached_property
     def inverted(self) -> bool:
         """Whether the verb or its auxiliary precedes the subject: *do you live here*."""
-        heads = [word for word in self.own if word.dep in ("aux", "auxpass") or word in (self.verb, *self.chain)]
-        subjects = [word for word in self.own_subjects if word.dep not in ("dobj", "appos")]
+        heads = [word for word in self.own if word.dep in ("aux", "auxpass") or word in self.verbs]
+        subjects = self.tree.children_of(self.chain, "expl") or self.own_subjects
         before = self.tree.before(heads[0])
         if not subjects or (before is not None and before.low in ("so", "neither", "nor")):
             return False
-        if self.tree.children_of(self.chain, "expl"):
-            subjects = self.tree.children_of(self.chain, "expl")
         first = self.tree.subtree(subjects[0])[0]
-        if self._is_copula and self.unknown is None and first.low in ("a", "an") and not self._objects():
+        if first.low in ("a", "an") and self.unknown is None and not self._objects():
             return False  # was a nice day
         return heads[0].index < first.index and heads[0].low in AUXILIARIES
 
@@ -234,10 +236,10 @@ class Clause:
         if self._names_pursuit:
             gerunds = conjuncts(self.tree, self.verb, self._clauses.keys() - {self.verb.index})
             return self.subjects, [(phrase_of(self.tree, verb, self._gerund(verb)), False) for verb in gerunds]
-        if self._agents:
+        if self._by:
             given = self._written(self.tree.children(self.chain[0], "dobj"))  # I was given a watch by my aunt
             asked = given or [(part, False) for part in self.subjects]
-            if unknown is not None and unknown.top.dep == "agent":  # who was it written by
+            if unknown is not None and not self._agents:  # who was it written by
                 return [unknown.kind], asked
             return [part for part, _ in self._written(self._agents)], asked
         if unknown is None or unknown.top in self.own_subjects:
@@ -252,10 +254,9 @@ class Clause:
     @cached_property
     def own_subjects(self) -> list[Word]:
         """The subjects of the clause itself. The parser attaches some to an auxiliary or an adjective."""
-        verbs = dict.fromkeys([self.verb, *self.chain])
         tree, last = self.tree, self.chain[-1]
-        there = tree.children_of(verbs, "attr", "dobj") if tree.children_of(verbs, "expl") else []
-        found = there or tree.children_of(verbs, *SUBJECTS)
+        there = tree.children_of(self.verbs, "attr", "dobj") if tree.children_of(self.verbs, "expl") else []
+        found = there or tree.children_of(self.verbs[::-1], *SUBJECTS)
         beside = [*tree.children(self.verb, "aux", "auxpass"), *tree.children(last, "acomp", "attr")]
         found = found or tree.children_of(beside, *SUBJECTS)
         if not found and (before := tree.before(self.verb)) is not None and before.dep == "appos":
@@ -294,6 +295,8 @@ class Clause:
             return [YOU]
         if self.verb.lemma.lower() == "thank" or self.verb.low == "am" or set(auxiliaries) & {"am", "have"}:
             return [_I]
+        if set(auxiliaries) & {"ca", "can", "could"}:  # can't find it
+            return [_I]
         has = lemma_of(self.verb) in ("have", "get") and (self.negated or len(self.chain) > 1)
         states = lemma_of(self.verb) in _OWN_STATES or has
         request = (self.verb.tag in ("VB", "VBP") or "do" in auxiliaries) and not states
@@ -307,10 +310,10 @@ class Clause:
 
     def _objects(self) -> list[tuple[Part, bool]]:
         """Return the first of the kinds of objects that the clause has."""
-        tree, verbs = self.tree, list(dict.fromkeys([*self.chain[::-1], self.verb]))
+        tree, verbs = self.tree, self.verbs
         if lacks_copula(tree, self.verb):
             return self._written([self.verb], self.verb)
-        if verbs[0].low in _FEELINGS and tree.children(verbs[0], "auxpass"):
+        if self._is_state and not self._names_pursuit:
             return [(phrase_of(tree, verbs[0], adjective_phrase(tree, verbs[0], verbs[0])), False)]
         relative = self._is_relative and bool(self.own_subjects) and self.own_subjects[0].low not in _RELATIVE
         relative = relative and not any(word.low == "whose" or word.dep == "mark" for word in self.own)
@@ -328,20 +331,18 @@ class Clause:
         for verb in verbs:
             states = [w for w in tree.children(verb, "advmod") if w.low in _STATES and lemma_of(verb) in _SENSES]
             indirect = [word for word in tree.children(verb, "dative") if word.pos != "ADP"]
-            if states or indirect:
-                return self._written(states or indirect, verb)
+            if states or indirect or (verb == self.verb and self._beside):
+                return self._written(states or indirect or self._beside, verb)
         subjects = self.own_subjects if self._is_copula and self.unknown is None else []
-        if self._beside:
-            return self._written(self._beside, self.verb)
         after = tree.after(verbs[0]) if subjects else None  # my name is Tom I live in Berlin
         if after is not None and after.dep in ("npadvmod", "compound") and tree.head(after).pos in VERBAL:
             return [(phrase_of(tree, after, [after]), False)] if tree.head(after).index > after.index else []
         for head in (*verbs, *subjects):
             if found := self._in_phrases(head, of=head in verbs):
                 return found
-        for verb in verbs:
-            if places := [word for word in tree.children(verb, "advmod", "npadvmod", "dep") if word.low in PLACES]:
-                return [(phrase_of(tree, places[0], places[:1]), False)]
+        for word in tree.children_of(verbs, "advmod", "npadvmod", "dep"):
+            if word.low in PLACES:
+                return [(phrase_of(tree, word, [word]), False)]
         for word in tree.children(self.verb, "conj"):  # bought and read the book
             between = tree.words[self.verb.index + 1 : word.index]
             if (other := self._clauses.get(word.index)) and between and all(w.dep in ("cc", "prt") for w in between):
@@ -368,7 +369,8 @@ class Clause:
     def _runs_on(self) -> bool:
         """Whether a clause after a name is a sentence of its own: *my name is Tom I live in Berlin*."""
         noun = self.tree.head(self.verb)
-        bare = noun.tag in ("NN", "NNP", "PRP") and not self.tree.children(noun, "det", "poss", "amod", "nummod")
+        bare = noun.tag in ("NN", "NNP", "PRP") and not noun.low.endswith(("thing", "body", "one"))
+        bare = bare and not self.tree.children(noun, "det", "poss", "amod", "nummod")
         return bare and not self.tree.children(self.verb, "mark", "dobj")
 
     def _in_phrases(self, head: Word, *, of: bool = True) -> list[tuple[Part, bool]]:

@@ -11,6 +11,7 @@ from .asking import AUXILIARIES, QUESTION_WORDS
 from .tree import SUBJECTS, Tree, Word
 
 _NEGATIONS = ("n't", "not", "nt")
+_BE = ("is", "are", "was", "were")
 _INVERTING = word_set("do does did can could will would should")
 
 
@@ -21,6 +22,7 @@ def repaired(tree: Tree) -> Tree:
         if word.low in AUXILIARIES:
             _mark_tag(tree, words, word)
             _make_verb(tree, words, word)
+            _make_passive(tree, words, word)
     return tree if words == list(tree.words) else Tree(tree.text, words)
 
 
@@ -67,16 +69,29 @@ def _make_verb(tree: Tree, words: list[Word], auxiliary: Word) -> None:
         return
     if auxiliary.low == "do" and subject.tag not in ("NNS", "NNPS"):
         return  # do your math homework
-    before = tree.children(verb, *SUBJECTS)
-    if before or (verb.dep != "ROOT" and tree.head(verb) != auxiliary):
+    if tree.children(verb, *SUBJECTS) or (verb.dep != "ROOT" and tree.head(verb) != auxiliary):
         return
+    words[verb.index] = replace(verb, pos="VERB", tag="VB")
+    _reroot(tree, words, auxiliary, verb, subject, "aux")
+
+
+def _make_passive(tree: Tree, words: list[Word], be: Word) -> None:
+    """Make a participle after its noun the verb: *eaten*, in *was the cake eaten by the dog*."""
+    nouns = [word for word in tree.children(be, "nsubj", "attr") if word.index > be.index]
+    for participle in tree.children_of(nouns, "acl"):
+        if be.low in _BE and be.dep == "ROOT" and tree.children(participle, "agent"):
+            _reroot(tree, words, be, participle, tree.head(participle), "auxpass")
+
+
+def _reroot(tree: Tree, words: list[Word], auxiliary: Word, verb: Word, subject: Word, dep: str) -> None:
+    """Make `verb` the head of its sentence, with an auxiliary and a subject."""
     for word in tree.words:
         if word == verb:
-            words[word.index] = replace(word, pos="VERB", tag="VB", dep="ROOT", head=verb.index)
+            words[word.index] = replace(words[word.index], dep="ROOT", head=word.index)
         elif word == auxiliary:
-            words[word.index] = replace(word, pos="AUX", dep="aux", head=verb.index)
+            words[word.index] = replace(word, pos="AUX", dep=dep, head=verb.index)
         elif word == subject:
-            words[word.index] = replace(word, dep="nsubj")
+            words[word.index] = replace(word, dep="nsubj" if dep == "aux" else "nsubjpass", head=verb.index)
         elif word.head == verb.index and auxiliary.index < word.index < subject.index:
             words[word.index] = replace(word, head=subject.index)
         elif word.head == auxiliary.index:
