@@ -20,10 +20,9 @@ from .answer import YesNo, yesno_of
 from .inquiry import question_of
 from .pipeline import Pipeline
 from .question_word import QuestionWord
-from .statement import Statement
+from .statement import Statement, Triple
 from .statements import statements_of
 from .tree import Tree
-from .triple import Triple
 
 _SECOND_PERSON = word_set("you your yours yourself u ur")
 

@@ -8,12 +8,11 @@ from functools import cached_property
 
 from ravestate.language.contractions import word_set
 
-from .asking import AUXILIARIES, QUESTION_WORDS, kind_at
 from .phrase import Phrase, adjective_phrase, conjuncts, gerund_phrase, noun_phrase, phrase_of
-from .question_word import QuestionWord
+from .question_word import AUXILIARIES, QUESTION_WORDS, QuestionWord, kind_at
 from .repair import repaired
+from .statement import Triple
 from .tree import SUBJECTS, Tree, Word
-from .triple import Triple
 from .verbs import (
     NEGATIONS,
     PLACES,
@@ -140,7 +139,9 @@ class Clause:
                 return True
         head = self.head_clause  # I don't smoke or drink
         joined = self.verb.dep == "conj" and head is not None and not self.own_subjects
-        return joined and head.negated and any(word.low in ("or", "nor") for word in self.tree.children(head.verb, "cc"))
+        return (
+            joined and head.negated and any(word.low in ("or", "nor") for word in self.tree.children(head.verb, "cc"))
+        )
 
     @cached_property
     def passive(self) -> Word | None:

@@ -7,9 +7,8 @@ from itertools import zip_longest
 
 from ravestate.language.contractions import word_set
 
-from .asking import AUXILIARIES, QUESTION_WORDS, kind_at
 from .clause import Clause
-from .question_word import QuestionWord
+from .question_word import AUXILIARIES, QUESTION_WORDS, QuestionWord, kind_at
 from .repair import tag_at
 from .tree import Tree, Word
 from .verbs import VERBAL, lemma_of

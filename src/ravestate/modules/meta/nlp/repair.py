@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from ravestate.language.contractions import word_set
 
-from .asking import AUXILIARIES, QUESTION_WORDS
+from .question_word import AUXILIARIES, QUESTION_WORDS
 from .tree import SUBJECTS, Tree, Word
 
 _NEGATIONS = ("n't", "not", "nt")
