@@ -200,7 +200,8 @@ def readings(seen: Parse, thread: Sequence[Turn], titled: Callable[[str], str] =
     if not thread:
         return [] if _leans(seen) else [Reading(seen.text)]
     found: dict[str, Reading] = {}
-    for reading in _Follow(seen, thread, titled).readings():
+    follow = _Follow(seen, thread, titled)
+    for reading in (*follow.readings(), *follow.about()):
         found.setdefault(f"{reading.about} {reading.text}".lower().strip("? "), reading)
     return list(found.values())
 
@@ -293,6 +294,7 @@ class _Follow:
             yield from self._chosen(one)
         elif rest and rest[0].tag in WH and all(word.tag in WH or word.lemma == "be" for word in rest):
             yield from self._instead(rest[:1])  # and when was that?
+            yield from self._resolved() if self.pronouns else ()
         elif words and not any(word.tag in FINITE for word in words):
             if not any(word.pos in ("NOUN", "PROPN", "NUM", "ADJ", "X") or word.tag in WH for word in words):
                 return  # really?
@@ -301,13 +303,13 @@ class _Follow:
             else:
                 yield from ([] if self.leads or not self.named else [self._alone(0.0)])
                 yield from self._instead(words)
-                yield from self._about()
+                yield from self.about()
                 yield from ([] if self.leads and not self._has_of() else [self._alone(-1.0)])
         elif self.pronouns:
             yield from self._resolved()
             yield from [] if self.names else [self._alone(-1.0)]  # when did it start to rain
         elif words:
-            yield from ([] if self.named else self._about())
+            yield from ([] if self.named else self.about())
             yield self._alone(0.0 if self.named or self.leads else -1.0)
 
     def _has_of(self) -> bool:
@@ -316,11 +318,12 @@ class _Follow:
     def _alone(self, prior: float) -> Reading:
         return Reading(f"{self.text}?" if self.seen.kind is not None else self.text, prior)
 
-    def _about(self) -> Iterator[Reading]:
+    def about(self) -> Iterator[Reading]:
         """Yield the utterance about each name in view: *who was on board?*."""
-        for rank, thing in enumerate(self.names):
-            of = "" if any(word.tag in (*FINITE, *WH) for word in self.words) else f" of {thing.text}"
-            yield Reading(f"{self.text}{of}?", LESS * rank, about=thing.text)
+        for rank, thing in enumerate(self.names if self.words else ()):
+            noun = not any(word.tag in (*FINITE, *WH) for word in self.words)
+            of = f" of {thing.text}" if noun else ""
+            yield Reading(f"{self.text}{of}?", LESS * rank, thing.text, self.text if noun else "")
 
     def _resolved(self) -> Iterator[Reading]:
         """Yield the utterance with each thing that its pronoun may stand for."""
@@ -362,8 +365,8 @@ class _Follow:
     def _instead(self, new: Sequence[Word], text: str = "") -> Iterator[Reading]:
         """Yield earlier questions, latest first, with new words in place of a part of the same kind.
 
-        The parts are the question word (*and when?*), the rank (*and the second highest?*) and the names and nouns, first
-        those after the same preposition (*and of Spain?*).
+        The parts are the question word (*and when?*), the rank (*and the second highest?*) and the names and nouns. Those
+        after the same preposition come first (*and of Spain?*).
         """
         text = text or self.tree.phrase(new)
         first, last = new[0], new[-1]
