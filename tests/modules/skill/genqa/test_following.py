@@ -101,6 +101,11 @@ def test_a_sum_may_refer_to_the_thread(answerer: Answerer, said: list[str], answ
     assert answer in ask(answerer, *said)
 
 
+@pytest.mark.parametrize("follow", ["and Lake Sill?", "how old is it?", "who founded it?", "why?", "really?"])
+def test_a_follow_up_without_an_answer_of_its_kind_means_silence(answerer: Answerer, follow: str) -> None:
+    assert ask(answerer, "How deep is Lake Orm?", follow) == ""
+
+
 def test_what_else_is_not_answered_with_the_same_again(answerer: Answerer) -> None:
     assert ask(answerer, "How deep is Lake Orm?", "how deep else is it?") == ""
 

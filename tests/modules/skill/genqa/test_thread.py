@@ -82,6 +82,22 @@ def test_what_the_agent_said_gives_names_as_well() -> None:
     ]
 
 
+def test_a_fragment_takes_a_part_of_an_older_question_too() -> None:
+    capital = ("What is the capital of Peru?", "The capital of Peru is Lima.", "Peru")
+    found = readings(parse("and of Chile?"), talk(capital, HUSBAND, KESH))
+    assert "What is the capital of Chile?" in [reading.text for reading in found]
+
+
+@pytest.mark.parametrize("follow", ["who was he?", "where is it?", "when was that?"])
+def test_a_question_word_with_a_pronoun_has_readings(follow: str) -> None:
+    assert readings(parse(follow), talk(HUSBAND))
+
+
+def test_what_something_is_called_by_is_no_referent() -> None:
+    turns = talk(("What is Okapia?", "Okapia is a board game.", "Okapia"))
+    assert [reading.about for reading in readings(parse("who invented it?"), turns)] == ["Okapia"]
+
+
 def test_the_subject_of_a_question_that_only_asks_for_it_is_meant_first() -> None:
     turns = talk(("who is bertha", "Bertha is a giant tortoise in Willowbrook Zoo.", "Bertha"))
     assert readings(parse("when did she come to the zoo?"), turns)[0].text == "when did Bertha come to the zoo?"

@@ -205,7 +205,11 @@ class Answerer:
         stems_of = [set(stems) for stems in self._stems(*(f"{each.title} {each.text} {each.hints}" for each in found))]
         for each, have in zip(found, stems_of, strict=True):
             covered = sum(weight for forms, weight, _ in weights if has(have, forms)) / total if total else NAMES
-            fits = (covered >= ENOUGH or each in in_view) and have.isdisjoint(avoided) and _can_answer(question, each)
+            fits = (
+                (covered >= ENOUGH or not total or each in in_view)
+                and have.isdisjoint(avoided)
+                and _can_answer(question, each)
+            )
             if fits and all(has(have, need) for need in question.needs):
                 retrieved.append((covered, each))
         # The sort is stable, so BM25 decides between equals.

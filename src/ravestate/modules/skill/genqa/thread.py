@@ -201,7 +201,7 @@ def readings(seen: Parse, thread: Sequence[Turn], titled: Callable[[str], str] =
         return [] if _leans(seen) else [Reading(seen.text)]
     found: dict[str, Reading] = {}
     follow = _Follow(seen, thread, titled)
-    for reading in (*follow.readings(), *follow.about()):
+    for reading in [*follow.readings()] or follow.about():
         found.setdefault(f"{reading.about} {reading.text}".lower().strip("? "), reading)
     return list(found.values())
 
@@ -307,7 +307,8 @@ class _Follow:
                 yield from ([] if self.leads and not self._has_of() else [self._alone(-1.0)])
         elif self.pronouns:
             yield from self._resolved()
-            yield from [] if self.names else [self._alone(-1.0)]  # when did it start to rain
+            if sum(word.pos in ("NOUN", "PROPN", "VERB") for word in words) > 1:
+                yield self._alone(-1.0)  # when did it start to rain
         elif words:
             yield from ([] if self.named else self.about())
             yield self._alone(0.0 if self.named or self.leads else -1.0)
