@@ -62,8 +62,7 @@ def _run(options: argparse.Namespace) -> int:
     from ravestate.modules.skill.genqa.places import path_of
     from ravestate.settings import load_settings
 
-    given = {} if options.index is None else {"index": options.index}
-    settings = load_settings([genqa.module], {"genqa": given})["genqa"]
+    settings = load_settings([genqa.module], {"genqa": {"index": options.index} if options.index else {}})["genqa"]
     if options.action == "ask":
         return _ask(settings, " ".join(options.question))
     path = path_of(settings)
@@ -77,7 +76,6 @@ def _run(options: argparse.Namespace) -> int:
 
 
 def _index(index: Index, paths: list[Path]) -> int:
-    """Read files, with a progress bar on a terminal."""
     from ravestate.modules.skill.genqa.collecting import collect, find
 
     try:
@@ -158,6 +156,5 @@ def _ask(settings: Settings, question: str) -> int:
     print("  read        score  covers")
     for candidate in answer.candidates:
         text = printable(candidate.text)
-        shown = f"{text[:100]}{'…' if len(text) > 100 else ''}"
-        print(f"            {candidate.score:7.1f}  {candidate.covered:5.0%}  {shown}")
+        print(f"            {candidate.score:7.1f}  {candidate.covered:5.0%}  {text[:100]}{'…' * (len(text) > 100)}")
     return 0
