@@ -17,7 +17,7 @@ from .roles import Roles, has_verb, is_request, roles_of, turned
 from .state import State
 from .tongue import is_nonsense, is_number, tongue_of
 
-SUBJECT, SURE, MEANT = 0.45, 0.52, 0.6
+SUBJECT, SURE, MEANT = 0.45, 0.45, 0.6
 """The confidence in a subject, a moment and an act from which they decide."""
 FINER = 0.1
 """The advantage of a moment over a feeling or an act, which are broader."""

@@ -18,8 +18,9 @@ from .state import LASTING
 
 ROLE = re.compile(r"\{(\w+)\}")
 AGREEING = frozenset(("are", "were", "have", "do"))
-MOMENTS = ("about_the_talk", "advice", "everyday", "life", "moments")
+MOMENTS = ("about_the_talk", "advice", "everyday", "grown", "young", "life", "moments")
 """The files of situations in a talk."""
+_POINTING = re.compile(r"\b(?:it|that|they|them)\b", re.IGNORECASE)
 _NOT_GROUPS = frozenset(("examples", "nouns", "verbs", "tone", "lasts"))
 
 
@@ -39,6 +40,11 @@ class Line:
     def asks(self) -> bool:
         """Whether it ends with a question."""
         return self.text.endswith("?")
+
+    @property
+    def refers(self) -> bool:
+        """Whether it takes up what was said, by a role or a pronoun."""
+        return bool(self.roles or _POINTING.search(self.text))
 
 
 @dataclass(frozen=True, slots=True)
