@@ -224,9 +224,7 @@ async def go_on(ctx: rs.RuleContext) -> rs.Resign | None:
     return None
 
 
-@module.rule(
-    when=interloc.forgotten.max_age(None).detached(), writes=(history, listening, overheard), background=True
-)
+@module.rule(when=interloc.forgotten.max_age(None).detached(), writes=(history, listening, overheard), background=True)
 async def forget(ctx: rs.RuleContext) -> None:
     """Wipe the messages and the memory of the talk: the user has been forgotten."""
     for key in list(ctx[history]):

@@ -59,7 +59,8 @@ class Listener:
         Raises:
             PlatformError: The sentence model is missing or broken.
         """
-        self._phrases.matcher.load()
+        for matcher in self._phrases.matchers:
+            matcher.load()
 
     def performs(self, heard: Heard, state: State) -> bool:
         """Return whether the utterance asks for a performance, or belongs to one: no language model should answer it."""
