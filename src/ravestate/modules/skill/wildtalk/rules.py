@@ -16,7 +16,7 @@ from .backend import Backend, Message, PendingBackend, Role
 from .choosing import choose
 from .facts import asks_for_fact
 from .history import History
-from .listening import ListeningBackend
+from .listening import ListeningBackend, State
 from .llama import LlamaBackend, checked_model
 from .names import OLLAMA, Settings, chosen, clock, history, listening, model, module, notes, overheard, trouble
 from .openai import OpenAIBackend
@@ -221,6 +221,14 @@ async def go_on(ctx: rs.RuleContext) -> rs.Resign | None:
         return rs.Resign("it is neither a move in a game nor a short answer")
     ctx[rawio.output] = said
     return None
+
+
+@module.rule(when=interloc.forgotten.max_age(None).detached(), writes=(history, listening, overheard), background=True)
+async def forget(ctx: rs.RuleContext) -> None:
+    """Wipe the messages and the memory of the talk: the user has been forgotten."""
+    for key in list(ctx[history]):
+        ctx[history].remove(key)
+    ctx[listening], ctx[overheard] = State(), ()
 
 
 def tell(ctx: rs.RuleContext, error: PlatformError) -> None:
