@@ -79,7 +79,7 @@ def _values(rest: str, topic: Topic, seen: nlp.Analysis) -> list[str]:
         value = value_of(
             _HEDGES.sub("", piece.strip()), topic, seen, sure=topic.kind != "place" and len(seen.tree.words) < 9
         )
-        unlike = topic.kind == "activity" and value and likeness(value, topic.kind) < -0.1
+        unlike = topic.kind == "activity" and len(piece.split()) > 2 and likeness(piece, topic.kind) < -0.1
         if value is None or len(value) < 2 or unlike or not any(map(str.isalnum, value)) or is_remark(value):
             break  # nothing after such a piece is a value
         found.append(value)
@@ -108,10 +108,16 @@ def correction(
     return answer(rest, topic, seen) if rest and not idiom else []
 
 
-def may_stand_alone(seen: nlp.Analysis) -> bool:
-    """Return whether an utterance may be a bare answer: not a sentence about others, a request, or adverbs alone."""
+def may_stand_alone(seen: nlp.Analysis, *, clear: bool = False) -> bool:
+    """Return whether an utterance may be a bare answer: not a sentence about others, a request, or a mere yes or no.
+
+    Args:
+        seen: The analysis of the utterance.
+        clear: Whether its words are surely an answer, although they resemble a yes or no.
+    """
     text = spelled_out(seen.text)
-    if (seen.yesno and not _OPENERS.sub("", text).strip()) or (seen.yesno and not _OPENERS.match(text)):
+    rest = _OPENERS.sub("", text)
+    if seen.yesno and not clear and (rest == text or not rest.strip()):
         return False  # hard to say
     said = {word.low for word in seen.tree.words}
     return all(_may_answer(one) for one in seen.statements if one.subject.person != "I" or said & {"i", "we", "i'm"})

@@ -104,10 +104,11 @@ class Reader:
     def asks(self) -> Fact | None:
         """Return the fact that the user asks for; it has values if they want them confirmed."""
         kinds = nlp.QuestionWord
-        unknown = None if self.seen.question == kinds.YES_NO else self.seen.question
         for said in self.seen.statements:
             if not said.question or said.conditional:
                 continue
+            parts = (said.triple.object, said.triple.subject, self.seen.question)
+            unknown = next((part for part in parts if isinstance(part, kinds) and part != kinds.YES_NO), None)
             if unknown is not None and said.subject.person == "I":
                 asked = f"{_predicate(said)} {unknown.name}"
                 keys = (*(f"{asked} {phrase.head}" for phrase in said.phrases), asked)

@@ -97,12 +97,14 @@ def recalled(reader: Reader, told: Iterable[Told]) -> list[Told]:
     fit = [one for one in told if kind not in _FIT or _FIT[kind].search(one.text)]
     if not fit or not mine or (kind == nlp.QuestionWord.YES_NO and not reader.words & {"remember", "know"}):
         return []
+    asked = [part for part in (reader.tree.text, *reader.tree.text.split(",")) if len(part.split()) > 3]
     try:
-        question, *rows = Encoder().encode([plain(_returned(reader.tree.text)), *(plain(one.text) for one in fit)])
+        rows = Encoder().encode([plain(_returned(text)) for text in (*asked, *(one.text for one in fit))])
     except PlatformError:  # without the model, only the words themselves are found
         return []
-    likeness, best = max((float(question @ row), at) for at, row in enumerate(rows))
-    return [fit[best]] if likeness > LEAST else []
+    likeness = (rows[len(asked) :] @ rows[: len(asked)].T).max(axis=1) if asked else [0.0]
+    best = max(range(len(likeness)), key=likeness.__getitem__)
+    return [fit[best]] if likeness[best] > LEAST else []
 
 
 def _is_worth_keeping(reader: Reader, said: nlp.Statement) -> bool:
@@ -130,8 +132,9 @@ def _about(reader: Reader, said: nlp.Statement) -> str:
         mine = "my" in object.text.lower().split() and not _happened(reader, said)
         deictic = re.match(r"(?:this|that|these|those|it|here|there)\b", reader.written(object), re.IGNORECASE)
         spoken = not reader.words.isdisjoint({"i", "we", "i'm"})
-        verb = reader.verb(said)
-        there = object.preposition and (verb is None or verb.tag not in ("VBP", "VBG"))
+        there = (
+            object.preposition and not object.text[:1].isupper()
+        )  # I drive for Transkorn, but not I wait for the bus
         fits = object.text and not there and said.verb not in ("be", "have") and not mine and not deictic
         return "I" if spoken and fits and not list(reader.links(said)) else ""
     words = subject.text.split() if subject.of("I") else []
@@ -140,7 +143,7 @@ def _about(reader: Reader, said: nlp.Statement) -> str:
         return "" if naming or said.triple.predicate in ("be called", "be named") else subject.name or subject.text
     if WORDS["kin"] & {subject.head, *map(str.lower, words[1:2])} and words:
         return " ".join(words[2:]) if len(words) == 3 else subject.text
-    dated = said.verb == "be" and (said.when or object.preposition in ("on", "at", "in"))  # my birthday is in May
+    dated = said.verb == "be" and said.when  # my birthday is in May
     if words and dated and not reader.noun(subject):
         return subject.text
     person = subject.names and not subject.head and value_of(subject.text, TOPICS[NAME], reader.seen, sure=False)

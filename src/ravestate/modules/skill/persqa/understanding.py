@@ -155,14 +155,25 @@ class _Hearing:
         facts = (not felt and answer(self.text, topic, seen)) or (
             yesno.no and correction(self.text, topic, (), seen)
         )  # no, from Bremen
-        if facts and may_stand_alone(seen) and not {"thanks", "greeting", "acknowledgement"} & set(seen.acts):
+        loose = TOPICS[topic].kind == "activity" or {word.pos for word in seen.tree.words} & {"ADV", "PART"}
+        values = [value for fact in facts or () for value in fact.values]
+        clear = not loose and all(value_of(value, TOPICS[topic], seen, sure=False) for value in values)
+        if (
+            facts
+            and may_stand_alone(seen, clear=clear)
+            and not {"thanks", "greeting", "acknowledgement"} & set(seen.acts)
+        ):
             return Meaning("told", tuple(facts), topic)
         if not self.fresh or not yesno:
             return None
         if yesno.unsure or yesno.no:
             declined = topic in (NAME, "home", "origin")
             return Meaning("unsure" if yesno.unsure else "declined" if declined else "none", topic=topic)
-        mere = len(self.text.split()) <= 4 and not {"acknowledgement", "praise", "joke"} & set(seen.acts)
+        mere = (
+            len(self.text) < 40
+            and len(self.text.split()) <= 4
+            and not {"acknowledgement", "praise", "joke"} & set(seen.acts)
+        )
         return Meaning("which", topic=topic) if mere else None
 
     def vouched(self) -> Meaning | None:
