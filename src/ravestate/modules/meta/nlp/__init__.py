@@ -32,8 +32,7 @@ from .names import (
 )
 from .phrase import Phrase
 from .question_word import QuestionWord
-from .statement import Statement
-from .triple import Triple
+from .statement import Statement, Triple
 
 __all__ = [
     "Analysis",

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 
 from ravestate.errors import PlatformError
 from ravestate.language.acts import acts
+from ravestate.language.contractions import word_set
 from ravestate.language.entity import Entity
 from ravestate.language.feelings import clauses, feelings
 from ravestate.language.matcher import Match, Matcher, bundled_matcher
@@ -19,11 +20,9 @@ from .answer import YesNo, yesno_of
 from .inquiry import question_of
 from .pipeline import Pipeline
 from .question_word import QuestionWord
-from .statement import Statement
+from .statement import Statement, Triple
 from .statements import statements_of
 from .tree import Tree
-from .triple import Triple
-from .word_set import word_set
 
 _SECOND_PERSON = word_set("you your yours yourself u ur")
 

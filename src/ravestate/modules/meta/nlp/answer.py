@@ -10,11 +10,10 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from ravestate.language.contractions import word_set
 from ravestate.language.matcher import bundled_matcher
 from ravestate.language.normal import plain
 from ravestate.language.shape import shape
-
-from .word_set import word_set
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,16 +6,16 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 
-from .asking import AUXILIARIES, QUESTION_WORDS, kind_at
-from .noun_phrase import adjective_phrase, conjuncts, gerund_phrase, noun_phrase
-from .phrase import Phrase, phrase_of
-from .question_word import QuestionWord
-from .tree import Tree, Word
-from .triple import Triple
+from ravestate.language.contractions import word_set
+
+from .phrase import Phrase, adjective_phrase, conjuncts, gerund_phrase, noun_phrase, phrase_of
+from .question_word import AUXILIARIES, QUESTION_WORDS, QuestionWord, kind_at
+from .repair import repaired
+from .statement import Triple
+from .tree import SUBJECTS, Tree, Word
 from .verbs import (
     NEGATIONS,
     PLACES,
-    SUBJECTS,
     VERBAL,
     chain_of,
     heads_clause,
@@ -24,13 +24,12 @@ from .verbs import (
     lemma_of,
     with_particles,
 )
-from .word_set import word_set
 
 _DIRECT = ("dobj", "attr", "acomp", "oprd", "pobj", "punct")  # the parser sometimes labels an object as the last two
 _ADVERBIAL = (QuestionWord.PLACE, QuestionWord.TIME, QuestionWord.REASON, QuestionWord.FORM)
 _RELATIVE = ("who", "that", "which", "whom")
 _FEELINGS = word_set(
-    "interested tired bored married divorced scared excited worried surprised pleased disappointed confused retired ",
+    "interested tired bored married divorced scared excited worried surprised pleased disappointed confused retired "
     "annoyed satisfied",
 )
 _PURSUITS = word_set("hobby job passion dream goal plan interest pastime task habit")
@@ -69,12 +68,15 @@ class Clause:
         self.verb = verb
         self.chain = chain_of(tree, verb)
         """The verb with the verbs that it governs: *want to become*."""
+        self.verbs = list(dict.fromkeys([*self.chain[::-1], verb]))
+        """All of its verbs, the last one first."""
         self._clauses = clauses
         """All clauses of the tree by the index of each of their verbs."""
 
     @classmethod
     def all_in(cls, tree: Tree) -> list[Clause]:
         """Return the clauses that make triples, in order of their verbs."""
+        tree = repaired(tree)
         clauses: dict[int, Clause] = {}
         for word in tree.words:
             if heads_clause(tree, word):
@@ -85,7 +87,7 @@ class Clause:
 
     def readings(self) -> Iterator[tuple[Triple, Part, Part]]:
         """Yield a triple for each pair of subject and object, with its phrases."""
-        subjects, objects = self._parts() if not self.is_tag and not self._is_lets else ([], [])
+        subjects, objects = self._parts() if not self._is_lets else ([], [])
         for subject in subjects:
             for object, contrasted in objects or [(NOTHING, False)]:
                 predicate = ("not " if self.negated != contrasted else "") + self.predicate
@@ -97,10 +99,10 @@ class Clause:
     def predicate(self) -> str:
         """The lemma; in a chain the first verb's lemma, then the others as written."""
         first, *others = self._inherited + self.chain
-        if self._names_pursuit or lacks_copula(self.tree, self.verb) or (self.passive is not None and self._feels):
+        if self._is_state:
             return self.lemma
         lemma = lemma_of(first)
-        if self.passive is not None and not self._agents and first == self.verb:
+        if self.passive is not None and not self._by:
             lemma = f"{lemma_of(self.passive)} {first.low}"
         words = [with_particles(self.tree, first, lemma)]
         for verb in others:
@@ -114,37 +116,43 @@ class Clause:
     @cached_property
     def lemma(self) -> str:
         """The lemma of the last verb of the predicate."""
-        if self._names_pursuit or lacks_copula(self.tree, self.verb):
-            return "be"
-        return lemma_of(self.passive) if self.passive is not None and self._feels else lemma_of(self.chain[-1])
+        if self._is_state:
+            return "be" if self.passive is None else lemma_of(self.passive)
+        return lemma_of(self.chain[-1])
+
+    @cached_property
+    def _is_state(self) -> bool:
+        """Whether the verb is an adjective or a name of the subject: *she very nice*, *I am interested*."""
+        feels = self.passive is not None and self.chain[0].low in _FEELINGS
+        return feels or self._names_pursuit or lacks_copula(self.tree, self.verb)
 
     @cached_property
     def negated(self) -> bool:
         """Whether the clause is negated."""
         for word in self.own:
-            if self.tree.head(word) in self.chain[1:] or word.dep == "ROOT":
-                continue  # "decide not to go" denies the going alone
             before, after = self.tree.before(word), self.tree.after(word)
-            if word.low in NEGATIONS and not self._denies_conjunct(word):
+            if word.low in NEGATIONS and not self._denies_conjunct(word) and self.tree.head(word) not in self.chain[1:]:
+                return True  # but "decide not to go" denies the going alone
+            if before is not None and (before.low, word.low) == ("no", "longer"):
                 return True
-            if word.low == "longer" and before is not None and before.low == "no":
-                return True
-            if word.low == "no" and word.dep == "det" and not (after is not None and after.low == "one"):
-                return True
-            if word.low == "neither" and word.dep in ("cc", "preconj", "det"):
+            if word.low == "neither" or (word.low == "no" and word.dep == "det" and after and after.low != "one"):
                 return True
         head = self.head_clause  # I don't smoke or drink
-        if self.verb.dep != "conj" or head is None or self.own_subjects or not head.negated:
-            return False
-        return any(word.low in ("or", "nor") for word in self.tree.children(head.verb, "cc"))
+        joined = self.verb.dep == "conj" and head is not None and not self.own_subjects
+        return (
+            joined and head.negated and any(word.low in ("or", "nor") for word in self.tree.children(head.verb, "cc"))
+        )
 
     @cached_property
     def passive(self) -> Word | None:
-        """The auxiliary of a passive."""
-        for child in self.tree.children(self.chain[0], "auxpass"):
-            return child if lemma_of(self.chain[0]) != "be" else None
-        head = self.head_clause  # born and raised
-        joined = self.verb.dep == "conj" and self.verb.tag == "VBN" and not self.own_subjects
+        """The auxiliary of a passive, also of an adjective that is a participle: *are they married*."""
+        first, head = self.chain[0], self.head_clause
+        auxiliaries = self.tree.children(first, "auxpass") if lemma_of(first) != "be" else []
+        if first.low in _FEELINGS:
+            auxiliaries += [word for word in self.tree.children(first, "aux") if lemma_of(word) == "be"]
+        if auxiliaries:
+            return auxiliaries[0]
+        joined = self.verb.dep == "conj" and self.verb.tag == "VBN" and not self.own_subjects  # born and raised
         return head.passive if joined and head is not None and not self.tree.children(self.verb, "aux") else None
 
     @property
@@ -165,22 +173,20 @@ class Clause:
     @cached_property
     def _agents(self) -> list[Word]:
         """The agents of a passive, after *by*."""
-        by = [] if self.passive is None or self._feels else self.tree.children(self.chain[0], "agent")
-        return self.tree.children_of(by, "pobj")
+        return [word for word in self.tree.children_of(self._by, "pobj") if not self._asks_at(word)]
 
-    @property
-    def _feels(self) -> bool:
-        """Whether the participle is an adjective: *interested in music*."""
-        return self.chain[0].low in _FEELINGS
+    @cached_property
+    def _by(self) -> list[Word]:
+        return [] if self.passive is None or self._is_state else self.tree.children(self.chain[0], "agent")
 
     @cached_property
     def _names_pursuit(self) -> bool:
         """Whether the gerund names the subject: *my hobby is reading books*."""
-        pursuit = any(word.lemma.lower() in _PURSUITS for word in self.own_subjects)
+        if self.verb.tag != "VBG":
+            return False
         if self.verb.dep == "conj" and self.head_clause is not None and not self.own_subjects:
-            return self.verb.tag == "VBG" and self.head_clause._names_pursuit
-        being = any(lemma_of(word) == "be" for word in self.tree.children(self.verb, "aux"))
-        return pursuit and being and self.verb.tag == "VBG"
+            return self.head_clause._names_pursuit
+        return any(word.lemma.lower() in _PURSUITS for word in self.own_subjects)
 
     # ---------------------------------------------------------------------------------- its neighbours
 
@@ -193,9 +199,9 @@ class Clause:
     @cached_property
     def own(self) -> list[Word]:
         """The words of this clause, without those of clauses inside it."""
-        found = list(dict.fromkeys([self.verb, *self.chain]))
+        found = list(self.verbs)
         for word in found:  # the list grows in the loop
-            found += [child for child in self.tree.children(word) if self._clauses.get(child.index) is None]
+            found += [child for child in self.tree.children(word) if child.index not in self._clauses]
         return sorted(found, key=lambda word: word.index)
 
     @cached_property
@@ -207,30 +213,15 @@ class Clause:
     @cached_property
     def inverted(self) -> bool:
         """Whether the verb or its auxiliary precedes the subject: *do you live here*."""
-        heads = [word for word in self.own if word.dep in ("aux", "auxpass") or word in (self.verb, *self.chain)]
-        subjects = [word for word in self.own_subjects if word.dep not in ("dobj", "appos")]
+        heads = [word for word in self.own if word.dep in ("aux", "auxpass") or word in self.verbs]
+        subjects = self.tree.children_of(self.chain, "expl") or self.own_subjects
         before = self.tree.before(heads[0])
         if not subjects or (before is not None and before.low in ("so", "neither", "nor")):
             return False
-        if self.tree.children_of(self.chain, "expl"):
-            subjects = self.tree.children_of(self.chain, "expl")
         first = self.tree.subtree(subjects[0])[0]
-        if self._is_copula and self.unknown is None and first.low in ("a", "an") and not self._objects():
+        if first.low in ("a", "an") and self.unknown is None and not self._objects():
             return False  # was a nice day
         return heads[0].index < first.index and heads[0].low in AUXILIARIES
-
-    @cached_property
-    def is_tag(self) -> bool:
-        """Whether it is a question tag: *don't you?*."""
-        before = self.tree.before(self.verb)
-        rest = [word for word in self.tree.words[self.verb.index + 1 :] if word.low not in NEGATIONS]
-        if before is None or self.verb.low not in AUXILIARIES or not rest or rest[0].pos != "PRON":
-            return False
-        if any(word.low in QUESTION_WORDS for word in self.own) or before.pos in ("PRON", "CCONJ", "SCONJ", "INTJ"):
-            return False
-        after = self.tree.after(self.verb)
-        denied = after is not None and after.low in NEGATIONS
-        return all(word.pos == "PUNCT" for word in rest[1:2]) and (min(self._clauses) < self.verb.index or denied)
 
     @cached_property
     def _is_lets(self) -> bool:
@@ -246,10 +237,10 @@ class Clause:
         if self._names_pursuit:
             gerunds = conjuncts(self.tree, self.verb, self._clauses.keys() - {self.verb.index})
             return self.subjects, [(phrase_of(self.tree, verb, self._gerund(verb)), False) for verb in gerunds]
-        if self._agents:
+        if self._by:
             given = self._written(self.tree.children(self.chain[0], "dobj"))  # I was given a watch by my aunt
             asked = given or [(part, False) for part in self.subjects]
-            if unknown is not None and unknown.top.dep == "agent":  # who was it written by
+            if unknown is not None and not self._agents:  # who was it written by
                 return [unknown.kind], asked
             return [part for part, _ in self._written(self._agents)], asked
         if unknown is None or unknown.top in self.own_subjects:
@@ -264,10 +255,9 @@ class Clause:
     @cached_property
     def own_subjects(self) -> list[Word]:
         """The subjects of the clause itself. The parser attaches some to an auxiliary or an adjective."""
-        verbs = dict.fromkeys([self.verb, *self.chain])
         tree, last = self.tree, self.chain[-1]
-        there = tree.children_of(verbs, "attr", "dobj") if tree.children_of(verbs, "expl") else []
-        found = there or tree.children_of(verbs, *SUBJECTS)
+        there = tree.children_of(self.verbs, "attr", "dobj") if tree.children_of(self.verbs, "expl") else []
+        found = there or tree.children_of(self.verbs[::-1], *SUBJECTS)
         beside = [*tree.children(self.verb, "aux", "auxpass"), *tree.children(last, "acomp", "attr")]
         found = found or tree.children_of(beside, *SUBJECTS)
         if not found and (before := tree.before(self.verb)) is not None and before.dep == "appos":
@@ -306,6 +296,8 @@ class Clause:
             return [YOU]
         if self.verb.lemma.lower() == "thank" or self.verb.low == "am" or set(auxiliaries) & {"am", "have"}:
             return [_I]
+        if set(auxiliaries) & {"ca", "can", "could"}:  # can't find it
+            return [_I]
         has = lemma_of(self.verb) in ("have", "get") and (self.negated or len(self.chain) > 1)
         states = lemma_of(self.verb) in _OWN_STATES or has
         request = (self.verb.tag in ("VB", "VBP") or "do" in auxiliaries) and not states
@@ -315,14 +307,14 @@ class Clause:
     def _antecedent(self) -> list[Part]:
         """The noun before a relative clause."""
         noun = self.tree.head(self.verb)
-        return [phrase_of(self.tree, noun, noun_phrase(self.tree, noun))]
+        return [phrase_of(self.tree, noun)]
 
     def _objects(self) -> list[tuple[Part, bool]]:
         """Return the first of the kinds of objects that the clause has."""
-        tree, verbs = self.tree, list(dict.fromkeys([*self.chain[::-1], self.verb]))
+        tree, verbs = self.tree, self.verbs
         if lacks_copula(tree, self.verb):
             return self._written([self.verb], self.verb)
-        if verbs[0].low in _FEELINGS and tree.children(verbs[0], "auxpass"):
+        if self._is_state and not self._names_pursuit:
             return [(phrase_of(tree, verbs[0], adjective_phrase(tree, verbs[0], verbs[0])), False)]
         relative = self._is_relative and bool(self.own_subjects) and self.own_subjects[0].low not in _RELATIVE
         relative = relative and not any(word.low == "whose" or word.dep == "mark" for word in self.own)
@@ -340,20 +332,18 @@ class Clause:
         for verb in verbs:
             states = [w for w in tree.children(verb, "advmod") if w.low in _STATES and lemma_of(verb) in _SENSES]
             indirect = [word for word in tree.children(verb, "dative") if word.pos != "ADP"]
-            if states or indirect:
-                return self._written(states or indirect, verb)
+            if states or indirect or (verb == self.verb and self._beside):
+                return self._written(states or indirect or self._beside, verb)
         subjects = self.own_subjects if self._is_copula and self.unknown is None else []
-        if self._beside:
-            return self._written(self._beside, self.verb)
         after = tree.after(verbs[0]) if subjects else None  # my name is Tom I live in Berlin
         if after is not None and after.dep in ("npadvmod", "compound") and tree.head(after).pos in VERBAL:
             return [(phrase_of(tree, after, [after]), False)] if tree.head(after).index > after.index else []
         for head in (*verbs, *subjects):
             if found := self._in_phrases(head, of=head in verbs):
                 return found
-        for verb in verbs:
-            if places := [word for word in tree.children(verb, "advmod", "npadvmod", "dep") if word.low in PLACES]:
-                return [(phrase_of(tree, places[0], places[:1]), False)]
+        for word in tree.children_of(verbs, "advmod", "npadvmod", "dep"):
+            if word.low in PLACES:
+                return [(phrase_of(tree, word, [word]), False)]
         for word in tree.children(self.verb, "conj"):  # bought and read the book
             between = tree.words[self.verb.index + 1 : word.index]
             if (other := self._clauses.get(word.index)) and between and all(w.dep in ("cc", "prt") for w in between):
@@ -380,7 +370,8 @@ class Clause:
     def _runs_on(self) -> bool:
         """Whether a clause after a name is a sentence of its own: *my name is Tom I live in Berlin*."""
         noun = self.tree.head(self.verb)
-        bare = noun.tag in ("NN", "NNP", "PRP") and not self.tree.children(noun, "det", "poss", "amod", "nummod")
+        bare = noun.tag in ("NN", "NNP", "PRP") and not noun.low.endswith(("thing", "body", "one"))
+        bare = bare and not self.tree.children(noun, "det", "poss", "amod", "nummod")
         return bare and not self.tree.children(self.verb, "mark", "dobj")
 
     def _in_phrases(self, head: Word, *, of: bool = True) -> list[tuple[Part, bool]]:

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import zip_longest
 
-from .asking import QUESTION_WORDS, kind_at
+from ravestate.language.contractions import word_set
+
 from .clause import Clause
-from .question_word import QuestionWord
+from .question_word import AUXILIARIES, QUESTION_WORDS, QuestionWord, kind_at
+from .repair import tag_at
 from .tree import Tree, Word
 from .verbs import VERBAL, lemma_of
-from .word_set import word_set
 
 _OPENERS = word_set(
-    "well so oh ok okay hi hello hey hallo good morning evening afternoon um uh hmm ah and but or then now please sorry excuse",
-    "me thanks great fine yes no yeah nice cool right alright also actually just by the way anyway sure wow haha",
+    "well so oh ok okay hi hello hey hallo good morning evening afternoon um uh hmm ah and but or then now please sorry excuse "
+    "me thanks great fine yes no yeah nice cool right alright also actually just by the way anyway sure wow haha"
 )
 """Words without meaning before a question."""
 _TELLING = word_set("tell say explain show remind describe ask")
@@ -29,41 +31,39 @@ _TAGS = word_set("right correct huh eh yes no ok okay")
 def question_of(tree: Tree, clauses: Sequence[Clause] | None = None) -> QuestionWord | None:
     """Return the kind of the first question in the text; None without one."""
     clauses = Clause.all_in(tree) if clauses is None else clauses
-    for words in _sentences(tree):
-        inside = [clause for clause in clauses if words[0].index <= clause.verb.index <= words[-1].index]
-        if (kind := _kind(words, inside)) is not None:
-            return kind
-    return None
+    kinds = (_kind(tree, words, _inside(words, clauses)) for words in _sentences(tree))
+    return next((kind for kind in kinds if kind is not None), None)
+
+
+def _inside(words: Sequence[Word], clauses: Sequence[Clause]) -> list[Clause]:
+    return [clause for clause in clauses if words[0].index <= clause.verb.index <= words[-1].index]
 
 
 def _sentences(tree: Tree) -> list[list[Word]]:
     """Return the words of each sentence, with the marks that end it."""
     found: list[list[Word]] = [[]]
-    last = 0
     for word in tree.words:
-        mark = not word.low.strip(".!?…")
-        if (found[-1] and "\n" in tree.text[last : word.start]) or (
-            not mark and found[-1] and not found[-1][-1].low.strip(".!?…")
-        ):
+        before = tree.before(word)
+        ended = before is not None and not before.low.strip(".!?…") and word.low.strip(".!?…")
+        if found[-1] and before is not None and (ended or "\n" in tree.text[before.end : word.start]):
             found.append([])
         found[-1].append(word)
-        last = word.end
-    return [words for words in found if words]
+    return found if tree.words else []
 
 
-def _kind(words: Sequence[Word], clauses: Sequence[Clause]) -> QuestionWord | None:
+def _kind(tree: Tree, words: Sequence[Word], clauses: Sequence[Clause]) -> QuestionWord | None:
     """Return the kind of the first question in a sentence."""
     asked = any("?" in word.low for word in words)
+    likely = "?" in tree.text[words[0].start : words[-1].end + 1]  # the normal form has added it
     parts = _parts(words)
     for part in parts:
-        inside = [clause for clause in clauses if part[0].index <= clause.verb.index <= part[-1].index]
-        first = (
-            1
-            if len(part) > 1 and part[0].pos in ("ADP", "SCONJ") and part[0].low not in ("like", *QUESTION_WORDS)
-            else 0
-        )
-        kind = kind_at(part, first)
-        if kind is not None and _opens_question(part[first:], inside, asked and part == parts[-1]):
+        inside = _inside(part, clauses)
+        beside = len(part) > 1 and part[0].pos in ("ADP", "SCONJ") and part[0].low not in ("like", *QUESTION_WORDS)
+        rest = part[beside:]
+        kind = kind_at(rest, 0)
+        if kind is not None and _opens_question(
+            rest, inside, likely and part == parts[-1] and rest[0].low not in ("when", "where")
+        ):
             return kind
         if [word.low for word in part[:2]] == ["any", "idea"]:
             return next((kind for place in range(len(part)) if (kind := kind_at(part, place))), None)
@@ -71,10 +71,14 @@ def _kind(words: Sequence[Word], clauses: Sequence[Clause]) -> QuestionWord | No
             if (found := _of_clause(clause, asked)) is not None:
                 return found
     low = [word.low for word in words if word.pos != "PUNCT"]
-    if low and low[-1] in QUESTION_WORDS and (asked or low[0] == "you"):  # you live where
-        return kind_at(words, next(word for word in words if word.low == low[-1]).index - words[0].index)
-    tagged = low and low[-1] in _TAGS and any(word.low == "," for word in words[-4:]) and len(low) > 2
-    if asked or tagged or low[-2:] in (["and", "you"], ["and", "yours"]) or low[:1] in _OPEN:
+    if low and low[-1] in QUESTION_WORDS and (asked or (low[0] == "you" and low[1] not in _KNOWING)):  # you live where
+        return QUESTION_WORDS[low[-1]]
+    tagged = len(low) > 2 and low[-1] in _TAGS and any(word.low == "," for word in words[-4:])
+    tagged = tagged or (
+        low[-1:] in (["right"], ["huh"]) and len(words) > 1 and words[-2].pos in ("NOUN", "PROPN", "NUM", "ADJ")
+    )
+    tagged = tagged or any(tag_at(tree.words, word.index) for word in words)
+    if asked or tagged or low[-2:] in (["and", "you"], ["and", "yours"]) or low[:1] in _OPEN or low[1:2] == ["any"]:
         return QuestionWord.YES_NO
     return None
 
@@ -93,22 +97,24 @@ def _parts(words: Sequence[Word]) -> list[list[Word]]:
 def _opens_question(part: Sequence[Word], clauses: Sequence[Clause], asked: bool) -> bool:
     """Return whether a part that begins with a question word is a question."""
     first, second = part[0], part[1].low if len(part) > 1 else ""
-    clause = next((clause for clause in clauses if clause.unknown and clause.unknown.word == first), None)
-    if any(clause.inverted for clause in clauses) or (asked and first.low not in ("when", "where")):
-        return not (clause is not None and clause.verb.dep in ("advcl", "csubj") and not clause.inverted)
-    praised = (
-        len(part) > 1 and part[1].pos in ("ADJ", "ADV") and kind_at(part, 0) is QuestionWord.FORM
-    )  # how nice of you
-    if (
-        praised
-        or (first.low == "what" and second in ("a", "an"))
-        or (first.low, second) in (("what", "about"), ("how", "about"))
-    ):
-        return second == "about"
-    if clause is None or clause.verb.pos not in VERBAL or second == "if":
-        return len(part) < 4 or second in ("come", "if")
-    begins = clause.unknown is not None and clause.unknown.top in clause.own_subjects  # what happened
-    return second == "come" or (clause.verb.dep in ("ROOT", "ccomp") and begins) or (not clause.own_subjects)
+    if (first.low, second) in (("what", "about"), ("how", "about"), ("how", "come"), ("what", "if")):
+        return True
+    clause = next((clause for clause in clauses if first.index in [word.index for word in clause.own]), None)
+    if clause is not None and not clause.inverted and clause.verb.dep in ("advcl", "csubj", "relcl"):
+        return False
+    if any(clause.inverted for clause in clauses) or second in AUXILIARIES:
+        return True
+    if second == "you" and (clause is None or clause.verb.dep == "ROOT") and not (part[2:] and part[2].pos == "AUX"):
+        return True  # where you live
+    nice = (
+        len(part) > 1 and part[1].pos in ("ADJ", "ADV") and kind_at(part, 0) in (QuestionWord.FORM, QuestionWord.OBJECT)
+    )
+    if asked or nice or (first.low == "what" and second in ("a", "an")):
+        return asked and not (nice and first.low == "what" and part[-1].pos in VERBAL)  # how nice of you
+    if clause is None or clause.unknown is None:
+        return len(part) < 4
+    begins = clause.verb.dep in ("ROOT", "ccomp") and clause.unknown.top in clause.own_subjects  # what happened
+    return begins or not clause.own_subjects
 
 
 def _of_clause(clause: Clause, asked: bool) -> QuestionWord | None:
@@ -117,18 +123,15 @@ def _of_clause(clause: Clause, asked: bool) -> QuestionWord | None:
     lemma, own = lemma_of(verb), [word.low for word in clause.own]
     if clause.unknown is not None and clause.inverted:
         return clause.unknown.kind
-    wishes = (
-        bool({"i", "we"} & set(own))
-        and lemma_of(clause.chain[0]) in ("want", "like", "love", "need")
-        and len(clause.chain) > 1
-    )
+    wishes = bool({"i", "we"} & set(own)) and lemma_of(clause.chain[0]) in ("want", "like", "love", "need")
     wonders = bool({"wonder", "wondering", "curious"} & set(own)) or (clause.inverted and "idea" in own)
-    demands = clause.inverted or clause.requests or wishes or (asked and own[0] == "you")
+    demands = clause.inverted or clause.requests or (wishes and len(clause.chain) > 1) or (asked and own[0] == "you")
     let = clause.head_clause is not None and clause.head_clause.requests and lemma == "know"
     if (demands and lemma in _TELLING | _KNOWING) or wonders or let:
-        for word in tree.words[verb.index + 1 : tree.subtree(clause.verb)[-1].index + 1]:
+        words = [word for word in tree.subtree(clause.verb) if word.index > verb.index]
+        for word, after in zip_longest(words, words[1:]):
             kind = QuestionWord.YES_NO if word.low in ("if", "whether") else kind_at(tree.words, word.index)
-            if kind is not None and not (verb.low == "guess" and word.dep == "dobj"):
+            if kind is not None and not (verb.low == "guess" and (after is None or after.pos == "PUNCT")):
                 return kind
             if word.pos in ("PROPN", "VERB", "AUX") or (
                 word.pos in ("NOUN", "PRON") and lemma not in _TELLING and not wonders
@@ -138,4 +141,4 @@ def _of_clause(clause: Clause, asked: bool) -> QuestionWord | None:
         asker = "i" in own
         if told - {"i", "we"} and not told & _PERFORMED and lemma == ("know" if asker else "tell"):
             return QuestionWord.OBJECT if asker or "me" in own or "us" in own else None
-    return QuestionWord.YES_NO if clause.inverted or clause.is_tag else None
+    return QuestionWord.YES_NO if clause.inverted else None

@@ -12,7 +12,7 @@ from .analysis import Analysis
 from .answer import YesNo
 from .context_lock import ContextLock
 from .question_word import QuestionWord
-from .triple import Triple
+from .statement import Triple
 
 
 class Settings(rs.Settings):

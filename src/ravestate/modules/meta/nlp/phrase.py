@@ -1,13 +1,14 @@
-"""A phrase: the subject or object of a statement, or another noun phrase of its clause."""
+"""Phrases: the words of a subject or object, and the parts of them that skills use."""
 
 from __future__ import annotations
 
+from collections.abc import Container
 from dataclasses import dataclass
 from typing import Literal
 
-from .noun_phrase import noun_phrase
+from ravestate.language.contractions import word_set
+
 from .tree import Tree, Word
-from .word_set import word_set
 
 Person = Literal["I", "you", "other"]
 """The speaker (*I, my, we*), the agent (*you, your*), or others."""
@@ -47,23 +48,27 @@ class Phrase:
         return self.owner is not None and (self.owner.person == person or self.owner.of(person))
 
 
+DETERMINERS = word_set("the a an this that these those some any every each all both no another neither either")
+"""Words that a phrase leaves out, unless it has no others."""
+_KEPT = ("amod", "compound", "poss", "nummod", "nmod", "case", "det", "quantmod", "pobj", "pcomp")
+_PRONOUNS = (("no", "one"), ("each", "other"))
 _SPEAKER = word_set("i me my mine myself we us our ours ourselves")
 _AGENT = word_set("you your yours yourself u ur")
 _NUMBERS = ["no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve"]
 
 
-def phrase_of(tree: Tree, head: Word, words: list[Word]) -> Phrase:
-    """Return the phrase of `words` around `head`."""
+def phrase_of(tree: Tree, head: Word, words: list[Word] | None = None) -> Phrase:
+    """Return the phrase of `words` around `head`; of its noun phrase by default."""
     noun = None if head.pos in ("PRON", "DET") else head
     if head.pos == "PROPN":  # friend, of my friend Anna
         noun = next((word for word in tree.children(head, "compound", "nmod") if word.pos == "NOUN"), None)
     of = [word for word in tree.children(noun or head, "prep") if word.low == "of"]
-    owners = [*tree.children(noun or head, "poss"), *tree.children_of(of, "pobj")]
+    owner = next(iter([*tree.children(noun or head, "poss"), *tree.children_of(of, "pobj")]), None)
     return Phrase(
-        tree.phrase(words),
+        tree.phrase(noun_phrase(tree, head) if words is None else words),
         head="" if noun is None else noun.lemma.lower() if noun.pos == "NOUN" else noun.low,
         names=tuple(_names_in(tree, head)),
-        owner=_owner(tree, owners[0]) if owners else None,
+        owner=owner and phrase_of(tree, owner, [word for word in noun_phrase(tree, owner) if word.dep != "case"]),
         amount=_amount(tree, head),
         person=person_of(head),
         preposition=tree.head(head).low if head.dep in ("pobj", "pcomp") else "",
@@ -75,8 +80,71 @@ def person_of(word: Word) -> Person:
     return "I" if word.low in _SPEAKER else "you" if word.low in _AGENT else "other"
 
 
-def _owner(tree: Tree, head: Word) -> Phrase:
-    return phrase_of(tree, head, [word for word in noun_phrase(tree, head) if word.dep != "case"])
+def noun_phrase(tree: Tree, head: Word, *, joined: bool = False) -> list[Word]:
+    """Return the words of the noun phrase around `head`, with its conjuncts if it is `joined`.
+
+    It keeps possessives, adjectives, numbers, compounds and *of*. It drops determiners, adverbs, other prepositions and
+    relative clauses. A gerund (*playing chess*) keeps all but determiners.
+    """
+    if head.pos in ("VERB", "AUX") and head.dep not in ("ROOT", "conj", "amod"):
+        return gerund_phrase(tree, head)
+    kept = [head]
+    for child in tree.children(head):
+        of = child.low == "of" and child.index > head.index and bool(tree.children(child))
+        if of or _belongs(tree, child, head) or (joined and child.dep in ("cc", "conj")):
+            kept += noun_phrase(tree, child, joined=of or child.dep == "amod" or (joined and child.dep != "poss"))
+    return _with_hyphens(tree, kept)
+
+
+def adjective_phrase(tree: Tree, head: Word, verb: Word) -> list[Word]:
+    """Return a predicate adjective with its measure (*20 years old*) and the prepositional phrase directly after it.
+
+    The parser attaches that phrase to the adjective or to the verb.
+    """
+    kept = [head]
+    for child in tree.children(head, "npadvmod", "compound"):
+        kept += noun_phrase(tree, child) if child.index < head.index else []
+    after = tree.after(head)
+    if after is not None and after.dep in ("prep", "agent") and after.head in (head.index, verb.index):
+        kept += noun_phrase(tree, after, joined=True) if tree.children(after, "pobj", "pcomp") else []
+    return _with_hyphens(tree, kept)
+
+
+def gerund_phrase(tree: Tree, head: Word) -> list[Word]:
+    """Return all words of a gerund phrase (*playing chess*), without determiners and punctuation."""
+    words = [word for word in tree.subtree(head) if word.pos != "PUNCT"]
+    return [word for word in words if word.dep not in ("det", "predet") or word.low not in DETERMINERS]
+
+
+def conjuncts(tree: Tree, head: Word, clauses: Container[int]) -> list[Word]:
+    """Return `head` with its conjuncts, without the verbs in `clauses` (indices)."""
+    found = [head]
+    for word in found:  # the list grows in the loop
+        listed = [child for child in tree.children(word, "appos") if child.pos == word.pos]  # a cat, a dog and a bird
+        joined = [child for child in listed if tree.children(child, "conj")] + tree.children(word, "conj")
+        found += [child for child in joined if child.index not in clauses]
+    return found
+
+
+def _belongs(tree: Tree, child: Word, head: Word) -> bool:
+    """Return whether a word with its own dependents is a part of the phrase around `head`."""
+    if child.dep == "appos":  # a name without a comma, perhaps in lower case: my friend tom
+        comma = any(between.pos == "PUNCT" for between in tree.words[head.index : child.index])
+        return not comma and (child.pos == "PROPN" or (child.tag == "NN" and child.index == head.index + 1))
+    if child.low in DETERMINERS and child.dep not in ("pobj", "pcomp"):
+        return (child.low, head.low) in _PRONOUNS
+    after = child.dep == "amod" and child.index > head.index  # are cats nice
+    return child.dep in _KEPT and child.pos != "ADV" and not after
+
+
+def _with_hyphens(tree: Tree, kept: list[Word]) -> list[Word]:
+    """Add words joined by hyphens: the pipeline splits *well-known* into three."""
+    indices = {word.index for word in kept}
+    for index in range(len(tree.words) - 1, 1, -1):
+        hyphen = tree.words[index - 1]
+        if index in indices and hyphen.low in "-–" and hyphen.end == tree.words[index].start:
+            indices |= {index - 1, index - 2}
+    return [tree.words[index] for index in sorted(indices)]
 
 
 def _names_in(tree: Tree, head: Word) -> list[str]:
@@ -87,7 +155,7 @@ def _names_in(tree: Tree, head: Word) -> list[str]:
         return [name, *(name for word in joined for name in _names_in(tree, word))]
     called = [word for word in tree.children(head, "acl", "relcl") if word.low in ("named", "called")]
     named = [*tree.children(head, "appos"), *tree.children_of(called, "oprd", "dobj", "attr")]
-    return [name for word in named for name in _names_in(tree, word)] if head.pos in ("NOUN", "PROPN") else []
+    return [name for word in named for name in _names_in(tree, word)] if head.pos == "NOUN" else []
 
 
 def _amount(tree: Tree, head: Word) -> float | None:

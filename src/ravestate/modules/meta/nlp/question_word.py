@@ -1,8 +1,13 @@
-"""The kinds of questions."""
+"""The kinds of questions, and the words that ask them."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from enum import Enum
+
+from ravestate.language.contractions import word_set
+
+from .tree import Word
 
 
 class QuestionWord(Enum):
@@ -27,3 +32,79 @@ class QuestionWord(Enum):
 
     def __repr__(self) -> str:
         return f"QuestionWord.{self.name}"
+
+
+QUESTION_WORDS = {
+    "who": QuestionWord.PERSON,
+    "whom": QuestionWord.PERSON,
+    "whose": QuestionWord.PERSON,
+    "where": QuestionWord.PLACE,
+    "when": QuestionWord.TIME,
+    "why": QuestionWord.REASON,
+    "how": QuestionWord.FORM,
+    "what": QuestionWord.OBJECT,
+    "wat": QuestionWord.OBJECT,
+    "which": QuestionWord.OBJECT,
+}
+
+AUXILIARIES = word_set(
+    "do does did am is are was were 's 're s re have has had 've can could will would shall should may might must 'll 'd ca wo "
+    "ai",
+)
+"""Verbs that precede the subject in a question."""
+
+_MEASURES = word_set(
+    "many much old long far tall big large high deep heavy fast hot cold cool warm expensive often wide small short "
+    "young late soon close near thick strong loud rich quickly regularly frequently little few costly",
+)
+_CLASSES = {
+    QuestionWord.TIME: word_set("time day date hour week month year weekday century"),
+    QuestionWord.PLACE: word_set("place city town village country state street"),
+    QuestionWord.PERSON: word_set("person people man woman boy girl guy child"),
+}
+_CLASS_OF = {noun: kind for kind, nouns in _CLASSES.items() for noun in nouns}
+_FOUGHT_FOR = word_set(
+    "look wait ask search pay care stand work hope vote apply prepare fight study go know famous long plan shop hunt"
+)
+"""Verbs that make *what ... for* ask for a thing."""
+
+
+def kind_at(words: Sequence[Word], index: int) -> QuestionWord | None:
+    """Return the kind of question of the word at `index`; None for other words.
+
+    Example: of "how many friends do you have" the word at 0 asks for an amount.
+    """
+    word = words[index]
+    kind = QUESTION_WORDS.get(word.low)
+    if word.low == "y" and words[index + 1 :] and words[index + 1].low in AUXILIARIES | {"not"}:
+        return QuestionWord.REASON
+    if kind is None:
+        return None
+    rest = words[index + 1 :]
+    after = rest[0].low if rest else ""
+    if kind is QuestionWord.FORM:
+        if after == "come":
+            return QuestionWord.REASON
+        return QuestionWord.AMOUNT if after in _MEASURES else kind
+    if kind is QuestionWord.OBJECT:
+        if after == "for":
+            return QuestionWord.REASON
+        for other in rest:
+            if other.pos in ("ADJ", "NUM"):
+                continue
+            if other.pos in ("NOUN", "PROPN", "VERB"):  # without punctuation the tagger mistakes some nouns
+                kind = _CLASS_OF.get(other.lemma.lower(), kind)
+            break
+        if _asks_what_for(rest):
+            return QuestionWord.REASON
+    return kind
+
+
+def _asks_what_for(rest: Sequence[Word]) -> bool:
+    """Return whether the clause ends with a *for* that does not belong to the verb: *what do you need that for*."""
+    clause: list[Word] = []
+    for word in rest:
+        if word.pos == "PUNCT":
+            break
+        clause.append(word)
+    return len(clause) > 2 and clause[-1].low == "for" and not any(word.lemma.lower() in _FOUGHT_FOR for word in clause)

@@ -1,24 +1,49 @@
-"""Read triples and statements from a dependency tree, by the conventions of the README."""
+"""Read triples and statements from a dependency tree: what each clause says, and whether it is so, by the README's conventions."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from functools import cached_property
 
+from ravestate.language.contractions import word_set
 from ravestate.language.entity import Entity
 
-from .assertion import Assertion
-from .clause import Clause
-from .statement import Statement
-from .tree import Tree
-from .triple import Triple
+from .clause import NOTHING, Clause
+from .phrase import Phrase, person_of, phrase_of
+from .repair import is_tag
+from .statement import Statement, Triple
+from .tree import SUBJECTS, Tree
+from .verbs import lemma_of, makes_future
 
 MOST = 64
 """The maximum number of triples from one text, because enumerations multiply."""
 
+_HABITS = word_set("go play train run attend sing dance paint cook swim ride eat teach stay drink")
+"""Verbs that are habits without a time, and single events with one: *I painted a dragon yesterday*."""
+_LASTING = _HABITS | word_set(
+    "be live work study have own like love hate enjoy prefer want need know believe speak belong smoke keep collect date share "
+    "feel hope think"
+)
+"""Verbs of states and habits. In the past they say what is so no more; with others, something happened and still holds."""
+_KNOWN_AS_TRUE = word_set(
+    "know remember see notice forget realise realize find learn discover understand mean show prove"
+)
+_IMAGINED = word_set("wish imagine dream pretend suppose hope doubt fantasise fantasize")
+_WANTED = word_set("want wan hope plan intend wish dream decide aim like love need prepare promise expect")
+_DOUBTS = word_set("maybe perhaps possibly probably")
+_REPORTS = word_set("apparently supposedly allegedly reportedly according")
+_UNREAL = word_set("would 'd could might may should")
+_CONDITIONS = word_set("if unless whether")
+_SOON = word_set("tomorrow next soon tonight later")
+_TIMES = word_set(
+    "yesterday today now once ago recently currently nowadays formerly previously soon lately tomorrow tonight"
+)
+_TEMPORAL = word_set("when while until after before since")
+
 
 def triples_of(tree: Tree) -> tuple[Triple, ...]:
     """Return the statements and questions of the text: at most `MOST` triples, each once."""
-    return tuple(dict.fromkeys(statement.triple for statement in statements_of(tree)))
+    return tuple(statement.triple for statement in statements_of(tree))
 
 
 def statements_of(tree: Tree, entities: Sequence[Entity] = ()) -> tuple[Statement, ...]:
@@ -29,10 +54,178 @@ def statements_of(tree: Tree, entities: Sequence[Entity] = ()) -> tuple[Statemen
     """
     found: dict[Triple, Statement] = {}
     for clause in Clause.all_in(tree):
-        assertion = Assertion(tree, clause, entities)
+        assertion = _Assertion(clause, entities)
         for triple, subject, object in clause.readings():
-            if triple not in found:
+            if triple not in found and len(found) < MOST:
+                subject, object = (part if isinstance(part, Phrase) else NOTHING for part in (subject, object))
                 found[triple] = assertion.statement(triple, subject, object)
-            if len(found) == MOST:
-                return tuple(found.values())
     return tuple(found.values())
+
+
+class _Assertion:
+    """The flags that all triples of one clause share: whether it is so, was so once, is imagined, wanted, or reported."""
+
+    def __init__(self, clause: Clause, entities: Sequence[Entity]) -> None:
+        self._tree = clause.tree
+        self._clause = clause
+        self._low = {word.low for word in clause.own}
+        self._times = [entity.text.lower().split() for entity in entities if entity.label in ("DATE", "TIME")]
+        self._above = None if clause.head_clause is None else _Assertion(clause.head_clause, entities)
+        dep = clause.verb.dep
+        shares = dep in ("ccomp", "xcomp", "acl") or (dep == "conj" and not clause.own_subjects)
+        self._sharing = self._above if shares else None
+        """The clause above, if this one shares its flags."""
+
+    def statement(self, triple: Triple, subject: Phrase, object: Phrase) -> Statement:
+        """Return the statement of a triple of this clause."""
+        return Statement(
+            triple,
+            subject,
+            object,
+            verb=self._clause.lemma,
+            phrases=tuple(self._phrases()),
+            when=self._when,
+            negated=triple.predicate.startswith("not ") != self._denied_above,
+            past=self._past and not self._conditional,
+            hearsay=self._hearsay,
+            conditional=self._conditional,
+            plan=self._plan,
+            question=self._question,
+            request=self._clause.requests,
+        )
+
+    # ------------------------------------------------------------------------------------------ flags
+
+    @cached_property
+    def _question(self) -> bool:
+        if self._clause.unknown is not None or self._clause.inverted:
+            return True
+        if self._above is not None:
+            return self._sharing is not None and self._above._question and not self._given
+        words = self._tree.subtree(self._clause.verb)
+        commas = [place for place, word in enumerate(words) if word.low == ","]
+        rest = words[commas[-1] + 1 :] if commas else []
+        elsewhere = bool(rest) and rest[0].low in ("and", "what", "how")  # I live in Rome, and you?
+        after = self._tree.words[words[-1].index + 1 :][:1]
+        return ("?" in words[-1].low and not elsewhere) or any(is_tag(word) for word in [*words, *after])
+
+    @cached_property
+    def _hearsay(self) -> bool:
+        """Whether somebody else says it."""
+        if self._above is None or self._low & _REPORTS:
+            return bool(self._low & _REPORTS)
+        said = self._above._clause
+        if self._clause.verb.dep in ("ccomp", "parataxis") and not self._given:
+            speakers = [word for word in said.own_subjects if word.low not in ("it", "that", "this", "what")]
+            if any(person_of(word) != "I" for word in speakers):
+                return said.lemma != "be"
+            if said.lemma in ("hear", "read") or (said.lemma in ("say", "tell") and (said.negated or said.passive)):
+                return True
+        return self._sharing is not None and self._sharing._hearsay
+
+    @cached_property
+    def _conditional(self) -> bool:
+        """Whether it is imagined."""
+        own = self._clause.own
+        if self._low & _DOUBTS or any(word.low in _CONDITIONS and word.dep in ("mark", "advmod") for word in own):
+            return True
+        if any(word.low in _UNREAL and word.dep == "aux" for word in own) and not self._wished:
+            return True
+        conditions = self._tree.children(self._clause.verb, "advcl")
+        if any(word.low in ("if", "unless") for word in self._tree.children_of(conditions, "mark")):
+            return True
+        if lemma_of(self._tree.head(self._clause.verb)) in _IMAGINED and self._clause.verb.dep in (
+            "ccomp",
+            "xcomp",
+            "advcl",
+        ):
+            return True
+        return self._sharing is not None and self._sharing._conditional
+
+    @cached_property
+    def _plan(self) -> bool:
+        """Whether it is wanted, or lies ahead."""
+        chain = self._clause.chain
+        if any(word.low in ("will", "'ll", "shall", "wo") and word.dep == "aux" for word in self._clause.own):
+            return True
+        if self._wished or (makes_future(self._tree, self._clause.verb) and chain[0] != self._clause.verb):
+            return True
+        if len(chain) > 1 and chain[1].tag == "VB" and lemma_of(chain[0]) in _WANTED:
+            return True
+        verbs = [chain[0], *self._tree.children(chain[0], "auxpass")]
+        soon = set(self._when.lower().split()) & _SOON
+        if soon and self._tense == "present" and any(verb.tag == "VBG" for verb in verbs):
+            return True
+        wanted = self._clause.verb.dep in ("xcomp", "ccomp") and self._clause.verb.tag == "VB"
+        above = self._sharing
+        return above is not None and (above._plan or (wanted and above._clause.lemma in _WANTED))
+
+    @cached_property
+    def _past(self) -> bool:
+        """Whether it was so, and is so no more."""
+        lemma, first = lemma_of(self._clause.chain[-1]), self._clause.chain[0]
+        if first.low == "used" and len(self._clause.chain) > 1:
+            return True
+        if self._clause.passive is not None or lemma not in _LASTING:
+            return False
+        if self._tense == "past":
+            return not (lemma in _HABITS and self._when)
+        goes_on = self._low & {"since", "for", "always", "been", "all"}  # I have lived here since 2010
+        return self._tense == "perfect" and lemma in ("live", "work", "study") and not goes_on
+
+    # ---------------------------------------------------------------------------------------- reading
+
+    @cached_property
+    def _tense(self) -> str:
+        first = self._clause.chain[0]
+        before = {word.low for word in self._clause.own if word.dep in ("aux", "auxpass") and word.index < first.index}
+        if before & {"have", "has", "'ve", "'s"} and first.tag == "VBN":
+            return "perfect"
+        if self._sharing is not None and self._clause.verb.dep == "conj" and first.tag == "VB" and not before:
+            return self._sharing._tense
+        past = before & {"was", "were", "did", "had"} if before else first.tag == "VBD" or first.low in ("was", "were")
+        return "past" if past else "present"
+
+    @cached_property
+    def _wished(self) -> bool:
+        """Whether it is a *would like*."""
+        first = self._clause.chain[0]
+        would = any(word.low in ("would", "'d") for word in self._tree.children(first, "aux"))
+        return would and lemma_of(first) in ("like", "love", "prefer")
+
+    @cached_property
+    def _denied_above(self) -> bool:
+        """Whether the clause above denies it: *I don't think that I am shy*, *it is not true that I am shy*."""
+        if self._above is None or self._clause.verb.dep not in ("ccomp", "csubj"):
+            return False
+        said = self._above._clause
+        return said.negated and said.lemma in ("think", "believe", "be", "feel", "guess")
+
+    @cached_property
+    def _given(self) -> bool:
+        """Whether the clause above takes it as true: *you know that I live here*."""
+        assert self._above is not None
+        return not self._low & {"if", "whether"} and self._above._clause.lemma in _KNOWN_AS_TRUE
+
+    def _phrases(self) -> Iterator[Phrase]:
+        for word in self._clause.own:
+            above = list(self._tree.ancestors(word))
+            inside = above[: next((n for n, verb in enumerate(above) if verb in self._clause.verbs), len(above))]
+            if word.dep in ("pobj", "oprd") and not any(other.dep in SUBJECTS or other.low == "of" for other in inside):
+                yield phrase_of(self._tree, word)
+
+    @cached_property
+    def _when(self) -> str:
+        tree, own = self._tree, [word for word in self._clause.own if word.pos != "PUNCT"]
+        low = [word.low for word in own]
+        found = [word for word in own if word.low in _TIMES and word.dep in ("advmod", "npadvmod")]
+        for time in self._times:
+            for place in range(len(low) - len(time) + 1):
+                if low[place : place + len(time)] == time and time[-1] != "old":
+                    before = tree.words[max(own[place].index - 1, 0)]
+                    found += [before] * (before.pos in ("ADP", "SCONJ")) + own[place : place + len(time)]
+        if not found:
+            for child in tree.children(self._clause.verb, "advcl"):
+                if any(word.low in _TEMPORAL for word in tree.children(child, "advmod", "mark")):
+                    found = [word for word in tree.subtree(child) if word.pos != "PUNCT"]
+        return tree.phrase(dict.fromkeys(found))

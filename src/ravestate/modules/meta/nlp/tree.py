@@ -6,6 +6,8 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
+SUBJECTS = ("nsubj", "nsubjpass", "csubj", "csubjpass")
+
 
 @dataclass(frozen=True, slots=True)
 class Word:

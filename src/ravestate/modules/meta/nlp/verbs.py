@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from .asking import QUESTION_WORDS
-from .tree import Tree, Word
-from .word_set import word_set
+from ravestate.language.contractions import word_set
 
-SUBJECTS = ("nsubj", "nsubjpass", "csubj", "csubjpass")
+from .question_word import QUESTION_WORDS
+from .tree import SUBJECTS, Tree, Word
+
 VERBAL = ("VERB", "AUX")
 NEGATIONS = frozenset(["not", "n't", "nt", "never"])
 PLACES = word_set("here there home abroad outside inside upstairs downstairs away everywhere nowhere somewhere")
@@ -15,7 +15,16 @@ _MOTION = word_set("come go travel fly drive run move stay")
 """Verbs whose infinitive states a purpose, and so an action of its own: *come to help*."""
 _GERUND_TAKERS = word_set("like love hate enjoy prefer dislike start stop begin continue keep practise practice try")
 _BE = frozenset(["be", "am", "is", "are", "was", "were", "m", "s", "re", "'s", "'m", "'re"])
-_SHORT = {"wan": "want", "gon": "go", "got": "get", "ca": "can", "wo": "will", "forgot": "forget", "getting": "get"}
+_SHORT = {
+    "wan": "want",
+    "gon": "go",
+    "got": "get",
+    "ca": "can",
+    "wo": "will",
+    "forgot": "forget",
+    "getting": "get",
+    "hates": "hate",
+}
 
 
 def heads_clause(tree: Tree, word: Word) -> bool:

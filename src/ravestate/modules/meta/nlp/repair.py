@@ -1,0 +1,98 @@
+"""Repair what the small pipelines often mistake in a dependency tree: question tags, and nouns that must be verbs."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from ravestate.language.contractions import word_set
+
+from .question_word import AUXILIARIES, QUESTION_WORDS
+from .tree import SUBJECTS, Tree, Word
+
+_NEGATIONS = ("n't", "not", "nt")
+_BE = ("is", "are", "was", "were")
+_INVERTING = word_set("do does did can could will would should")
+
+
+def repaired(tree: Tree) -> Tree:
+    """Return a tree of the same words, with other relations where the pipeline's cannot be right."""
+    words = list(tree.words)
+    for word in tree.words:
+        if word.low in AUXILIARIES:
+            _mark_tag(tree, words, word)
+            _make_verb(tree, words, word)
+            _make_passive(tree, words, word)
+    return tree if words == list(tree.words) else Tree(tree.text, words)
+
+
+def is_tag(word: Word) -> bool:
+    """Return whether a word of a repaired tree belongs to a question tag."""
+    return word.dep == "punct" and word.low in AUXILIARIES
+
+
+def tag_at(words: Sequence[Word], index: int) -> int:
+    """Return the number of words of the question tag at `index`: 3 for *don't you*; 0 if there is none."""
+    negated = index + 1 < len(words) and words[index + 1].low in _NEGATIONS
+    end = index + 2 + negated
+    ended = end <= len(words) and words[end - 1].pos == "PRON" and (end == len(words) or words[end].pos == "PUNCT")
+    before = words[index - 1] if index else None
+    if not ended or before is None or words[index].low not in AUXILIARIES or words[end - 1].low in QUESTION_WORDS:
+        return 0
+    apart = before.low == "," or (negated and before.pos not in ("CCONJ", "SCONJ", "PRON") and index > 1)
+    return end - index if apart and words[index - 1 - (before.low == ",")].low not in QUESTION_WORDS else 0
+
+
+def _mark_tag(tree: Tree, words: list[Word], word: Word) -> None:
+    """Make the words of a question tag punctuation."""
+    tag = range(word.index, word.index + tag_at(tree.words, word.index))
+    for other in tree.words if tag else ():
+        if other.index in tag:
+            words[other.index] = replace(other, pos="PUNCT", dep="punct", head=other.index)
+        elif other.head in tag:
+            words[other.index] = replace(other, dep="ROOT", head=other.index)
+
+
+def _make_verb(tree: Tree, words: list[Word], auxiliary: Word) -> None:
+    """Make the noun after an auxiliary and its subject a verb: *end*, in *did the war end*."""
+    subjects = [child for child in tree.children(auxiliary, *SUBJECTS) if child.index < auxiliary.index]
+    if auxiliary.low not in _INVERTING or subjects:
+        return
+    after = tree.words[auxiliary.index + 1 :]
+    place = next(
+        (n for n, word in enumerate(after) if word.pos not in ("DET", "PRON", "ADJ", "NOUN", "PROPN")), len(after)
+    )
+    if place < 2:
+        return
+    *_, subject, verb = after[:place]
+    if subject.dep != "compound" or subject.head != verb.index or verb.pos != "NOUN":
+        return
+    if auxiliary.low == "do" and subject.tag not in ("NNS", "NNPS"):
+        return  # do your math homework
+    if tree.children(verb, *SUBJECTS) or (verb.dep != "ROOT" and tree.head(verb) != auxiliary):
+        return
+    words[verb.index] = replace(verb, pos="VERB", tag="VB")
+    _reroot(tree, words, auxiliary, verb, subject, "aux")
+
+
+def _make_passive(tree: Tree, words: list[Word], be: Word) -> None:
+    """Make a participle after its noun the verb: *eaten*, in *was the cake eaten by the dog*."""
+    nouns = [word for word in tree.children(be, "nsubj", "attr") if word.index > be.index]
+    for participle in tree.children_of(nouns, "acl"):
+        if be.low in _BE and be.dep == "ROOT" and tree.children(participle, "agent"):
+            _reroot(tree, words, be, participle, tree.head(participle), "auxpass")
+
+
+def _reroot(tree: Tree, words: list[Word], auxiliary: Word, verb: Word, subject: Word, dep: str) -> None:
+    """Make `verb` the head of its sentence, with an auxiliary and a subject."""
+    for word in tree.words:
+        if word == verb:
+            words[word.index] = replace(words[word.index], dep="ROOT", head=word.index)
+        elif word == auxiliary:
+            words[word.index] = replace(word, pos="AUX", dep=dep, head=verb.index)
+        elif word == subject:
+            words[word.index] = replace(word, dep="nsubj" if dep == "aux" else "nsubjpass", head=verb.index)
+        elif word.head == verb.index and auxiliary.index < word.index < subject.index:
+            words[word.index] = replace(word, head=subject.index)
+        elif word.head == auxiliary.index:
+            words[word.index] = replace(word, head=verb.index)
