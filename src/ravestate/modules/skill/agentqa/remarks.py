@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 from ravestate.language import normalise, plain, sentences
+from ravestate.language.addressing import addressed
 from ravestate.modules.meta.nlp.analysis import Analysis
 
-from .addressing import addressed
 from .life import Life
 
 LONGEST = 2000

@@ -10,9 +10,9 @@ from functools import lru_cache
 
 from ravestate import language
 from ravestate.language import Encoder, Matcher, normalise, plain
+from ravestate.language.addressing import addressed
 from ravestate.language.bundled import ModelMissing
 
-from .addressing import addressed
 from .life import Life
 
 LEAST = 0.6
