@@ -39,7 +39,7 @@ def recognise(text: str, names: Collection[str] = ()) -> Feeling | None:
     """Return the feeling that fits `text` (English), or None. The first call loads the sentence model.
 
     Args:
-        text: The user's words; the first 1000 characters count.
+        text: The user's words; the first 2000 characters count.
         names: The agent's names: "Rosie is clever" means the same as "you are clever".
 
     Raises:
