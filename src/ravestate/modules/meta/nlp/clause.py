@@ -216,10 +216,10 @@ class Clause:
         heads = [word for word in self.own if word.dep in ("aux", "auxpass") or word in self.verbs]
         subjects = self.tree.children_of(self.chain, "expl") or self.own_subjects
         before = self.tree.before(heads[0])
-        if not subjects or (before is not None and before.low in ("so", "neither", "nor")):
+        if not subjects or (before is not None and before.low in ("so", "neither", "nor", "here")):
             return False
         first = self.tree.subtree(subjects[0])[0]
-        if first.low in ("a", "an") and self.unknown is None and not self._objects():
+        if self._is_copula and first.pos != "PRON" and self.unknown is None and not self._objects():
             return False  # was a nice day
         return heads[0].index < first.index and heads[0].low in AUXILIARIES
 

@@ -55,8 +55,10 @@ def _mark_tag(tree: Tree, words: list[Word], word: Word) -> None:
 
 def _make_verb(tree: Tree, words: list[Word], auxiliary: Word) -> None:
     """Make the noun after an auxiliary and its subject a verb: *end*, in *did the war end*."""
-    subjects = [child for child in tree.children(auxiliary, *SUBJECTS) if child.index < auxiliary.index]
-    if auxiliary.low not in _INVERTING or subjects:
+    before = tree.before(auxiliary)
+    if auxiliary.low not in _INVERTING or (
+        before and before in tree.children(auxiliary, "nsubj") and before.pos in ("PRON", "NOUN", "PROPN")
+    ):
         return
     after = tree.words[auxiliary.index + 1 :]
     place = next(
